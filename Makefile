@@ -1,0 +1,37 @@
+# Two commands do everything on a fresh machine: `make demo` and `make test`. Each makes .venv from requirements.lock first.
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/ready
+export JAX_COMPILATION_CACHE_DIR ?= $(CURDIR)/.venv/jax-cache
+
+.PHONY: install demo test validate bench lint lock
+
+install: $(READY)
+
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "jaxhydro needs Python 3.11 or newer; set PYTHON=python3.12, say")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@touch $@
+
+demo: $(READY)     ## calibrate VolturnUS-S to the nine embedded decays: coefficients, errors, figures, a page, in out/demo
+	$(BIN)/jaxhydro demo --out out/demo
+
+test: $(READY)     ## all tests, on two cores
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not validate"
+
+validate: $(READY) ## slow: regenerates the evidence in docs/validation.md
+	$(BIN)/python -m pytest -m validate -s
+	$(BIN)/python -m benchmarks.validate
+
+bench: $(READY)    ## speed as ratios in one run: benchmarks/results.md
+	$(BIN)/python -m benchmarks.bench
+
+lint: $(READY)
+	$(BIN)/ruff check jaxhydro calibration tests benchmarks
+	$(BIN)/mypy
+
+lock:              ## remake requirements.lock from pyproject.toml (needs uv)
+	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev pyproject.toml \
+	  --custom-compile-command "make lock" -o requirements.lock

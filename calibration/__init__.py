@@ -1,0 +1,1 @@
+"""Fits a jaxhydro model to measurements."""

@@ -1,0 +1,65 @@
+"""A campaign as calibration takes it: manifest, platform, records and findings; whole or not at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+
+from calibration.checks import Finding, check_records
+from calibration.manifest import Manifest, platform_source, read_manifest
+from calibration.records import Record, read_series, records_of
+from jaxhydro.platform_schema import Platform, load_platform
+from jaxhydro.problems import InputError, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """Everything that was read. Records are SI at full scale; `findings` are warnings."""
+
+    manifest: Manifest
+    folder: Path
+    platform: Platform
+    records: tuple[Record, ...]
+    findings: tuple[Finding, ...]
+
+    def used(self, use: str) -> tuple[Record, ...]:
+        """The records of one use: fit, holdout or ignore."""
+        return tuple(record for record in self.records if record.use == use)
+
+    def record(self, id: str) -> Record:
+        """The record of one test. Raises KeyError for an id that no test has."""
+        return {record.id: record for record in self.records}[id]
+
+
+def load_campaign(path: str | PathLike[str]) -> Campaign:
+    """The campaign in a folder, or of a campaign.yaml.
+
+    Raises InputError, and nothing else, for whatever is wrong: the manifest's mistakes first, then those of the
+    platform and the data files together, then the records' errors. A test marked `ignore` that is faulty, the zero test
+    aside, is left out with a warning.
+    """
+    manifest, folder = read_manifest(path)
+    source = str(folder / "campaign.yaml" if Path(path).is_dir() else path)
+    problems: list[Problem] = []
+    try:
+        platform = load_platform(platform_source(manifest, folder))
+    except InputError as error:
+        problems += [Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint)
+                     for p in error.problems]
+    try:
+        series = read_series(manifest, folder)
+    except InputError as error:
+        problems += error.problems
+    if problems:
+        raise InputError(source, problems)
+    findings = check_records(manifest, folder, series)
+    spared = {test.id for test in manifest.tests if test.use == "ignore"} - {manifest.zero and manifest.zero.test}
+    errors = [finding for finding in findings if finding.severity == "error"]
+    if grave := [finding.problem for finding in errors if finding.test not in spared]:
+        raise InputError(source, grave)
+    faulty = {finding.test for finding in errors}
+    findings = tuple(replace(f, severity="warning", message=f"left out: {f.message}") if f in errors else f
+                     for f in findings)
+    records = records_of(manifest, series)
+    return Campaign(manifest, folder, platform, tuple(r for r in records if r.id not in faulty), findings)

@@ -1,0 +1,95 @@
+"""One recorded channel: its resolution, its noise, its period, what is constant in it and what sticks out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+SPIKE = 8.0               # robust standard deviations
+
+
+def resolution(values: np.ndarray) -> float:
+    """The step in which values were written: the least difference between two that differ; 0 if all are the same."""
+    steps = np.diff(np.unique(values))
+    steps = steps[steps > 1e-9 * np.abs(values).max()] if len(steps) else steps
+    return float(steps.min()) if len(steps) else 0.0
+
+
+def noise_level(time: np.ndarray, values: np.ndarray) -> float:
+    """One standard deviation of the white noise on a slow signal, in the unit of `values`.
+
+    Third differences, and third differences of these, take the signal away; divided by the norm of their weights they
+    have the noise's standard deviation, which 1.4826 times their median size gives whatever a few outliers do. They are
+    taken over the recorded times and as if these were even, since rounded times disturb the first and real jitter the
+    second. Each is the noise plus what is left of the signal, so one that is clearly less is nearer; of what is not
+    clearly less the simplest is kept, for the least of several guesses is a low guess. No less than the rounding,
+    resolution / 12^0.5.
+
+    Assumes noise that is white at the sampling interval: of noise smoothed by a sensor's filter it sees only a part.
+    The signal should have 15 samples or more per cycle.
+    """
+    floor = resolution(values) / 12**0.5
+    if len(values) < 8:
+        return floor
+    even = np.arange(len(time), dtype=float)
+    grids = (time, even) if np.all(np.diff(time) > 0) else (even,)
+    sizes = [float(np.median(np.abs(_differences(grid, values, order)))) for order in (3, 6) for grid in grids]
+    size = sizes[0]
+    for other in sizes[1:]:
+        size = other if other < 0.8 * size else size
+    return max(1.4826 * size, floor)
+
+
+def _differences(time: np.ndarray, values: np.ndarray, order: int) -> np.ndarray:
+    """(n - order,) divided differences, their weights scaled to a norm of one."""
+    at = np.lib.stride_tricks.sliding_window_view(time, order + 1)
+    gaps = (at[:, :, None] - at[:, None, :]) / np.ptp(at, axis=1)[:, None, None]
+    weights = 1 / np.prod(gaps + np.eye(order + 1), axis=2)
+    weights /= np.linalg.norm(weights, axis=1, keepdims=True)
+    return np.sum(weights * np.lib.stride_tricks.sliding_window_view(values, order + 1), axis=1)
+
+
+def line(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(n,) the straight line of least squares through the values."""
+    centred = time - time.mean()
+    return values.mean() + centred * np.sum(centred * (values - values.mean())) / max(np.sum(centred**2), 1e-300)
+
+
+def dominant_period(time: np.ndarray, values: np.ndarray) -> float | None:
+    """The period of the spectrum's highest peak, in the unit of `time`; None where no peak has 40 % of the power."""
+    if len(values) < 8 or np.ptp(values) == 0 or np.any(np.diff(time) <= 0):
+        return None
+    even = np.linspace(time[0], time[-1], len(time))
+    signal = np.interp(even, time, values)
+    power = np.abs(np.fft.rfft(signal - line(even, signal), 4 * len(signal)))**2
+    peak = int(np.argmax(power))
+    if peak == 0 or power[int(0.6 * peak): int(1.6 * peak) + 5].sum() < 0.4 * power.sum():
+        return None
+    return float(4 * len(signal) * (even[1] - even[0]) / peak)
+
+
+def constant_stretches(values: np.ndarray, grain: float) -> tuple[np.ndarray, np.ndarray]:
+    """Where stretches of one value start, and how many samples they have. `grain` is the resolution."""
+    edges = np.flatnonzero(np.concatenate([[True], np.abs(np.diff(values)) > grain / 2, [True]]))
+    return edges[:-1], np.diff(edges)
+
+
+def flanks(values: np.ndarray, starts: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """How far the signal goes, in the time that it stays at a value, before and after that; the lesser of the two.
+
+    Round a rounded peak this is at most 8 times the resolution, so much more is a peak cut off.
+    """
+    before, after = np.maximum(starts - lengths, 0), np.minimum(starts + 2 * lengths - 1, len(values) - 1)
+    return np.minimum(np.abs(values[before] - values[starts]), np.abs(values[after] - values[starts]))
+
+
+def spikes(values: np.ndarray, grain: float) -> np.ndarray:
+    """Single samples off the cubic through two neighbours on either side, by the scatter of the hundred around."""
+    if len(values) < 12:
+        return np.arange(0)
+    off = values[2:-2] - (4 * (values[1:-3] + values[3:-1]) - values[:-4] - values[4:]) / 6
+    scatter = 1.4826 * pd.Series(np.abs(off)).rolling(101, center=True, min_periods=8).median().to_numpy()
+    alone = np.abs(off) > SPIKE * np.maximum(scatter, grain)
+    for shift in (-1, 1):                        # its neighbours are off by two thirds of it, the other way
+        alone &= np.abs(np.roll(off, shift) + 2 / 3 * off) < 0.35 * np.abs(off)
+    return np.flatnonzero(alone) + 2

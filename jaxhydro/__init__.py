@@ -1,0 +1,43 @@
+"""Floating-wind platforms in waves, by differentiable strip theory. Switch JAX's float64 on before building a model."""
+
+from jaxhydro.environment import DOFS, Environment
+from jaxhydro.loads import LOADS, AbstractLoad, Action, Instant, Parameter
+from jaxhydro.model import Model, RigidBody, State
+from jaxhydro.platform import build, load_model
+from jaxhydro.platform_schema import Platform, builtin_platforms, load_platform
+from jaxhydro.problems import InputError
+from jaxhydro.response import Response
+from jaxhydro.simulate import free_decay, simulate
+from jaxhydro.statics import EquilibriumError, equilibrium, natural_modes
+from jaxhydro.waves import AbstractSea, AirySea, StillWater, regular_wave
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "DOFS",
+    "LOADS",
+    "AbstractLoad",
+    "AbstractSea",
+    "Action",
+    "AirySea",
+    "Environment",
+    "EquilibriumError",
+    "InputError",
+    "Instant",
+    "Model",
+    "Parameter",
+    "Platform",
+    "Response",
+    "RigidBody",
+    "State",
+    "StillWater",
+    "build",
+    "builtin_platforms",
+    "equilibrium",
+    "free_decay",
+    "load_model",
+    "load_platform",
+    "natural_modes",
+    "regular_wave",
+    "simulate",
+]

@@ -1,0 +1,26 @@
+"""Lumped added mass."""
+
+from typing import Any, ClassVar
+
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.matrix import assemble, place, unit
+
+
+class AddedMass(AbstractLoad):
+    """F = -A a, a the acceleration of the reference point in body axes: added mass that members do not give.
+
+    Labels are `added_mass.A44` and so on. Newman 1977, Marine Hydrodynamics, eq. 4.114, its quadratic terms left out.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Newman 1977, eq. 4.114"
+
+    def about(self, label: str) -> Parameter:
+        i, j = place(label)
+        lower = 0.0 if i == j else float("-inf")
+        return Parameter(unit("A", label), f"added mass {i + 1} from acceleration {j + 1}", lower)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        return Action(added_mass=assemble(self.values))

@@ -1,0 +1,88 @@
+"""What a load is: one force law with named parameters, and the instant at which it acts."""
+
+import abc
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import Environment
+from jaxhydro.strips import Ends, Strips
+from jaxhydro.waves.flow import EndFlow, StripFlow
+
+
+class Parameter(NamedTuple):
+    """What a load's parameter means: its unit, the range that is physically possible, and where the load is silent."""
+
+    unit: str
+    meaning: str
+    lower: float = float("-inf")
+    upper: float = float("inf")
+    null: float = 0.0
+
+
+class Instant(eqx.Module):
+    """Everything a load may read, worked out once per evaluation of the equation of motion.
+
+    `position` is surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point; `rotation` takes body to earth axes;
+    `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
+    same along earth axes. `strips` and `ends` are fixed in the body; `strip_flow` and `end_flow` say how the water moves past.
+    """
+
+    time: Float[Array, ""]
+    position: Float[Array, "6"]
+    rotation: Float[Array, "3 3"]
+    velocity: Float[Array, "6"]
+    environment: Environment
+    strips: Strips
+    ends: Ends
+    strip_flow: StripFlow
+    end_flow: EndFlow
+
+    def earth_velocity(self) -> Float[Array, "6"]:
+        """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""
+        return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
+
+
+class Action(NamedTuple):
+    """What a load does at an instant; leave out what it does not.
+
+    `force` (N, N m) acts on the reference point along earth axes, `body_force` along body axes; `strip_force` and `end_force`
+    (N) act on strips along their two directions and on ends along their axes. Added mass multiplies acceleration: `added_mass`
+    (kg, kg m, kg m2) that of the reference point in body axes, `strip_mass` and `end_mass` (kg) that of the strips and ends,
+    the centripetal part included. `memory_rate` is the rate of the load's own state.
+    """
+
+    force: Float[Array, "6"] | None = None
+    body_force: Float[Array, "6"] | None = None
+    added_mass: Float[Array, "6 6"] | None = None
+    strip_force: Float[Array, "2 n"] | None = None
+    strip_mass: Float[Array, "2 n"] | None = None
+    end_force: Float[Array, " m"] | None = None
+    end_mass: Float[Array, " m"] | None = None
+    memory_rate: Any = None
+
+
+class AbstractLoad(eqx.Module):
+    """A physical phenomenon: a differentiable force law with parameters that have names, units, bounds and a null.
+
+    `values` holds what may be calibrated, by label; `about` tells what a label means. A load knows nothing of batches, of the
+    model around it or of calibration.
+    """
+
+    values: eqx.AbstractVar[Mapping[str, Float[Array, ""]]]
+    source: ClassVar[str] = ""
+
+    def rest(self) -> Any:
+        """Its memory before t = 0; None where it has none (not `()`: diffrax cannot carry it)."""
+        return None
+
+    @abc.abstractmethod
+    def about(self, label: str) -> Parameter:
+        """What the parameter `label` of this load means."""
+
+    @abc.abstractmethod
+    def act(self, now: Instant, memory: Any) -> Action:
+        """The load at an instant."""

@@ -1,0 +1,41 @@
+"""Inertia and dynamic pressure at the ends of columns."""
+
+import math
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.strips import Ends
+
+
+def spread_ends(ends: Ends, values: dict[str, Float[Array, ""]], symbol: str) -> Float[Array, " m"]:
+    """Coefficients `group.symbol_z` by end."""
+    if not ends.labels:
+        return jnp.zeros(0)
+    return jnp.stack([jnp.asarray(values[f"{group}.{symbol}_z"]) for group in ends.labels])[jnp.asarray(ends.label)]
+
+
+class EndInertia(AbstractLoad):
+    """f = rho Ca V (a_water - a_end) + p A, along the member, V = 2/3 pi r^3 half a sphere on the end.
+
+    Added mass of an end as in OpenFAST HydroDyn (Theory manual, Morison's equation, member end loads); p A is the dynamic
+    pressure on the end's area, the axial Froude-Krylov force. Only ends under water are loaded.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "OpenFAST HydroDyn theory manual, member end loads"
+
+    def about(self, label: str) -> Parameter:
+        group = label.rsplit(".", 1)[0]
+        return Parameter("-", f"axial added-mass coefficient of the ends of {group}, on half a sphere", 0.0, 10.0)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        flow, ends, density = now.end_flow, now.ends, now.environment.density
+        volume = 2 / 3 * math.pi * ends.radius**3
+        mass = density * spread_ends(ends, self.values, "Ca") * volume * flow.wet
+        if flow.acceleration is None:
+            return Action(end_mass=mass)
+        pressure = -density * flow.pressure * ends.area * ends.outward * flow.wet
+        return Action(end_force=mass * flow.acceleration + pressure, end_mass=mass)

@@ -1,0 +1,134 @@
+"""Buoyancy of the displaced hull up to still water level, and what the platform file declares beyond its geometry."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.rotations import cross, ramp, rotation, step
+from jaxhydro.strips import Member
+
+SMOOTH = 0.25  # m over which an end of a member enters or leaves the water
+
+
+class Buoyancy(AbstractLoad):
+    """F = rho g V up, at the centroid of the volume V that is under still water; exact for prismatic members.
+
+    V and its centroid follow the finite displacement and rotation: the wetted length along the axis, and for a column the
+    wedge of its inclined waterplane, which moves the volume by I tan across and I tan^2/2 along the axis, I the section's
+    second moment (Newman 1977, Marine Hydrodynamics, section 6.16, without linearisation). A column is taken as cut through
+    its sides, not its ends.
+
+    `extra_force` and `extra_stiffness` are the declared hydrostatics less those of the geometry, about the upright platform
+    at its reference position: extra volume acts at the geometry's centre of buoyancy.
+    """
+
+    lower: Float[Array, "3 p"]  # m, body axes: the lower end of a piece
+    axis: Float[Array, "3 p"]
+    length: Float[Array, " p"]
+    area: Float[Array, " p"]
+    second_moment: Float[Array, "2 p"]  # m4, for a lean along either direction
+    directions: Float[Array, "3 2 p"]
+    thickness: Float[Array, " p"]  # m, vertical extent beyond that of the axis
+    extra_force: Float[Array, ""]  # N
+    extra_stiffness: Float[Array, "3"]  # C33, C44, C55 beyond the geometry's
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Newman 1977, section 6.16"
+
+    def about(self, label: str) -> Parameter:
+        raise KeyError(label)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        weight_density = now.environment.density * now.environment.gravity
+        return Action(body_force=self.force(now.position, now.rotation, weight_density))
+
+    def geometry(
+        self, heave: Float[Array, ""], vertical: Float[Array, "3"]
+    ) -> tuple[Float[Array, " p"], Float[Array, "3 p"]]:
+        """Wetted volume (m3) of every piece and its first moment about the reference point (m4, body axes).
+
+        `vertical` is the vertical in body axes, `heave` (m) that of the reference point.
+        """
+        sides = jnp.concatenate([self.lower, self.axis, self.directions[:, 0], self.directions[:, 1]], axis=1)
+        low, slope, *lean = (vertical @ sides).reshape(4, -1)
+        rise = jnp.abs(slope) * self.length
+        low = heave + low + 0.5 * (slope * self.length - rise) - 0.5 * self.thickness
+        height = rise + self.thickness
+        wet = SMOOTH / height * (ramp(-low / SMOOTH) - ramp(-(low + height) / SMOOTH))
+        volume = self.area * self.length * wet
+        # a column fills from its lower end; a pontoon loses volume evenly
+        column = self.thickness == 0
+        reach = jnp.where(column, 0.5 * wet, 0.5) * self.length
+        # the wedge of an inclined waterplane moves volume by -I tan along a direction and by I tan^2/2 along the axis
+        tangent = jnp.stack(lean) / jnp.where(column, slope, 1.0)
+        pierced = jnp.where(column, step(-low / SMOOTH) - step(-(low + height) / SMOOTH), 0.0)
+        across = self.second_moment * tangent * pierced
+        along = 0.5 * (across * tangent).sum(axis=0) + volume * reach
+        moment = volume * self.lower + along * self.axis - (self.directions * across).sum(axis=1)
+        return volume, moment
+
+    def force(
+        self, position: Float[Array, "6"], matrix: Float[Array, "3 3"], weight_density: Float[Array, ""] | float
+    ) -> Float[Array, "6"]:
+        """Buoyancy (N, N m) in body axes at a displacement of the reference point; `weight_density` is rho g (N/m3)."""
+        vertical = matrix[2]
+        volume, moment = self.geometry(position[2], vertical)
+        total = jnp.concatenate([volume[None], moment]).sum(axis=1) * weight_density
+        up = total[0] + self.extra_force - self.extra_stiffness[0] * position[2]
+        # the sine of the lean about the body's own x and y: roll and pitch to first order
+        lean = self.extra_stiffness[1:] * jnp.stack([vertical[1], -vertical[0]])
+        extra = jnp.concatenate([-lean, jnp.zeros(1)])
+        return jnp.concatenate([up * vertical, cross(total[1:], vertical) + extra])
+
+    def upright(self, weight_density: float) -> dict[str, float]:
+        """Displaced volume (m3), its centroid's z (m), C33 (N/m), C44 and C55 (N m/rad, without the weight's share) of the
+        members alone, about the upright platform at its reference position."""
+        zeros = jnp.zeros(6)
+        volume, moment = self.geometry(zeros[0], jnp.eye(3)[2])
+        slope = jax.jacfwd(lambda q: self.force(q, rotation(q[3:]), weight_density))(zeros)
+        total = float(volume.sum())
+        return {
+            "displaced_volume": total,
+            "centre_of_buoyancy": float(moment[2].sum() / total) if total > 0 else 0.0,
+            "C33": -float(slope[2, 2]) if len(volume) else 0.0,
+            "C44": -float(slope[3, 3]),
+            "C55": -float(slope[4, 4]),
+        }
+
+
+def buoyancy(members: Sequence[Member]) -> Buoyancy:
+    """The buoyancy of members as they are, nothing declared beyond them. A tapered member is cut at its stations, finer."""
+    rows: list[tuple] = []
+    for member in members:
+        tapered = bool(np.ptp(member.sizes, axis=0).any())
+        edges = np.unique(np.concatenate([member.stations, np.linspace(0, 1, 21)])) if tapered else np.array([0.0, 1.0])
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        size, span = member.size(middle), member.b - member.a
+        start = edges[:-1] if not member.column or span[2] > 0 else edges[1:]
+        first, second = member.directions
+        directions = np.stack([first, second], axis=1)
+        shape = np.pi / 64 * size**4 if member.circular else np.stack(
+            [size[:, 1] * size[:, 0] ** 3 / 12, size[:, 0] * size[:, 1] ** 3 / 12], axis=-1
+        )
+        for i in range(len(middle)):
+            thickness = 0.0 if member.column else float(np.abs(directions[2]) @ size[i])
+            rows.append(
+                (
+                    member.a + span * start[i],
+                    member.axis,
+                    (edges[i + 1] - edges[i]) * np.linalg.norm(span),
+                    float(member.area(size[i])),
+                    shape[i],
+                    directions,
+                    thickness,
+                )
+            )
+    if not rows:
+        arrays = [np.zeros((3, 0)), np.zeros((3, 0)), np.zeros(0), np.zeros(0), np.zeros((2, 0)), np.zeros((3, 2, 0)), np.zeros(0)]
+    else:
+        arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
+    return Buoyancy(*map(jnp.asarray, arrays), jnp.zeros(()), jnp.zeros(3), {})

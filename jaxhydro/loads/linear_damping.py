@@ -1,0 +1,26 @@
+"""Linear damping."""
+
+from typing import Any, ClassVar
+
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.matrix import assemble, place, unit
+
+
+class LinearDamping(AbstractLoad):
+    """F = -B v, v the velocity of the reference point and the angular velocity, along body axes as in OpenFAST.
+
+    Labels are `linear_damping.B11` and so on. Faltinsen 1990, Sea Loads on Ships and Offshore Structures, eq. 3.24.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Faltinsen 1990, eq. 3.24"
+
+    def about(self, label: str) -> Parameter:
+        i, j = place(label)
+        lower = 0.0 if i == j else float("-inf")
+        return Parameter(unit("B", label), f"linear damping force {i + 1} from velocity {j + 1}", lower)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        return Action(body_force=-assemble(self.values) @ now.velocity)

@@ -1,0 +1,36 @@
+"""Lumped terms per degree of freedom: a number at a place in a 6 x 6 matrix, by its label such as B11 or C35."""
+
+from collections.abc import Mapping
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+UNITS = {
+    "B": ("N s/m", "N s", "N m s/rad"),
+    "Q": ("N s2/m2", "", "N m s2/rad2"),
+    "A": ("kg", "kg m", "kg m2"),
+    "C": ("N/m", "N", "N m/rad"),
+}
+"""Units of a term between two translations, a translation and a rotation, two rotations."""
+
+
+def place(label: str) -> tuple[int, int]:
+    """Row and column, from 0, of a label that ends in two digits from 1."""
+    return int(label[-2]) - 1, int(label[-1]) - 1
+
+
+def unit(symbol: str, label: str) -> str:
+    i, j = place(label)
+    return UNITS[symbol][(i > 2) + (j > 2)]
+
+
+def assemble(values: Mapping[str, Float[Array, ""]]) -> Float[Array, "6 6"]:
+    """The matrix that labelled values stand for; what is not named is zero."""
+    if not values:
+        return jnp.zeros((6, 6))
+    basis = np.zeros((len(values), 36))
+    for row, label in enumerate(values):
+        i, j = place(label)
+        basis[row, 6 * i + j] = 1.0
+    return (jnp.stack([jnp.asarray(v) for v in values.values()]) @ basis).reshape(6, 6)

@@ -1,0 +1,46 @@
+"""Straight spring mooring lines."""
+
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.rotations import cross
+
+
+class MooringLines(AbstractLoad):
+    """T = k max(0, l - l0) along the straight line from the displaced fairlead to the anchor.
+
+    The geometric law of a massless elastic line (Faltinsen 1990, Sea Loads, section 8.2), so that pretension stiffness,
+    large offsets and slack come out by themselves. Labels are `mooring.line1.stiffness` (N/m) and
+    `mooring.line1.unstretched_length` (m).
+    """
+
+    values: dict[str, Float[Array, ""]]
+    anchor: Float[Array, "3 l"]  # m, in earth axes
+    fairlead: Float[Array, "3 l"]  # m, in body axes
+    source: ClassVar[str] = "Faltinsen 1990, section 8.2"
+
+    def about(self, label: str) -> Parameter:
+        _, line, what = label.split(".")
+        if what == "stiffness":
+            return Parameter("N/m", f"axial stiffness of {line}", 0.0)
+        return Parameter("m", f"unstretched length of {line}", 0.0)
+
+    def tension(
+        self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
+    ) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
+        """Tension (N) of the lines at a displacement of the platform, and unit vectors to the anchors in body axes."""
+        lines = [f"mooring.line{i + 1}." for i in range(self.anchor.shape[1])]
+        stiffness = jnp.stack([jnp.asarray(self.values[line + "stiffness"]) for line in lines])
+        unstretched = jnp.stack([jnp.asarray(self.values[line + "unstretched_length"]) for line in lines])
+        away = self.anchor - position[:3, None]
+        towards = (matrix[:, :, None] * away[:, None, :]).sum(axis=0) - self.fairlead
+        length = jnp.sqrt((towards**2).sum(axis=0))
+        return stiffness * jnp.maximum(length - unstretched, 0.0), towards / length
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        tension, towards = self.tension(now.position, now.rotation)
+        pull = tension * towards
+        return Action(body_force=jnp.concatenate([pull, cross(self.fairlead, pull)]).sum(axis=1))

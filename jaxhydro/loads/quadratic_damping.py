@@ -1,0 +1,28 @@
+"""Quadratic damping per degree of freedom."""
+
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.matrix import assemble, place, unit
+from jaxhydro.loads.strip_drag import REST
+
+
+class QuadraticDamping(AbstractLoad):
+    """F_i = -Q_ii |v_i| v_i along body axes: a body's drag without members, or what its members do not give.
+
+    Labels are `quadratic_damping.B44` and so on, as in the platform file. Himeno 1981, Prediction of Ship Roll Damping, eq. 2.5
+    (University of Michigan, report 239).
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Himeno 1981, eq. 2.5"
+
+    def about(self, label: str) -> Parameter:
+        return Parameter(unit("Q", label), f"quadratic damping in degree of freedom {place(label)[0] + 1}", 0.0)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        velocity = now.velocity
+        return Action(body_force=-jnp.diagonal(assemble(self.values)) * jnp.sqrt(velocity**2 + REST) * velocity)

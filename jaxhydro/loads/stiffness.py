@@ -1,0 +1,28 @@
+"""A stiffness matrix about the reference position: a linearised mooring, or a lumped spring."""
+
+from typing import Any, ClassVar
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.matrix import assemble, place, unit
+
+
+class Stiffness(AbstractLoad):
+    """F = F0 - C q, q the displacement of the reference point in earth axes and roll, pitch, yaw; F0 the preload (N, N m).
+
+    Labels are `mooring.C11` or `stiffness.C11` and so on. Jonkman 2007, NREL/TP-500-41958, eq. 4-27: the linearised mooring system.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    preload: Float[Array, "6"]
+    name: str = eqx.field(static=True, default="stiffness")
+    source: ClassVar[str] = "Jonkman 2007, NREL/TP-500-41958, eq. 4-27"
+
+    def about(self, label: str) -> Parameter:
+        i, j = place(label)
+        return Parameter(unit("C", label), f"{self.name} force {i + 1} from displacement {j + 1}")
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        return Action(force=self.preload - assemble(self.values) @ now.position)

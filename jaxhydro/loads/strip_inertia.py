@@ -1,0 +1,43 @@
+"""Inertia of the water around strips: added mass and the Froude-Krylov force."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.strips import Strips
+
+
+def spread(strips: Strips, values: Mapping[str, Float[Array, ""]], symbol: str) -> Float[Array, "2 n"]:
+    """Coefficients `group.symbol_t`, `group.symbol_z` by direction and strip."""
+    if not strips.labels:
+        return jnp.zeros((2, 0))
+    stacked = jnp.stack([jnp.asarray(values[f"{group}.{symbol}_{kind}"]) for group, kind in strips.labels])
+    return stacked[jnp.asarray(strips.label)]
+
+
+class StripInertia(AbstractLoad):
+    """f = rho V (1 + Ca) a_water - rho V Ca a_strip, across the member, on the wetted part of each strip.
+
+    The transverse inertia term of the relative Morison equation: Morison et al. 1950 (Petroleum Transactions 189, eq. 7) in the
+    relative form of Chakrabarti 1987, Hydrodynamics of Offshore Structures, eq. 6.33. The 1 is the Froude-Krylov force. Ca refers
+    to the displaced volume V of the strip, in a circular and in a rectangular section alike. The strip's acceleration
+    includes the centripetal part. Directions turn with the body.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Morison et al. 1950, eq. 7; Chakrabarti 1987, eq. 6.33"
+
+    def about(self, label: str) -> Parameter:
+        group, symbol = label.rsplit(".", 1)
+        way = "transverse" if symbol == "Ca_t" else "vertical"
+        return Parameter("-", f"{way} added-mass coefficient of {group}, on displaced volume", 0.0, 10.0)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        flow = now.strip_flow
+        water = now.environment.density * now.strips.volume * flow.wet
+        mass = spread(now.strips, self.values, "Ca") * water
+        force = None if flow.acceleration is None else (water + mass) * flow.acceleration
+        return Action(strip_force=force, strip_mass=mass)

@@ -1,0 +1,29 @@
+"""Weight."""
+
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.rotations import cross
+
+
+class Weight(AbstractLoad):
+    """F = -m g along z at the displaced centre of mass.
+
+    `mass` (kg) and `centre` (m, body axes) are those of everything that moves with the hull. Newman 1977, Marine
+    Hydrodynamics, section 6.16.
+    """
+
+    mass: Float[Array, ""]
+    centre: Float[Array, "3"]
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Newman 1977, section 6.16"
+
+    def about(self, label: str) -> Parameter:
+        raise KeyError(label)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        force = -self.mass * now.environment.gravity * now.rotation[2]  # the vertical in body axes
+        return Action(body_force=jnp.concatenate([force, cross(self.centre, force)]))

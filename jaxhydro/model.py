@@ -1,0 +1,208 @@
+"""The platform as a rigid body and a tuple of loads: (M + sum A_k) dv/dt = sum F_k."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import Environment
+from jaxhydro.loads.base import AbstractLoad, Instant, Parameter
+from jaxhydro.rotations import angular_velocity, attitude_rates, cross, rotation, skew, step
+from jaxhydro.solve6 import accelerate
+from jaxhydro.strips import Hull
+from jaxhydro.strips import wetted as wetted_fraction
+from jaxhydro.waves.flow import EndFlow, StripFlow
+from jaxhydro.waves.sea import AbstractSea, StillWater
+
+END_SMOOTH = 0.5  # m over which a column's end enters the water
+
+
+class RigidBody(eqx.Module):
+    """Mass (kg), centre of mass (m from the reference point) and inertia about it (kg m2), body axes."""
+
+    mass: Float[Array, ""]
+    centre: Float[Array, "3"]
+    inertia: Float[Array, "3 3"]
+
+    def inertia_at_reference(self) -> Float[Array, "3 3"]:
+        """Inertia about the reference point (parallel axes)."""
+        s = skew(self.centre)
+        return self.inertia - self.mass * s @ s
+
+    def mass_matrix(self) -> Float[Array, "6 6"]:
+        """Mass matrix about the reference point (Fossen 2011, eq. 3.44)."""
+        lever = self.mass * skew(self.centre)
+        upper = jnp.concatenate([self.mass * jnp.eye(3), -lever], axis=1)
+        return jnp.concatenate([upper, jnp.concatenate([lever, self.inertia_at_reference()], axis=1)])
+
+
+class State(eqx.Module):
+    """Where the platform is and how it moves.
+
+    `position`: surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point. `velocity`: its velocity and the
+    angular velocity in body axes (m/s, rad/s). `memory`: one entry per load, None for those without.
+    """
+
+    position: Float[Array, "6"]
+    velocity: Float[Array, "6"]
+    memory: tuple[Any, ...]
+
+
+class Total(NamedTuple):
+    """The sum of all loads in body axes: force (N, N m), added mass (kg, kg m, kg m2), force (N) and mass (kg) on lines."""
+
+    force: Float[Array, "6"]
+    added_mass: Float[Array, "6 6"]
+    line_force: Float[Array, " l"]
+    line_mass: Float[Array, " l"]
+    memory_rate: tuple[Any, ...]
+
+
+class Model(eqx.Module):
+    """A platform: a rigid body, its strips, and the loads on it.
+
+    `wetting` says which part of the members is loaded: "instantaneous" up to the water surface at the displaced strip, "mean"
+    what is under still water when the platform is upright at its reference position.
+    """
+
+    environment: Environment
+    body: RigidBody
+    hull: Hull
+    loads: tuple[AbstractLoad, ...]
+    wetting: str = eqx.field(static=True, default="instantaneous")
+
+    @property
+    def values(self) -> dict[str, Float[Array, ""]]:
+        """Every parameter of every load, by label."""
+        return {label: value for load in self.loads for label, value in load.values.items()}
+
+    def about(self, label: str) -> Parameter:
+        """Unit, meaning, bounds and null of a parameter. Raises KeyError for an unknown label."""
+        for load in self.loads:
+            if label in load.values:
+                return load.about(label)
+        raise KeyError(f"no parameter {label!r}; there are: {', '.join(sorted(self.values))}")
+
+    def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
+        """This model with some parameters changed. Raises KeyError for an unknown label."""
+        unknown = set(values) - set(self.values)
+        if unknown:
+            self.about(sorted(unknown)[0])
+        loads = tuple(
+            eqx.tree_at(
+                lambda x: x.values, load, {label: jnp.asarray(values.get(label, old)) for label, old in load.values.items()}
+            )
+            if load.values
+            else load
+            for load in self.loads
+        )
+        return eqx.tree_at(lambda m: m.loads, self, loads)
+
+    def with_load(self, load: AbstractLoad) -> "Model":
+        """This model with one more load."""
+        return eqx.tree_at(lambda m: m.loads, self, (*self.loads, load))
+
+    def rest(self) -> State:
+        """At the reference position without motion."""
+        return State(jnp.zeros(6), jnp.zeros(6), tuple(load.rest() for load in self.loads))
+
+    def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
+        """What the loads read: the motion, and how the water moves past strips and ends."""
+        # the barrier keeps XLA from working out the sines anew in every kernel that reads the matrix
+        matrix = jax.lax.optimization_barrier(rotation(state.position[3:]))
+        strip_flow, end_flow = self._flows(time, state, matrix, sea)
+        strips, ends = self.hull.strips, self.hull.ends
+        return Instant(
+            time, state.position, matrix, state.velocity, self.environment, strips, ends, strip_flow, end_flow
+        )
+
+    def _flows(
+        self, time: Float[Array, ""], state: State, matrix: Float[Array, "3 3"], sea: AbstractSea
+    ) -> tuple[StripFlow, EndFlow]:
+        hull, strips, ends = self.hull, self.hull.strips, self.hull.ends
+        n = strips.length.shape[0]
+        own, own_end = hull.split(-(state.velocity @ hull.lever))
+        flow = sea.flow(time, state.position[:3, None] + matrix @ hull.places)
+        if self.wetting == "mean":
+            vertical, depth = jnp.array([0.0, 0.0, 1.0]), -hull.places[2]
+        else:
+            vertical = matrix[2]
+            depth = -(state.position[2] + vertical @ hull.places)
+            depth = depth if flow is None else depth + flow.elevation
+        wet = wetted_fraction(strips, vertical, depth[:n])
+        end_wet = step(depth[n:] / END_SMOOTH)
+        if flow is None:
+            return StripFlow(own, None, wet), EndFlow(own_end, None, None, end_wet)
+        velocity, acceleration = matrix.T @ flow.velocity, matrix.T @ flow.acceleration
+        water = [(strips.directions * field[:, None, :n]).sum(axis=0) for field in (velocity, acceleration)]
+        end_water = [(ends.axis * field[:, n:]).sum(axis=0) for field in (velocity, acceleration)]
+        return (
+            StripFlow(own + water[0], water[1], wet),
+            EndFlow(own_end + end_water[0], end_water[1], flow.pressure[n:], end_wet),
+        )
+
+    def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":
+        """All loads together, in body axes."""
+        actions = [load.act(now, remembered) for load, remembered in zip(self.loads, memory, strict=True)]
+
+        def total(name: str, zero: Float[Array, "..."]) -> Float[Array, "..."]:
+            parts = [part for action in actions if (part := getattr(action, name)) is not None]
+            return sum(parts[1:], parts[0]) if parts else zero
+
+        force, earth = total("body_force", jnp.zeros(6)), total("force", jnp.zeros(0))
+        if earth.size:
+            force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
+        on_strips, on_ends = jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
+        line_mass = self.hull.join(total("strip_mass", on_strips), total("end_mass", on_ends))
+        p, q, r = now.velocity[3:]
+        inward = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r]) @ self.hull.inward
+        return Total(
+            force,
+            total("added_mass", jnp.zeros((6, 6))),
+            self.hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * inward,
+            line_mass,
+            tuple(action.memory_rate for action in actions),
+        )
+
+    def rate(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> State:
+        """Rate of the state: Newton and Euler about the reference point in body axes (Fossen 2011, eq. 3.42)."""
+        now = self.instant(time, state, sea)
+        total = self.sum_of_loads(now, state.memory)
+        spin, linear, body = state.velocity[3:], state.velocity[:3], self.body
+        inertia = body.inertia_at_reference()
+        gyroscopic = jnp.concatenate([body.mass * cross(spin, cross(spin, body.centre)), cross(spin, inertia @ spin)])
+        # the solution is the acceleration of the reference point, not the rate of its body-axes velocity
+        acceleration = accelerate(
+            body.mass_matrix() + total.added_mass,
+            total.force - gyroscopic,
+            total.line_mass,
+            total.line_force,
+            self.hull.lever,
+            self.hull.mass_product,
+        )
+        turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
+        position_rate = jnp.concatenate([now.rotation @ linear, attitude_rates(state.position[3:], spin)])
+        return State(position_rate, acceleration - turning, total.memory_rate)
+
+    @staticmethod
+    def position_rate(position: Float[Array, "6"], velocity: Float[Array, "6"]) -> Float[Array, "6"]:
+        """Rates of surge ... yaw of a velocity in body axes."""
+        attitude = position[3:]
+        return jnp.concatenate([rotation(attitude) @ velocity[:3], attitude_rates(attitude, velocity[3:])])
+
+    @staticmethod
+    def body_velocity(position: Float[Array, "6"], rates: Float[Array, "6"]) -> Float[Array, "6"]:
+        """Velocity in body axes of rates of surge ... yaw: the inverse of `position_rate`."""
+        attitude = position[3:]
+        return jnp.concatenate([rotation(attitude).T @ rates[:3], angular_velocity(attitude, rates[3:])])
+
+    def force_at_rest(self, position: Float[Array, "6"], sea: AbstractSea | None = None) -> Float[Array, "6"]:
+        """Force on the motionless platform at a position, in earth axes (N, N m)."""
+        state = State(position, jnp.zeros(6), self.rest().memory)
+        now = self.instant(jnp.zeros(()), state, StillWater() if sea is None else sea)
+        total = self.sum_of_loads(now, state.memory)
+        force = total.force + self.hull.lever @ total.line_force
+        return jnp.concatenate([now.rotation @ force[:3], now.rotation @ force[3:]])

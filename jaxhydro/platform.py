@@ -1,0 +1,171 @@
+"""A platform file made into a model."""
+
+import math
+from os import PathLike
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from jaxhydro import platform_schema as schema
+from jaxhydro.environment import Environment
+from jaxhydro.loads import (
+    AbstractLoad,
+    AddedMass,
+    Buoyancy,
+    EndDrag,
+    EndInertia,
+    LinearDamping,
+    MooringLines,
+    QuadraticDamping,
+    Stiffness,
+    StripDrag,
+    StripInertia,
+    Weight,
+)
+from jaxhydro.loads.hydrostatics import buoyancy
+from jaxhydro.model import Model, RigidBody
+from jaxhydro.strips import Hull, Member
+
+
+def load_model(path_or_name: str | PathLike[str]) -> Model:
+    """The model of a platform file, or of a built-in platform by its name. Raises InputError with all that is wrong in it."""
+    return build(schema.load_platform(path_or_name))
+
+
+def build(platform: schema.Platform) -> Model:
+    """The model that a platform declares. Raises RuntimeError unless JAX's float64 is switched on."""
+    if not jax.config.read("jax_enable_x64"):
+        raise RuntimeError("jaxhydro needs float64: jax.config.update('jax_enable_x64', True) before anything else")
+    water = platform.water
+    environment = Environment(water.density, water.depth, water.gravity)
+    mass, centre, inertia = platform.rigid_body.combined()
+    body = RigidBody(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
+    members = members_of(platform)
+    hull = Hull.of(members)
+    loads: list[AbstractLoad] = [
+        Weight(body.mass, body.centre, {}),
+        _declared_hydrostatics(buoyancy(members), platform, mass, float(centre[2])),
+    ]
+    loads += _mooring(platform)
+    for name, matrix, load in (
+        ("linear_damping", platform.linear_damping.matrix(), LinearDamping),
+        ("quadratic_damping", platform.quadratic_damping.matrix(), QuadraticDamping),
+        ("added_mass", platform.added_mass.matrix(), AddedMass),
+    ):
+        letter = "A" if name == "added_mass" else "B"
+        if values := _entries(f"{name}.{letter}", matrix):
+            loads.append(load(values))
+    if values := _entries("stiffness.C", platform.stiffness.matrix()):
+        loads.append(Stiffness(values, jnp.zeros(6), "stiffness"))
+    if members:
+        coefficients = {
+            f"{group}.{name}": jnp.asarray(value)
+            for group, row in platform.coefficients.items()
+            for name, value in row.model_dump().items()
+        }
+        of_strips = {kind: {f"{g}.{kind}_{t}" for g, t in hull.strips.labels} for kind in ("Ca", "Cd")}
+        of_ends = {kind: {f"{g}.{kind}_z" for g in hull.ends.labels} for kind in ("Ca", "Cd")}
+
+        def pick(labels: set[str]) -> dict:
+            return {label: value for label, value in coefficients.items() if label in labels}
+
+        loads += [
+            StripInertia(pick(of_strips["Ca"])),
+            StripDrag(pick(of_strips["Cd"]), platform.drag_speed == "vector"),
+            EndInertia(pick(of_ends["Ca"])),
+            EndDrag(pick(of_ends["Cd"])),
+        ]
+    return Model(environment, body, hull, tuple(loads), platform.wetting)
+
+
+def members_of(platform: schema.Platform) -> list[Member]:
+    """The platform's members, each copied to its headings."""
+    members = []
+    for member in platform.members:
+        stations, sizes = member.profile()
+        for copy, heading in enumerate(member.heading):
+            c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+            turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+            members.append(
+                Member(
+                    name=member.name if len(member.heading) == 1 else f"{member.name}_{copy + 1}",
+                    group=member.group,
+                    circular=member.shape == "circ",
+                    a=turn @ np.array(member.rA),
+                    b=turn @ np.array(member.rB),
+                    stations=stations,
+                    sizes=sizes,
+                    # the width of an upright box lies along its heading
+                    twist=math.radians(member.gamma) + (math.radians(heading) if member.rA[:2] == member.rB[:2] else 0.0),
+                    elements=member.elements,
+                    maccamy_fuchs=bool(member.maccamy_fuchs),
+                )
+            )
+    return members
+
+
+def _entries(prefix: str, matrix: np.ndarray) -> dict:
+    return {f"{prefix}{i + 1}{j + 1}": jnp.asarray(matrix[i, j]) for i in range(6) for j in range(6) if matrix[i, j] != 0.0}
+
+
+def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
+    mooring = platform.mooring
+    if isinstance(mooring, schema.StiffnessMatrix):
+        return [Stiffness(_entries("mooring.C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
+    if not isinstance(mooring, schema.LinearSprings):
+        return []
+    values = {}
+    for i, line in enumerate(mooring.lines):
+        stiffness, unstretched = line.spring()
+        values[f"mooring.line{i + 1}.stiffness"] = jnp.asarray(stiffness)
+        values[f"mooring.line{i + 1}.unstretched_length"] = jnp.asarray(unstretched)
+    anchor = jnp.asarray([line.anchor for line in mooring.lines]).T
+    fairlead = jnp.asarray([line.fairlead for line in mooring.lines]).T
+    return [MooringLines(values, anchor, fairlead)]
+
+
+def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:
+    """Buoyancy with what the platform file declares in place of what the members give.
+
+    Without members the volume is that which balances the mass and the mooring's pull at the reference position.
+    """
+    declared, water = platform.hydrostatics, platform.water
+    weight_density = water.density * water.gravity
+    own = load.upright(weight_density)
+    volume = declared.displaced_volume
+    if volume is None:
+        pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else _line_pull(m) for m in _mooring(platform))
+        volume = own["displaced_volume"] if platform.members else mass / water.density - pull / weight_density
+    force = weight_density * (volume - own["displaced_volume"])
+    weight_share = mass * water.gravity * centre  # of C44 and C55, with the sign of -m g z_G
+    stiffness = []
+    for name, value, buoyant in (
+        ("C33", declared.C33, declared.C33),
+        ("C44", declared.C44, declared.C44_buoyancy),
+        ("C55", declared.C55, declared.C55_buoyancy),
+    ):
+        if name != "C33" and value is not None:
+            buoyant = value + weight_share
+        # volume that the members do not have is at the centre of buoyancy of those that they have
+        extra = 0.0 if name == "C33" else force * own["centre_of_buoyancy"]
+        stiffness.append(extra if buoyant is None else buoyant - own[name])
+    return Buoyancy(
+        load.lower,
+        load.axis,
+        load.length,
+        load.area,
+        load.second_moment,
+        load.directions,
+        load.thickness,
+        jnp.asarray(force),
+        jnp.asarray(stiffness),
+        {},
+    )
+
+
+def _line_pull(load: AbstractLoad) -> float:
+    """Vertical force (N) of lines at the reference position."""
+    assert isinstance(load, MooringLines)
+    tension, towards = load.tension(jnp.zeros(6), jnp.eye(3))
+    return float((tension * towards[2]).sum())

@@ -1,0 +1,245 @@
+"""The platform file: what `platform.yaml` may hold, checked, and as plain values. SI; headings in degrees."""
+
+from collections.abc import Iterator
+from importlib import resources
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, ClassVar, Generic, Literal, Self, TypeVar
+
+import numpy as np
+from jaxtyping import Float
+from pydantic import AfterValidator, Discriminator, Field, RootModel, Tag, model_validator
+
+from jaxhydro.body_schema import Coefficients, Inertia, Member, Part, RigidBody
+from jaxhydro.problems import (
+    Faults,
+    InputError,
+    NonNegative,
+    Number,
+    Positive,
+    Problem,
+    Schema,
+    Text,
+    Vector,
+    read_yaml,
+    shown,
+    suggest,
+    validate,
+)
+
+__all__ = ["Coefficients", "Inertia", "Member", "Part", "Platform", "RigidBody", "builtin_platforms", "load_platform"]
+
+STANDARD_GRAVITY = 9.80665  # m/s2
+Matrix6 = Float[np.ndarray, "6 6"]
+
+
+class Water(Schema):
+    """Density, kg/m3; depth, m; gravity, m/s2."""
+
+    density: Positive
+    depth: Positive
+    gravity: Positive = STANDARD_GRAVITY
+
+
+def _key(letter: str, diagonal: bool = False) -> AfterValidator:
+    known = [f"{letter}{i}{j}" for i in range(1, 7) for j in range(1, 7) if i == j or not diagonal]
+
+    def check(key: str) -> str:
+        if key not in known:
+            kind = "diagonal entries" if diagonal else "entries"
+            raise Faults(Problem("", f"a key among the {kind} {known[0]} to {known[-1]}", shown(key)))
+        return key
+
+    return AfterValidator(check)
+
+
+Key = TypeVar("Key", bound=str)
+
+
+class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
+    """Entries of a 6 by 6 matrix by name, B15 in row 1 and column 5; those left out are zero."""
+
+    root: dict[Key, Number] = {}
+    dissipative: ClassVar[bool] = False
+
+    @model_validator(mode="after")
+    def _takes_energy(self) -> Self:
+        negative = [key for key, value in self.root.items() if self.dissipative and key[1] == key[2] and value < 0.0]
+        if negative:
+            raise Faults(*(Problem(key, "a number >= 0", shown(self.root[key])) for key in negative))
+        return self
+
+    def matrix(self) -> Matrix6:
+        """The matrix; where only one of ij and ji is given, the other is its mirror."""
+        matrix = np.zeros((6, 6))
+        named = {(int(key[1]) - 1, int(key[2]) - 1): value for key, value in self.root.items()}
+        for (i, j), value in named.items():
+            matrix[i, j] = value
+            matrix[j, i] = named.get((j, i), value)
+        return matrix
+
+
+class Damping(Entries[Key], Generic[Key], frozen=True):
+    """Entries of a damping matrix: none on the diagonal is negative."""
+
+    dissipative: ClassVar[bool] = True
+
+
+LinearDamping = Damping[Annotated[str, _key("B")]]  # N s/m, N s, N m s/rad
+QuadraticDamping = Damping[Annotated[str, _key("B", diagonal=True)]]  # N s2/m2, N m s2/rad2
+AddedMass = Entries[Annotated[str, _key("A")]]  # kg, kg m, kg m2
+Stiffness = Entries[Annotated[str, _key("C")]]  # N/m, N/rad, N m/rad
+
+
+class NoMooring(Schema):
+    """Nothing holds the platform."""
+
+    kind: Literal["none"] = "none"
+
+
+class Line(Schema):
+    """A straight massless spring from anchor to fairlead, m: stiffness, N/m, and the pretension, N, it has at the
+    reference position; or axial stiffness EA, N, and unstretched length, m."""
+
+    anchor: Vector
+    fairlead: Vector
+    stiffness: Positive | None = None
+    pretension: NonNegative | None = None
+    axial_stiffness: Positive | None = None
+    unstretched_length: Positive | None = None
+
+    def spring(self, length_at_rest: float | None = None) -> tuple[float, float]:
+        """Stiffness, N/m, and unstretched length, m. The pretension holds at `length_at_rest`, m: anchor to fairlead
+        at the reference position if left out."""
+        if self.axial_stiffness is not None and self.unstretched_length is not None:
+            return self.axial_stiffness / self.unstretched_length, self.unstretched_length
+        assert self.stiffness is not None and self.pretension is not None
+        if length_at_rest is None:
+            length_at_rest = float(np.linalg.norm(np.subtract(self.anchor, self.fairlead)))
+        return self.stiffness, length_at_rest - self.pretension / self.stiffness
+
+    @model_validator(mode="after")
+    def _one_spring(self) -> Self:
+        if self.anchor == self.fairlead:
+            raise Faults(Problem("fairlead", "a point that is not the anchor", shown(self.fairlead)))
+        pairs = (("stiffness", "pretension"), ("axial_stiffness", "unstretched_length"))
+        given = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
+        either = "either stiffness and pretension, or axial_stiffness and unstretched_length"
+        if all(given):
+            raise Faults(Problem("", either, ", ".join(given[0] + given[1])))
+        if not any(given):
+            raise Faults(Problem("", either, "neither"))
+        for pair, got in zip(pairs, given):
+            if len(got) == 1:
+                lacking = pair[1 - pair.index(got[0])]
+                raise Faults(Problem(lacking, f"a number, since {got[0]} is given", "nothing"))
+        return self
+
+
+class LinearSprings(Schema):
+    """Straight lines with their geometric law."""
+
+    kind: Literal["linear_springs"]
+    lines: Annotated[tuple[Line, ...], Field(min_length=1)]
+
+
+Row = tuple[Number, Number, Number, Number, Number, Number]
+Square = Annotated[
+    Annotated[Stiffness, Tag("entries")] | Annotated[tuple[Row, Row, Row, Row, Row, Row], Tag("rows")],
+    Discriminator(lambda value: "entries" if isinstance(value, dict | Entries) else "rows"),
+]
+
+
+class StiffnessMatrix(Schema):
+    """A mooring about the reference position: force on the platform = preload - stiffness @ motion."""
+
+    kind: Literal["stiffness_matrix"]
+    stiffness: Square = Field(description="6 rows of 6 numbers, or entries C11 to C66")
+    preload: Row = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def matrix(self) -> Matrix6:
+        """The stiffness, N/m, N/rad, N m/rad."""
+        return self.stiffness.matrix() if isinstance(self.stiffness, Entries) else np.array(self.stiffness)
+
+
+class Hydrostatics(Schema):
+    """What replaces the values worked out from members and mass: m3, N/m, N m/rad (`_buoyancy`: without the weight)."""
+
+    displaced_volume: Positive | None = None
+    C33: NonNegative | None = None
+    C44: Number | None = None
+    C55: Number | None = None
+    C44_buoyancy: Number | None = None
+    C55_buoyancy: Number | None = None
+
+    @model_validator(mode="after")
+    def _said_once(self) -> Self:
+        twice = [key for key in ("C44", "C55") if None not in (getattr(self, key), getattr(self, f"{key}_buoyancy"))]
+        if twice:
+            raise Faults(*(Problem(key, f"either {key} or {key}_buoyancy", "both") for key in twice))
+        return self
+
+
+class Platform(Schema):
+    """A platform file. `wetting` and `drag_speed` choose between forms of the strip loads (see the loads)."""
+
+    name: Text
+    water: Water
+    rigid_body: RigidBody
+    members: tuple[Member, ...] = ()
+    coefficients: dict[Text, Coefficients] = {}
+    linear_damping: LinearDamping = LinearDamping()
+    quadratic_damping: QuadraticDamping = QuadraticDamping()
+    added_mass: AddedMass = AddedMass()
+    stiffness: Stiffness = Stiffness()
+    mooring: NoMooring | LinearSprings | StiffnessMatrix = Field(
+        default=NoMooring(),
+        discriminator="kind",
+        description="a mapping with `kind`: none, linear_springs or stiffness_matrix",
+    )
+    hydrostatics: Hydrostatics = Hydrostatics()
+    wetting: Literal["mean", "instantaneous"] = "instantaneous"
+    drag_speed: Literal["vector", "component"] = "vector"
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        if faults := tuple(self._faults()):
+            raise Faults(*faults)
+        return self
+
+    def _faults(self) -> Iterator[Problem]:
+        bed = -self.water.depth
+        for i, member in enumerate(self.members):
+            for end in ("rA", "rB"):
+                if (z := getattr(member, end)[2]) < bed:
+                    yield Problem(f"members[{i}].{end}", f"a point above the sea bed, z = {bed:g} m", f"z = {z:g} m")
+        groups = {member.group for member in self.members}
+        missing, unused = sorted(groups - set(self.coefficients)), [g for g in self.coefficients if g not in groups]
+        for group in missing:
+            i = next(i for i, member in enumerate(self.members) if member.group == group)
+            known, hint = ", ".join(self.coefficients) or "none", suggest(group, self.coefficients)
+            yield Problem(f"members[{i}].group", f"a group of `coefficients` ({known})", shown(group), hint)
+        for group in unused:
+            if suggest(group, missing) or len(missing) == len(unused) == 1:
+                continue  # one group under two names has been told above
+            known, hint = ", ".join(sorted(groups)) or "none", suggest(group, groups)
+            yield Problem(f"coefficients.{group}", f"a group that members belong to ({known})", shown(group), hint)
+
+
+def builtin_platforms() -> tuple[str, ...]:
+    """Names of the platforms that come with the package."""
+    folder = resources.files("jaxhydro") / "platforms"
+    return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
+
+
+def load_platform(path_or_name: str | PathLike[str]) -> Platform:
+    """The platform in a YAML file, or the built-in one of that name; `InputError` with all that is wrong in it."""
+    name, known = str(path_or_name), builtin_platforms()
+    is_path = not isinstance(path_or_name, str) or "/" in name or name.endswith((".yaml", ".yml"))
+    if not is_path and name.lower() in known:
+        with resources.as_file(resources.files("jaxhydro") / "platforms" / f"{name.lower()}.yaml") as path:
+            return validate(Platform, read_yaml(path), f"{name} (built in)")
+    if not is_path and not Path(name).exists():
+        expected = f"a YAML file or a built-in platform ({', '.join(known)})"
+        raise InputError(name, [Problem("", expected, shown(name), suggest(name, known))])
+    return validate(Platform, read_yaml(path_or_name), name)

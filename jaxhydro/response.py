@@ -1,0 +1,82 @@
+"""What a simulation returns, and pure analysis of motion records."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import DOFS
+
+
+class Response(eqx.Module):
+    """Motion of the reference point over time: position (m, rad), rate and acceleration of surge ... yaw, dof last."""
+
+    time: Float[Array, " t"]
+    position: Float[Array, "t 6"]
+    rate: Float[Array, "t 6"]
+    acceleration: Float[Array, "t 6"]
+
+    def __getitem__(self, dof: str) -> Float[Array, " t"]:
+        """Position of one degree of freedom by its name (m or rad)."""
+        if dof not in DOFS:
+            raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")
+        return self.position[..., DOFS.index(dof)]
+
+
+class Cycles(NamedTuple):
+    """A decay by half cycles: mean amplitude of two neighbouring extremes, time of the half cycle's middle, its period (s),
+    and logarithmic decrement per whole cycle."""
+
+    time: np.ndarray
+    amplitude: np.ndarray
+    period: np.ndarray
+    decrement: np.ndarray
+
+
+def extremes(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Times and values of the successive crests and troughs of a decay about its own mean level.
+
+    One extreme between two crossings of the level that are clear of the noise (one standard deviation, six times): the
+    vertex of a parabola through the tip, fitted over an eighth of a cycle, so that noise does not pull it out.
+    """
+    quiet = 6 * noise
+    sign = np.zeros(len(motion), dtype=int)
+    sign[motion > quiet] = 1
+    sign[motion < -quiet] = -1
+    clear = np.flatnonzero(sign)
+    if len(clear) == 0:
+        return np.zeros(0), np.zeros(0)
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(sign[clear])) + 1, [len(clear)]])
+    times, values = [], []
+    for first, last in zip(starts[:-1], starts[1:], strict=True):
+        span = slice(clear[first], clear[last - 1] + 1)
+        t, x = time[span], motion[span]
+        tip = int(np.argmax(np.abs(x)))
+        if len(t) < 5 or tip in (0, len(t) - 1):
+            continue  # cut off by the record's end, or too short to be a half cycle
+        near = np.abs(t - t[tip]) <= 0.125 * max(t[-1] - t[0], 1e-300)
+        if near.sum() < 4:
+            near = np.abs(np.arange(len(t)) - tip) <= 2
+        a, b, c = np.polyfit(t[near] - t[tip], x[near], 2)
+        shift = -b / (2 * a) if a != 0 else 0.0
+        inside = abs(shift) <= 0.25 * (t[-1] - t[0])
+        times.append(t[tip] + (shift if inside else 0.0))
+        values.append(c - b * b / (4 * a) if inside and a != 0 else x[tip])
+    return np.asarray(times), np.asarray(values)
+
+
+def decay_cycles(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> Cycles:
+    """Decrement and period against amplitude of a decay that oscillates about zero.
+
+    From successive extremes A_i, A_i+1 half a period apart: amplitude (A_i + A_i+1)/2, period 2 (t_i+1 - t_i), decrement 2
+    ln(A_i / A_i+1) per cycle (Chakrabarti 1987, Hydrodynamics of Offshore Structures, section 6.5).
+    """
+    times, values = extremes(np.asarray(time), np.asarray(motion), noise)
+    size = np.abs(values)
+    pair = np.sign(values[1:]) != np.sign(values[:-1])
+    first, second = size[:-1][pair], size[1:][pair]
+    span = np.diff(times)[pair]
+    return Cycles(
+        (times[:-1][pair] + 0.5 * span), 0.5 * (first + second), 2 * span, 2 * np.log(first / np.maximum(second, 1e-300))
+    )

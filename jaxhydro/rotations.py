@@ -1,0 +1,61 @@
+"""Finite rotations of the platform, and small smooth functions that loads share.
+
+Attitude is roll, pitch, yaw with R = Rz(yaw) Ry(pitch) Rx(roll) taking body axes to earth axes (Fossen 2011, Handbook of
+Marine Craft Hydrodynamics and Motion Control, eq. 2.18). It is singular at 90 degrees of pitch.
+"""
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+
+def rotation(attitude: Float[Array, "3"]) -> Float[Array, "3 3"]:
+    """Rotation matrix from body to earth axes; attitude is roll, pitch, yaw in rad (Fossen 2011, eq. 2.18)."""
+    (cr, cp, cy), (sr, sp, sy) = jnp.cos(attitude), jnp.sin(attitude)
+    return jnp.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def attitude_rates(attitude: Float[Array, "3"], angular: Float[Array, "3"]) -> Float[Array, "3"]:
+    """Rates of roll, pitch, yaw (rad/s) of an angular velocity in body axes (Fossen 2011, eq. 2.28)."""
+    p, q, r = angular
+    cr, sr = jnp.cos(attitude[0]), jnp.sin(attitude[0])
+    turn = (q * sr + r * cr) / jnp.cos(attitude[1])
+    return jnp.stack([p + turn * jnp.sin(attitude[1]), q * cr - r * sr, turn])
+
+
+def angular_velocity(attitude: Float[Array, "3"], rates: Float[Array, "3"]) -> Float[Array, "3"]:
+    """Angular velocity in body axes (rad/s) of rates of roll, pitch, yaw: the inverse of `attitude_rates`."""
+    roll, pitch, yaw = rates
+    cr, sr = jnp.cos(attitude[0]), jnp.sin(attitude[0])
+    cp, sp = jnp.cos(attitude[1]), jnp.sin(attitude[1])
+    return jnp.stack([roll - yaw * sp, pitch * cr + yaw * cp * sr, -pitch * sr + yaw * cp * cr])
+
+
+def cross(a: Float[Array, "3"], b: Float[Array, "3"]) -> Float[Array, "3"]:
+    """a x b, in elementwise form: it fuses where `jnp.cross` does not."""
+    return jnp.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def skew(a: Float[Array, "3"]) -> Float[Array, "3 3"]:
+    """The matrix S with S b = a x b."""
+    zero = jnp.zeros_like(a[0])
+    return jnp.array([[zero, -a[2], a[1]], [a[2], zero, -a[0]], [-a[1], a[0], zero]])
+
+
+def ramp(x: Float[Array, "..."]) -> Float[Array, "..."]:
+    """max(0, x) smoothed over |x| < 1 by an Epanechnikov kernel: twice continuously differentiable, exact beyond."""
+    inner = jnp.clip(x, -1.0, 1.0)
+    square = inner * inner
+    smooth = 0.1875 + 0.5 * inner + 0.375 * square - 0.0625 * square * square
+    return smooth + jnp.maximum(x - 1.0, 0.0)
+
+
+def step(x: Float[Array, "..."]) -> Float[Array, "..."]:
+    """The derivative of `ramp`: 0 below -1, 1 above 1."""
+    inner = jnp.clip(x, -1.0, 1.0)
+    return 0.5 + inner * (0.75 - 0.25 * inner * inner)

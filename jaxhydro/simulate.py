@@ -1,0 +1,104 @@
+"""Simulations: a platform and a sea in, motion at the times asked for out."""
+
+import math
+from collections.abc import Mapping
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import DOFS
+from jaxhydro.integrate import Adjoint, Method, integrate
+from jaxhydro.model import Model, State
+from jaxhydro.response import Response
+from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.waves.sea import AbstractSea, StillWater
+
+STEPS_PER_PERIOD = 32  # of the shortest natural period, where no step is asked for
+
+
+def default_step(model: Model) -> float:
+    """A time step (s) that follows the model's fastest natural motion: a 32nd of its shortest period, at most 0.5 s.
+
+    RK4's relative error in that period is then 1e-5. Waves shorter than the platform's motions ask for less.
+    """
+    periods = natural_modes(model).period
+    return min(0.5, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else 0.5
+
+
+@eqx.filter_jit
+def _simulate(
+    model: Model,
+    sea: AbstractSea,
+    start: State,
+    times: Float[Array, " t"],
+    step: Float[Array, ""],
+    steps: int,
+    method: Method,
+    adjoint: Adjoint,
+) -> Response:
+    grid = integrate(model, sea, start, times[0], step, steps, method, adjoint)
+    return Response(times, *grid.at(times))
+
+
+def simulate(
+    model: Model,
+    times: Float[Array, " t"] | np.ndarray,
+    sea: AbstractSea | None = None,
+    *,
+    position: Mapping[str, float] | Float[Array, "6"] | None = None,
+    rate: Mapping[str, float] | Float[Array, "6"] | None = None,
+    step: float | None = None,
+    method: Method = "rk4",
+    adjoint: Adjoint = "forward",
+) -> Response:
+    """Motion of the platform at `times` (s, increasing, as recorded: any spacing).
+
+    It starts at `times[0]` from the static equilibrium with the given `position` (m, rad: added to the equilibrium where given
+    by name, absolute where an array) and `rate` (m/s, rad/s of surge ... yaw). `step` (s) is the largest internal step; the
+    one taken divides the duration. Positions are those of the reference point, equilibrium included.
+
+    `method` "rk4" is this package's own scan of the classical fourth-order Runge-Kutta scheme, "tsit5" diffrax's
+    Tsitouras 5(4) at fixed steps. Both give the same motion; which is faster at which accuracy is measured by `make bench` and
+    printed in the README: the scan by default, since it takes half the time of diffrax at the same step and compiles in half
+    the time. `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
+
+    Raises ValueError for times that do not increase, EquilibriumError where the platform does not rest.
+    """
+    times = jnp.asarray(times, float)
+    if times.ndim != 1 or times.shape[0] < 2 or not bool((jnp.diff(times) > 0).all()):
+        raise ValueError("times must be at least two increasing numbers")
+    limit = default_step(model) if step is None else step
+    duration = float(times[-1] - times[0])
+    steps = max(1, math.ceil(duration / limit - 1e-9))
+    start = model.rest()
+    rest = equilibrium(model) if position is None or isinstance(position, Mapping) else jnp.zeros(6)
+    q = rest + by_name(position)
+    start = State(q, model.body_velocity(q, by_name(rate)), start.memory)
+    sea = StillWater() if sea is None else sea
+    return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
+
+
+def free_decay(
+    model: Model,
+    displacement: Mapping[str, float] | Float[Array, "6"],
+    times: Float[Array, " t"] | np.ndarray,
+    **options,
+) -> Response:
+    """Free decay in still water, released at rest from `displacement` (m, rad) off the static equilibrium.
+
+    `options` are those of `simulate`.
+    """
+    return simulate(model, times, position=equilibrium(model) + by_name(displacement), **options)
+
+
+def by_name(values: Mapping[str, float] | Float[Array, "6"] | None) -> Float[Array, "6"]:
+    """Six degrees of freedom from named ones (what is not named is zero), or as they are. Raises KeyError for a wrong name."""
+    if values is None:
+        return jnp.zeros(6)
+    if not isinstance(values, Mapping):
+        return jnp.asarray(values, float)
+    if unknown := set(values) - set(DOFS):
+        raise KeyError(f"no degree of freedom {sorted(unknown)[0]!r}; there are: {', '.join(DOFS)}")
+    return jnp.stack([jnp.asarray(values.get(dof, 0.0), float) for dof in DOFS])

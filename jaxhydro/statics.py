@@ -1,0 +1,99 @@
+"""Static equilibrium, and natural periods of small motion about it."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import lineax as lx
+import numpy as np
+import optimistix as optx
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import DOFS
+from jaxhydro.model import Model, State
+from jaxhydro.waves.sea import StillWater
+
+
+class EquilibriumError(RuntimeError):
+    """The platform has no static equilibrium near its reference position."""
+
+
+def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
+    """Net force over weight, net moment over weight times 10 m."""
+    weight = model.body.mass * model.environment.gravity
+    return model.force_at_rest(position) / (weight * jnp.array([1.0, 1.0, 1.0, 10.0, 10.0, 10.0]))
+
+
+@eqx.filter_jit
+def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
+    # The least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is.
+    linear = lx.AutoLinearSolver(well_posed=False)
+    solver = optx.Newton(rtol=1e-12, atol=1e-12, linear_solver=linear)
+    adjoint = optx.ImplicitAdjoint(linear_solver=linear)
+    solution = optx.root_find(_balance, solver, jnp.zeros(6), model, max_steps=64, throw=False, adjoint=adjoint)
+    return solution.value, _balance(solution.value, model)
+
+
+def equilibrium(model: Model) -> Float[Array, "6"]:
+    """Where the platform rests in still water: surge, sway, heave (m), roll, pitch, yaw (rad), from its reference position.
+
+    Found by optimistix's Newton iteration; differentiable in the model. Motions without restoring stay at zero. Raises
+    EquilibriumError where no balance to 1e-8 of the weight is found, naming the motion.
+    """
+    position, residual = _solve(model)
+    if isinstance(residual, jax.core.Tracer):
+        return position
+    worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
+    if not np.abs(np.asarray(residual)).max() < 1e-8:
+        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else 10)
+        raise EquilibriumError(
+            f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
+            f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
+        )
+    return position
+
+
+class Modes(NamedTuple):
+    """Undamped natural modes of small motion: period (s), longest first; shape (mode, dof), the largest entry 1."""
+
+    period: np.ndarray
+    shape: np.ndarray
+
+    def of(self, dof: str) -> float:
+        """Period (s) of the mode in which `dof` takes the largest part of the kinetic energy's coordinate; nan if none."""
+        index = DOFS.index(dof)
+        mine = [period for period, shape in zip(self.period, self.shape, strict=True) if np.argmax(np.abs(shape)) == index]
+        return float(mine[0]) if mine else float("nan")
+
+
+def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, "6 6"], Float[Array, "6 6"]]:
+    """Mass matrix with added mass, and stiffness (N/m, ...), of small motion about a position of rest."""
+    rest = model.rest()
+
+    def acceleration(q: Float[Array, "6"]) -> Float[Array, "6"]:
+        return model.rate(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater()).velocity
+
+    def mass_of(q: Float[Array, "6"]) -> Float[Array, "6 6"]:
+        now = model.instant(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater())
+        total = model.sum_of_loads(now, rest.memory)
+        return model.body.mass_matrix() + total.added_mass + (total.line_mass @ model.hull.mass_product).reshape(6, 6)
+
+    mass = mass_of(position)
+    return mass, -mass @ jax.jacfwd(acceleration)(position)
+
+
+def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Modes:
+    """Natural modes about a position of rest (the equilibrium), damping left out. Motions without restoring have none.
+
+    Shapes are compared with rotations times 50 m, a platform's half width, so that metres and radians can be.
+    """
+    position = equilibrium(model) if position is None else position
+    mass, stiffness = (np.asarray(m) for m in eqx.filter_jit(linearised)(model, position))
+    square, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    order = np.argsort(square.real)
+    square, vectors = square.real[order], vectors.real[:, order]
+    kept = square > 1e-10 * np.abs(square).max()
+    shape = vectors[:, kept].T * np.array([1, 1, 1, 50, 50, 50])
+    shape = shape / np.abs(shape).max(axis=1, keepdims=True)
+    return Modes(2 * np.pi / np.sqrt(square[kept]), shape)
