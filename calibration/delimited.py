@@ -31,6 +31,13 @@ def wrong(path: Path, where: str, expected: str, found: str, hint: str = "") -> 
     return InputError(str(path), [Problem(where, expected, found, hint)])
 
 
+def reason(error: BaseException) -> str:
+    """Why a library gave up, in one line."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+
+
 def decoded(path: Path) -> str:
     """A text file's content, unzipped where its name ends in .gz, with \\n at the line ends."""
     raw = path.read_bytes()
@@ -123,14 +130,14 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
 
 
 def _delimiter(lines: list[str]) -> str | None:
-    """The delimiter that makes most cells numbers; None is white space. Earlier candidates win a tie."""
-    def score(delimiter: str | None) -> float:
+    """The delimiter that makes most cells numbers, then most rows alike; None is white space. The first wins a tie."""
+    def score(delimiter: str | None) -> tuple[float, int]:
         cells = [_split(line, delimiter) for line in lines]
         width = Counter(map(len, cells)).most_common(1)[0][0]
         if width < 2:
-            return 0.0
-        whole = [cell for row in cells if len(row) == width for cell in row if cell]
-        return sum(_is_number(cell, delimiter) for cell in whole) / max(1, sum(map(len, cells)))
+            return 0.0, 0
+        whole = [row for row in cells if len(row) == width]
+        return sum(_is_number(cell, delimiter) for row in whole for cell in row) / sum(map(len, cells)), len(whole)
     return max((";", "\t", ",", _WHITESPACE), key=score)
 
 

@@ -12,7 +12,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, StrictInt, StrictStr, model_validator
+from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
 from jaxhydro.problems import (
     Faults,
@@ -41,21 +41,26 @@ def quantity(channel: str) -> str:
     return "time" if channel == "time" else "angle" if channel in DOFS[3:] else "length"
 
 
+def _column(value: Any) -> Any:
+    if not (isinstance(value, str) and value) and not (type(value) is int and value >= 0):
+        raise ValueError("a column's name, or its number, 0 for the first")
+    return value
+
+
 Kind = Literal["decay", "regular", "irregular", "static", "forced"]
 Motion = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Name = Annotated[Text, BeforeValidator(lambda value: str(value) if type(value) is int else value)]
-Column = Annotated[StrictStr | Annotated[StrictInt, Field(ge=0)],
-                   Field(description="a column's name, or its number, 0 for the first")]
+Column = Annotated[str | int, PlainValidator(_column)]
 Unit = Annotated[Text, Field(description="a unit: " + ", ".join(unit for units in SI.values() for unit in units))]
 Sign = Annotated[Literal[1, -1], BeforeValidator(lambda value: int(value) if value in (1.0, -1.0) else value)]
+
+
+Window = tuple[Number, Number]                   # on the file's own time axis
 
 
 def _ordered(value: tuple[float, float]) -> Iterator[Problem]:
     if not value[0] < value[1]:
         yield Problem("", "two numbers, the first less than the second", f"[{value[0]:g}, {value[1]:g}]")
-
-
-Window = Annotated[tuple[Number, Number], Field(description="[start, end] on the file's own time axis, two numbers")]
 
 
 class Channel(Schema):

@@ -1,19 +1,22 @@
 """Fixed-step time integration, and output at any times."""
 
+from functools import partial
 from typing import Literal
 
 import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jax.flatten_util import ravel_pytree
+from jaxtyping import Array, Float, Int
 
+from jaxhydro import runge_kutta
 from jaxhydro.model import Model, State
 from jaxhydro.waves.sea import AbstractSea
 
-Method = Literal["rk4", "tsit5"]
+Method = Literal["tsit5", "rk4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]
-BLOCK = 64  # steps per checkpointed block of a reverse gradient
+Path = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
 class Grid(eqx.Module):
@@ -21,23 +24,26 @@ class Grid(eqx.Module):
 
     start: Float[Array, ""]
     step: Float[Array, ""]
+    count: Int[Array, ""]
     position: Float[Array, "n 6"]
     rate: Float[Array, "n 6"]
     acceleration: Float[Array, "n 6"]
 
-    def at(self, times: Float[Array, " t"]) -> tuple[Float[Array, "t 6"], Float[Array, "t 6"], Float[Array, "t 6"]]:
+    def at(
+        self, times: Float[Array, " t"], dofs: slice | tuple[int, ...] = slice(None)
+    ) -> tuple[Float[Array, "t d"], Float[Array, "t d"], Float[Array, "t d"]]:
         """Position, rate and acceleration at `times` (s), by quintic Hermite interpolation.
 
-        Its error is of sixth order in the step, beyond that of the integrator. Times outside the grid are clipped to it.
+        Its error in position is of sixth order in the step. Times outside the grid are clipped to it.
         """
-        last = self.position.shape[0] - 2
         place = (times - self.start) / self.step
-        index = jnp.clip(jnp.floor(place).astype(int), 0, last)
+        index = jnp.clip(jnp.floor(place).astype(int), 0, self.count - 1)
         s = jnp.clip(place - index, 0.0, 1.0)[:, None]
         h = self.step
-        x0, x1 = self.position[index], self.position[index + 1]
-        v0, v1 = h * self.rate[index], h * self.rate[index + 1]
-        a0, a1 = 0.5 * h * h * self.acceleration[index], 0.5 * h * h * self.acceleration[index + 1]
+        position, rate, acceleration = (x[:, dofs] for x in (self.position, self.rate, self.acceleration))
+        x0, x1 = position[index], position[index + 1]
+        v0, v1 = h * rate[index], h * rate[index + 1]
+        a0, a1 = 0.5 * h * h * acceleration[index], 0.5 * h * h * acceleration[index + 1]
         # x = x0 + v0 s + a0 s^2 + s^3 (c3 + c4 s + c5 s^2), fixed by the far end
         gap, slope, bend = x1 - x0 - v0 - a0, v1 - v0 - 2 * a0, 2 * (a1 - a0)
         c3 = 10 * gap - 4 * slope + 0.5 * bend
@@ -49,47 +55,28 @@ class Grid(eqx.Module):
         return x, v, a
 
 
-def _add(state: State, rate: State, factor: Float[Array, ""]) -> State:
-    return jax.tree.map(lambda x, r: x + factor * r, state, rate)
+Path = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
+def _by_scan(
+    scheme: runge_kutta.Scheme, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
+) -> Path:
+    """An explicit Runge-Kutta scheme as this package's own loop: positions and body velocities at the ends of the steps."""
+    y, unravel = ravel_pytree(state)
+    run = runge_kutta.forward if adjoint == "forward" else runge_kutta.backward
+
+    def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> Float[Array, " s"]:
+        return ravel_pytree(driver[0].rate(time, unravel(y), driver[1]))[0]
+
+    path = run((model, sea), y, start, step, count, rate=rate, scheme=scheme, capacity=capacity)
+    states = jax.vmap(unravel)(path)
+    return states.position, states.velocity
 
 
-def _rk4(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], steps: int,
-         adjoint: Adjoint) -> tuple[Float[Array, "n 6"], Float[Array, "n 6"], Float[Array, "n 6"]]:
-    """Classical Runge-Kutta as a scan: positions, body velocities and their rates at the ends of the steps."""
-
-    def advance(state: State, index: Float[Array, ""]):
-        time = start + step * index
-        first = model.rate(time, state, sea)
-
-        def stage(carry, weights):
-            rate, total = carry
-            ahead, share = weights
-            rate = model.rate(time + ahead * step, _add(state, rate, ahead * step), sea)
-            return (rate, _add(total, rate, share)), None
-
-        # one traced copy of the equation of motion for three stages: a third of the compilation
-        total = jax.tree.map(lambda r: r / 6, first)
-        weights = (jnp.array([0.5, 0.5, 1.0]), jnp.array([1 / 3, 1 / 3, 1 / 6]))
-        (_, total), _ = jax.lax.scan(stage, (first, total), weights)
-        return _add(state, total, step), (state.position, state.velocity, first.velocity)
-
-    if adjoint == "forward":
-        return jax.lax.scan(advance, state, jnp.arange(steps + 1.0))[1]
-    blocks = -(-(steps + 1) // BLOCK)
-    index = jnp.arange(blocks * BLOCK, dtype=float).reshape(blocks, BLOCK)
-    block = jax.checkpoint(lambda state, index: jax.lax.scan(advance, state, index))
-    _, saved = jax.lax.scan(block, state, index)
-    position, velocity, rate = (x.reshape(-1, 6)[: steps + 1] for x in saved)
-    return position, velocity, rate
-
-
-def _tsit5(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], steps: int,
-           adjoint: Adjoint) -> tuple[Float[Array, "n 6"], Float[Array, "n 6"], Float[Array, "n 6"]]:
+def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Path:
     """diffrax's Tsitouras 5(4) on the same grid.
 
-    `StepTo`, not `ConstantStepSize`: the latter's reverse gradients are wrong with output on the step grid (diffrax 0.7.2).
+    `StepTo`, not `ConstantStepSize`, whose reverse gradients are wrong with output on the step grid (diffrax 0.7.2).
     """
-    grid = start + step * jnp.arange(steps + 1.0)
+    grid = start + step * jnp.arange(capacity + 1.0)
     solution = diffrax.diffeqsolve(
         diffrax.ODETerm(lambda t, y, args: args[0].rate(t, y, args[1])),
         diffrax.Tsit5(),
@@ -101,10 +88,9 @@ def _tsit5(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""]
         stepsize_controller=diffrax.StepTo(ts=grid),
         saveat=diffrax.SaveAt(ts=grid),
         adjoint=diffrax.ForwardMode() if adjoint == "forward" else diffrax.RecursiveCheckpointAdjoint(),
-        max_steps=steps + 1,
+        max_steps=capacity + 1,
     )
-    rate = jax.vmap(lambda t, y: model.rate(t, y, sea).velocity)(grid, solution.ys)
-    return solution.ys.position, solution.ys.velocity, rate
+    return solution.ys.position, solution.ys.velocity
 
 
 def integrate(
@@ -113,17 +99,32 @@ def integrate(
     state: State,
     start: Float[Array, ""],
     step: Float[Array, ""],
-    steps: int,
-    method: Method = "rk4",
+    capacity: int,
+    method: Method = "tsit5",
     adjoint: Adjoint = "forward",
+    count: Int[Array, ""] | None = None,
 ) -> Grid:
-    """Motion over `steps` steps of `step` seconds from `start`."""
-    run = {"rk4": _rk4, "tsit5": _tsit5}[method]
-    position, velocity, velocity_rate = run(model, sea, state, start, step, steps, adjoint)
+    """Motion over `capacity` steps of `step` seconds from `start`.
 
-    def rates(position, velocity, velocity_rate):
-        rate = model.position_rate(position, velocity)
-        return jax.jvp(model.position_rate, (position, velocity), (rate, velocity_rate))
+    Simulations of different lengths share one compilation by sharing a capacity: `count` says how many steps of it are
+    taken (with adjoint "forward", and not by diffrax: there all are).
+    """
+    count = jnp.asarray(capacity) if count is None else count
+    # two steps more, so that the differences at the last one are central
+    run = _by_diffrax if method == "diffrax" else partial(_by_scan, runge_kutta.SCHEMES[method])
+    position, velocity = run(model, sea, state, start, step, count + 2, capacity + 2, adjoint)
+    rate = jax.vmap(model.position_rate)(position, velocity)
+    return Grid(start, step, count, position, rate, differences(rate, step))
 
-    rate, acceleration = jax.vmap(rates)(position, velocity, velocity_rate)
-    return Grid(start, step, position, rate, acceleration)
+
+def differences(values: Float[Array, "n 6"], step: Float[Array, ""]) -> Float[Array, "n 6"]:
+    """Time derivative on an even grid by five-point differences, of fourth order at the ends too. Fewer points: `gradient`.
+
+    Abramowitz and Stegun 1964, table 25.2, m = 5.
+    """
+    if values.shape[0] < 5:
+        return jnp.gradient(values, axis=0) / step
+    inside = (values[:-4] - 8 * values[1:-3] + 8 * values[3:-1] - values[4:]) / 12
+    first = jnp.array([[-25.0, 48.0, -36.0, 16.0, -3.0], [-3.0, -10.0, 18.0, -6.0, 1.0]]) / 12
+    begin, end = first @ values[:5], -(first @ values[-1:-6:-1])[::-1]
+    return jnp.concatenate([begin, inside, end]) / step

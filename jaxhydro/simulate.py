@@ -15,16 +15,16 @@ from jaxhydro.response import Response
 from jaxhydro.statics import equilibrium, natural_modes
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
-STEPS_PER_PERIOD = 32  # of the shortest natural period, where no step is asked for
+STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
 
 
 def default_step(model: Model) -> float:
-    """A time step (s) that follows the model's fastest natural motion: a 32nd of its shortest period, at most 0.5 s.
+    """A time step (s) that follows the model's fastest natural motion: a 24th of its shortest period, at most 1 s.
 
-    RK4's relative error in that period is then 1e-5. Waves shorter than the platform's motions ask for less.
+    The error of a decay is then some 1e-6 of its amplitude. Waves shorter than the platform's motions ask for less.
     """
     periods = natural_modes(model).period
-    return min(0.5, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else 0.5
+    return min(1.0, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else 0.5
 
 
 @eqx.filter_jit
@@ -50,7 +50,7 @@ def simulate(
     position: Mapping[str, float] | Float[Array, "6"] | None = None,
     rate: Mapping[str, float] | Float[Array, "6"] | None = None,
     step: float | None = None,
-    method: Method = "rk4",
+    method: Method = "tsit5",
     adjoint: Adjoint = "forward",
 ) -> Response:
     """Motion of the platform at `times` (s, increasing, as recorded: any spacing).
@@ -59,10 +59,8 @@ def simulate(
     by name, absolute where an array) and `rate` (m/s, rad/s of surge ... yaw). `step` (s) is the largest internal step; the
     one taken divides the duration. Positions are those of the reference point, equilibrium included.
 
-    `method` "rk4" is this package's own scan of the classical fourth-order Runge-Kutta scheme, "tsit5" diffrax's
-    Tsitouras 5(4) at fixed steps. Both give the same motion; which is faster at which accuracy is measured by `make bench` and
-    printed in the README: the scan by default, since it takes half the time of diffrax at the same step and compiles in half
-    the time. `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
+    `method` "tsit5" is Tsitouras 5(4) with diffrax's tableau in a loop of this package, "rk4" the classical scheme in the same
+    loop, "diffrax" diffrax's own solver; steps are fixed. BENCH_NOTE `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
 
     Raises ValueError for times that do not increase, EquilibriumError where the platform does not rest.
     """

@@ -1,5 +1,9 @@
 """Members cut into strips: what every hydrodynamic load is integrated over.
 
+A member is cut into load elements, and each is integrated by two-point Gauss quadrature: it makes two strips, which are
+looked at in the Gauss points and wetted over their own halves of the element. Inertia is then exact, and so is the drag of a
+rotating member, where midpoints would need several times as many (Abramowitz and Stegun 1964, eq. 25.4.30).
+
 Everything is in body axes about the reference point; the strip is the last axis. A strip is loaded in the two directions
 across its member's axis, an end along it. A member steeper than 45 degrees is a column: both directions take the transverse
 coefficients (t) and its ends the axial ones (z). A flatter one is a pontoon: its horizontal direction takes t, the other,
@@ -21,8 +25,9 @@ from jaxtyping import Array, Float
 from jaxhydro.rotations import ramp
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
-COLUMN_STRIP = 2.0  # m, longest strip of a column where the platform file does not say
-PONTOON_STRIP = 5.0  # m, of a pontoon
+COLUMN_ELEMENT = 4.0  # m, longest load element of a column where the platform file does not say
+PONTOON_ELEMENT = 10.0  # m, of a pontoon
+GAUSS = 0.5 / math.sqrt(3.0)  # of an element's length, from its middle to either point of two-point Gauss quadrature
 
 
 class Member(NamedTuple):
@@ -74,14 +79,21 @@ class Member(NamedTuple):
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
 
     def edges(self) -> np.ndarray:
-        """Fractions of the length at which the strips begin and end: always at a station, else evenly."""
+        """Fractions of the length at which the load elements begin and end.
+
+        As many as the platform file says, evenly; else short ones that end at every station and at still water.
+        """
         length = float(np.linalg.norm(self.b - self.a))
         if self.elements is not None:
             return np.linspace(0.0, 1.0, self.elements + 1)
-        longest = COLUMN_STRIP if self.column else PONTOON_STRIP
+        longest = COLUMN_ELEMENT if self.column else PONTOON_ELEMENT
+        ends = set(self.stations)
+        if self.column and min(self.a[2], self.b[2]) < 0 < max(self.a[2], self.b[2]):
+            ends.add(self.a[2] / (self.a[2] - self.b[2]))
+        at = np.array(sorted(ends))
         parts = [
             np.linspace(lo, hi, max(1, math.ceil((hi - lo) * length / longest - 1e-9)) + 1)[:-1]
-            for lo, hi in zip(self.stations[:-1], self.stations[1:], strict=True)
+            for lo, hi in zip(at[:-1], at[1:], strict=True)
         ]
         return np.append(np.concatenate(parts), 1.0)
 
@@ -89,12 +101,14 @@ class Member(NamedTuple):
 class Strips(eqx.Module):
     """Strips of all members. See the module's docstring for the frame and the two directions."""
 
-    position: Float[Array, "3 n"]  # m, the strip's middle
+    position: Float[Array, "3 n"]  # m, the Gauss point
+    middle: Float[Array, " n"]  # m along the axis, from there to the strip's middle
     axis: Float[Array, "3 n"]
     directions: Float[Array, "3 2 n"]
     length: Float[Array, " n"]  # m
     area: Float[Array, " n"]  # m2, of the section
     extent: Float[Array, "2 n"]  # m, size along either direction
+    blur: Float[Array, " n"]  # m, length of the member's longest strip
     thickness: Float[Array, " n"]  # m, vertical extent beyond that of the axis: none for a column
     label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and strip
     labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
@@ -164,38 +178,45 @@ class Hull(eqx.Module):
 
 
 def cut(members: Sequence[Member]) -> Strips:
-    """Cut members into strips, evaluated at their middles."""
+    """Cut members into strips: two for every load element."""
     labels: list[tuple[str, str]] = []
     rows: list[tuple] = []
     for member in members:
         first, second = member.directions
         edges = member.edges()
-        middle = 0.5 * (edges[1:] + edges[:-1])
-        length = np.diff(edges) * np.linalg.norm(member.b - member.a)
-        size = member.size(middle)
+        whole, centre = np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
+        point = np.stack([centre - GAUSS * whole, centre + GAUSS * whole], axis=1).reshape(-1)
+        halves = np.sort(np.concatenate([edges, centre]))
+        span = float(np.linalg.norm(member.b - member.a))
+        sense = 1.0 if member.axis @ (member.b - member.a) > 0 else -1.0
+        offset = sense * span * (0.5 * (halves[1:] + halves[:-1]) - point)
+        length = np.diff(halves) * span
+        size = member.size(point)
         for kind in ("t", "t" if member.column else "z"):
             if (member.group, kind) not in labels:
                 labels.append((member.group, kind))
         label = (labels.index((member.group, "t")), labels.index((member.group, "t" if member.column else "z")))
-        n = len(middle)
+        n = len(point)
         rows.append(
             (
-                member.a[:, None] + (member.b - member.a)[:, None] * middle,
+                member.a[:, None] + (member.b - member.a)[:, None] * point,
+                offset,
                 np.repeat(member.axis[:, None], n, axis=1),
                 np.repeat(np.stack([first, second], axis=1)[:, :, None], n, axis=2),
                 length,
+                np.full(n, length.max()),
                 # the mean area of a tapered strip (frustum), so that the volume is exact
-                _mean_area(member, edges),
+                _mean_area(member, halves),
                 size.T,
                 np.repeat(np.array(label)[:, None], n, axis=1),
             )
         )
-    empty = (np.zeros((3, 0)), np.zeros((3, 0)), np.zeros((3, 2, 0)), np.zeros(0), np.zeros(0), np.zeros((2, 0)), np.zeros((2, 0)))
+    empty = (np.zeros((3, 0)), np.zeros(0), np.zeros(0), np.zeros((3, 0)), np.zeros((3, 2, 0)), np.zeros(0), np.zeros(0), np.zeros((2, 0)), np.zeros((2, 0)))
     columns = [np.concatenate(column, axis=-1) for column in zip(*(rows or [empty]), strict=True)]
-    position, axis, directions, length, area, extent, label_of = columns
-    column = np.concatenate([np.full(len(row[3]), m.column) for m, row in zip(members, rows, strict=True)] or [np.zeros(0)])
+    position, middle, axis, directions, length, blur, area, extent, label_of = columns
+    column = np.concatenate([np.full(len(row[1]), m.column) for m, row in zip(members, rows, strict=True)] or [np.zeros(0)])
     thickness = np.where(column, 0.0, (np.abs(directions[2]) * extent).sum(axis=0))
-    arrays = (position, axis, directions, length, area, extent, thickness)
+    arrays = (position, middle, axis, directions, length, area, extent, blur, thickness)
     return Strips(*map(jnp.asarray, arrays), tuple(tuple(map(int, row)) for row in label_of), tuple(labels))
 
 
@@ -226,12 +247,15 @@ def ends(members: Sequence[Member]) -> Ends:
 
 
 def wetted(strips: Strips, upward: Float[Array, "3"], depth: Float[Array, " n"]) -> Float[Array, " n"]:
-    """Fraction of every strip that is under water: smooth, and exact in the sum over a member cut evenly.
+    """Fraction of every strip that is under water: smooth, and exact in the sum over a member.
 
-    `upward` is the vertical in body axes, `depth` (m) that of the strip's middle under the surface. The strip's own box is
-    blurred by a kernel of its own height, so neighbours add up to the exact wetted length unless the surface is within
-    a strip of the member's end.
+    `upward` is the vertical in body axes, `depth` (m) that of the strip's Gauss point under the surface. All strips of a
+    member are blurred by one kernel, as wide as its longest, so that they add up to the exact wetted length unless the
+    surface is within a strip of the member's end.
     """
-    half = 0.5 * (jnp.abs(upward @ strips.axis) * strips.length + strips.thickness)
-    at = depth / half
-    return 0.5 * (ramp(at + 1.0) - ramp(at - 1.0))
+    slope = upward @ strips.axis
+    steep = jnp.abs(slope)
+    half = 0.5 * (steep * strips.length + strips.thickness)
+    blur = 0.5 * (steep * strips.blur + strips.thickness)
+    middle = depth - slope * strips.middle
+    return 0.5 * blur / half * (ramp((middle + half) / blur) - ramp((middle - half) / blur))

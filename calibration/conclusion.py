@@ -1,0 +1,110 @@
+"""What a finished fit says: parameters with their uncertainty, series measured against simulated, remarks in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.identifiability import CLEAR, memory, spread
+from calibration.parameters import slopes
+from calibration.records import Record
+from calibration.residuals import Problem, Unknowns
+from calibration.result import Estimate, Series, TestFit
+from jaxhydro.environment import DOFS
+
+if TYPE_CHECKING:
+    from calibration.fit import Fit
+
+
+def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
+    """The fitted parameters: a standard deviation where the records determine them, none where not."""
+    problem, data, space, products = fit.problem, fit.problem.data, fit.problem.space, fit.products
+    samples = np.maximum(np.asarray(data.present).sum(axis=-1), 1)
+    inflation = np.ones(samples.shape)
+    for i, test in enumerate(tests):
+        for series in test.series:
+            j = data.dofs.index(DOFS.index(series.channel))
+            inflation[i, j] = memory(series.simulated - series.measured)
+    unknowns = products.shape[-1] - 1
+    variance = products[..., -1, -1] / np.maximum(samples - unknowns / len(data.dofs), 1)
+    ridge = np.append(np.asarray(fit.prior[1]), fit.ridge)
+    deviation = spread(products, fit.weight, variance, inflation, ridge).deviation()
+    x = np.asarray(fit.unknowns.shared)
+    slope = slopes(space, x)
+    found = {}
+    for i, parameter in enumerate(space.free):
+        bound = parameter.transform.at_bound(x[i])
+        value, width = float(parameter.transform.forward(jnp.asarray(x[i]))), float(abs(slope[i]) * deviation[i])
+        # known to a quarter of its size, or known to be small
+        clear = (deviation[i] < CLEAR or width < CLEAR * abs(parameter.start)) and not bound
+        about = problem.model.about(parameter.label)
+        found[parameter.label] = Estimate(
+            parameter.label,
+            value,
+            width if clear else None,
+            about.unit,
+            about.meaning,
+            parameter.start,
+            bound,
+            bool(clear),
+        )
+    return found
+
+
+@eqx.filter_jit
+def _motions(problem: Problem, unknowns: Unknowns, x):
+    return jax.lax.map(lambda inputs: problem.motion(x, *inputs), (unknowns.own, problem.data))
+
+
+def series_of(
+    problem: Problem, records: Sequence[Record], unknowns: Unknowns, before: Problem | None = None
+) -> list[TestFit]:
+    """Every record measured against simulated. `before` is the same with the model that the calibration started from."""
+    data = problem.data
+    after = np.asarray(_motions(problem, unknowns, unknowns.shared))
+    earlier = problem if before is None else before
+    start = np.asarray(_motions(earlier, unknowns, earlier.space.start))
+    offsets = np.asarray(unknowns.own).reshape(len(records), 3, -1)[:, 2] * np.asarray(data.unit)
+    tests = []
+    for i, record in enumerate(records):
+        n, series, first = len(record.time), [], {}
+        for j, dof in enumerate(data.dofs):
+            channel = DOFS[dof]
+            if channel not in record.values:
+                continue
+            offset = float(offsets[i, j])
+            series.append(
+                Series(
+                    channel,
+                    record.values[channel] - offset,
+                    after[i, j, :n] - offset,
+                    offset,
+                    record.noise[channel],
+                    channel == record.degree_of_freedom,
+                )
+            )
+            first[channel] = start[i, j, :n] - offset
+        tests.append(
+            TestFit(
+                record.id, record.use, record.kind, record.degree_of_freedom, record.time, tuple(series), first, record.file
+            )
+        )
+    return tests
+
+
+def remarks(campaign: Campaign, parameters: dict[str, Estimate]) -> tuple[str, ...]:
+    """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
+    said = [str(finding) for finding in campaign.findings]
+    left = [r.id for r in campaign.records if r.use != "ignore" and r.kind != "decay"]
+    if left:
+        said.append(f"only decays are fitted; left out: {', '.join(left)}")
+    vague = [label for label, p in parameters.items() if not p.identifiable]
+    if vague:
+        said.append(f"these records do not determine {', '.join(vague)}: their values are not results")
+    return tuple(said)

@@ -1,0 +1,68 @@
+"""The optimiser: optimistix's Levenberg-Marquardt with steps that cannot run away."""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import lineax as lx
+import optimistix as optx
+from jaxtyping import PyTree
+
+
+class ClippedDescent(optx.AbstractDescent):
+    """A descent whose step is shortened, not bent, to at most `longest` in its largest component.
+
+    Coordinates are logarithms and relative motions: a step of 1 changes a coefficient by a factor of e.
+    """
+
+    descent: optx.AbstractDescent
+    longest: float
+
+    def init(self, y: PyTree, f_info_struct: Any) -> Any:
+        return self.descent.init(y, f_info_struct)
+
+    def query(self, y: PyTree, f_info: Any, state: Any) -> Any:
+        return self.descent.query(y, f_info, state)
+
+    def step(self, step_size: Any, state: Any) -> tuple[PyTree, optx.RESULTS]:
+        diff, result = self.descent.step(step_size, state)
+        largest = jnp.max(jnp.stack([jnp.max(jnp.abs(leaf)) for leaf in jax.tree.leaves(diff)]))
+        scale = jnp.minimum(1.0, self.longest / jnp.maximum(largest, 1e-300))
+        return jax.tree.map(lambda leaf: scale * leaf, diff), result
+
+
+class ClippedLevenbergMarquardt(optx.AbstractGaussNewton):
+    """Levenberg-Marquardt of clipped steps, its damping relaxed whenever three quarters of the promised decrease come true.
+
+    optimistix's own asks for 99 % and needs twice the iterations on decays.
+    """
+
+    rtol: float
+    atol: float
+    norm: Any
+    descent: ClippedDescent
+    search: optx.AbstractSearch
+    verbose: Any
+
+    def __init__(self, rtol: float, atol: float, longest: float = 0.7):
+        self.rtol, self.atol, self.norm = rtol, atol, optx.max_norm
+        self.descent = ClippedDescent(optx.DampedNewtonDescent(linear_solver=lx.QR()), longest)
+        self.search = _Region()
+        self.verbose = _silent
+
+
+def _silent(**_: Any) -> None:
+    return None
+
+
+class _Region(optx.ClassicalTrustRegion):
+    """optimistix's trust region, its first damping and its cutoffs chosen for residuals relative to the motion."""
+
+    high_cutoff: float = 0.75
+    low_cutoff: float = 0.01
+    high_constant: float = 4.0
+    low_constant: float = 0.25
+
+    def init(self, y: PyTree, f_info_struct: Any) -> Any:
+        return eqx.tree_at(lambda s: s.step_size, super().init(y, f_info_struct), jnp.array(100.0))

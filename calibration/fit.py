@@ -1,0 +1,267 @@
+"""Calibration: free parameters fitted to all decay records together by least squares."""
+
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.conclusion import estimates, remarks, series_of
+from calibration.descent import ClippedLevenbergMarquardt
+from calibration.parameters import ParameterSpace, choose, parameter_space
+from calibration.records import Record
+from calibration.residuals import Data, Problem, Unknowns, condensed, dominant_period, first_guess, gather
+from calibration.result import Calibration
+from jaxhydro.environment import DOFS
+from jaxhydro.model import Model
+from jaxhydro.platform import build
+from jaxhydro.problems import InputError
+from jaxhydro.problems import Problem as Wrong
+from jaxhydro.statics import equilibrium, natural_modes
+
+RIDGE = 1e-3  # standard deviations of the prior are 1/RIDGE in units of a relative error: keeps idle parameters where they are
+GROWTH = 2.5  # the window grows by this factor, from CYCLES cycles to the whole record
+CYCLES = 1.25
+STEPS_PER_PERIOD = 16  # of the shortest natural period: an error of some 1e-7 in the period
+PATIENCE = 60  # iterations at most per stage
+SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # stages end by their own tolerance
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a calibration is: what it is doing, iterations, J, and the fraction done (0 to 1, a guess)."""
+
+    stage: str
+    iteration: int
+    objective: float
+    fraction: float
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a calibration; `partial` holds what was reached, None if nothing was."""
+
+    def __init__(self, partial: Calibration | None):
+        super().__init__("calibration interrupted")
+        self.partial = partial
+
+
+@eqx.filter_jit
+def _step(problem: Problem, unknowns: Unknowns, state, weight, until, prior):
+    """One iteration of the optimiser. One compilation serves all stages of a fit."""
+    return SOLVER.step(_objective, unknowns, (problem, weight, until, prior), {}, state, frozenset())
+
+
+@eqx.filter_jit
+def _begin(problem: Problem, unknowns: Unknowns, weight, until, prior):
+    args = (problem, weight, until, prior)
+    f_struct, aux_struct = jax.eval_shape(lambda: _objective(unknowns, args))
+    return SOLVER.init(_objective, unknowns, args, {}, f_struct, aux_struct, frozenset())
+
+
+def _objective(unknowns: Unknowns, args):
+    """Residuals of the records and of the prior, for optimistix."""
+    problem, weight, until, prior = args
+    mean, precision = prior
+    rows, products = condensed(unknowns, problem, weight, until)
+    return (rows, precision * (unknowns.shared - mean), RIDGE * unknowns.own), products
+
+
+class Fit:
+    """One calibration under way: the problem, the unknowns reached so far, and how it reports."""
+
+    def __init__(self, problem: Problem, records: Sequence[Record], unknowns: Unknowns, report) -> None:
+        self.problem, self.records, self.unknowns, self.report = problem, records, unknowns, report
+        space = problem.space
+        mean = jnp.array([p.prior_mean if np.isfinite(p.prior_deviation) else s for p, s in zip(space.free, space.start)])
+        tight = jnp.array([1 / p.prior_deviation if np.isfinite(p.prior_deviation) else 0.0 for p in space.free])
+        self.prior = (mean, jnp.sqrt(tight**2 + RIDGE**2))
+        self.ridge = RIDGE
+        self.iterations, self.history, self.converged = 0, [], True
+        self.ends = jnp.array([record.time[-1] for record in records])
+        self.scored, self.spread = scored(records, problem.data)
+        self.weight, self.samples, self.products = np.ones(self.scored.shape), np.ones(self.scored.shape), None
+
+    def minimise(self, stage: str, weight, until, tolerance: float, fraction: tuple[float, float]) -> bool:
+        """Levenberg-Marquardt from where the fit is, to a relative decrease below `tolerance`."""
+        self.weight = np.asarray(weight)
+        time, present = np.asarray(self.problem.data.time), np.asarray(self.problem.data.present)
+        self.samples = (present * (time <= np.asarray(until)[:, None])[:, None]).sum(axis=-1)
+        weight, until = jnp.asarray(weight), jnp.asarray(until)
+        state = _begin(self.problem, self.unknowns, weight, until, self.prior)
+        last, idle = np.inf, 0
+        for i in range(PATIENCE):
+            self.unknowns, state, _ = _step(self.problem, self.unknowns, state, weight, until, self.prior)
+            self.products = np.asarray(state.aux)
+            self.iterations += 1
+            cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
+            idle = idle + 1 if abs(last - cost) < tolerance * cost else 0
+            last = cost
+            objective = self.objective()
+            self.history.append(objective)
+            self.report(stage, self.iterations, objective, fraction[0] + (fraction[1] - fraction[0]) * min(1.0, i / 15))
+            # a rejected step leaves the cost where it is: two in a row, or small gains, mean that nothing is left
+            if idle >= 2:
+                return True
+        return False
+
+    def mean_squares(self) -> np.ndarray:
+        """Mean square residual by record and channel over the window of the last stage (m2, rad2)."""
+        return self.products[..., -1, -1] / np.maximum(self.samples, 1)
+
+    def objective(self) -> float:
+        """J = sum of RMSE / standard deviation over the scored series."""
+        return float(np.sum(np.where(self.scored, np.sqrt(self.mean_squares()) / self.spread, 0.0)))
+
+
+def scored(records: Sequence[Record], data: Data) -> tuple[np.ndarray, np.ndarray]:
+    """Which record's which channel counts in J, and the standard deviation of every measured series (record, channel)."""
+    counts = np.zeros((len(records), len(data.dofs)), dtype=bool)
+    spread = np.ones((len(records), len(data.dofs)))
+    for i, record in enumerate(records):
+        for j, dof in enumerate(data.dofs):
+            if DOFS[dof] in record.values:
+                spread[i, j] = max(float(np.std(record.values[DOFS[dof]])), 1e-300)
+                counts[i, j] = DOFS[dof] == record.degree_of_freedom
+    return counts, spread
+
+
+def weights(
+    records: Sequence[Record], data: Data, counts: np.ndarray, spreads: np.ndarray, factor: np.ndarray, until=None
+) -> np.ndarray:
+    """What multiplies the squares, by record and channel: with `factor` 1 the sum over records of (RMSE / spread)^2.
+
+    The other channels of a record count on the same footing as its scored one, in metres of the hull (an angle times the
+    radius of gyration): they say how it was released, and are not judged by their own small spread.
+    """
+    time = np.asarray(data.time)
+    until = time[:, -1] if until is None else np.asarray(until)
+    samples = (np.asarray(data.present) * (time <= until[:, None])[:, None]).sum(axis=-1)
+    scale = np.where(counts, spreads, np.asarray(data.unit))
+    return factor[:, None] / (np.maximum(samples, 1) * scale**2)
+
+
+def calibrate(
+    campaign: Campaign,
+    *,
+    free: Sequence[str] | None = None,
+    progress: Callable[[Progress], None] | None = None,
+    start: dict[str, float] | None = None,
+) -> Calibration:
+    """Fit the declared model's coefficients to the decay records marked `fit`, all together.
+
+    What is minimised is the contract's J = sum of RMSE / standard deviation over the records' released degrees of freedom, by
+    least squares with weights renewed from the errors reached (so that the sum of RMSE, not of squares, is stationary). The
+    window grows from a little over one cycle to the whole record, which finds the natural periods before the phase
+    of late cycles matters. Where the fit comes down to the noise everywhere, a last pass weighs every sample by its noise, which is
+    maximum likelihood. Initial position, rate and sensor offset of every record and channel are free.
+
+    `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
+    Raises InputError where there is nothing to fit, Interrupted (a KeyboardInterrupt) with what was reached.
+    """
+    begun = clock.monotonic()
+    source = str(campaign.folder / "campaign.yaml")
+    declared = build(campaign.platform)
+    records = [record for record in campaign.used("fit") if record.kind == "decay"]
+    if not records:
+        found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
+        raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", found)])
+    wish = campaign.manifest.calibrate
+    released = [str(record.degree_of_freedom) for record in records]
+    labels = choose(declared, released, wish.free if free is None else free, wish.fixed, source)
+    if not labels:
+        raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", "none")])
+    declared = declared.with_values(start or {})
+    priors = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
+    space = parameter_space(declared, labels, dict(wish.bounds), priors, source)
+    problem = pose(declared, campaign, records, space)
+    unknowns = Unknowns(space.start, first_guess(records, problem.data))
+
+    def report(stage: str, iteration: int, objective: float, fraction: float) -> None:
+        if progress is not None:
+            progress(Progress(stage, iteration, objective, fraction))
+
+    fit = Fit(problem, records, unknowns, report)
+
+    def finish() -> Calibration:
+        return conclude(campaign, declared, fit, clock.monotonic() - begun)
+
+    try:
+        run(fit)
+    except KeyboardInterrupt:
+        fit.converged = False
+        raise Interrupted(finish() if fit.iterations else None) from None
+    return finish()
+
+
+def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) -> Calibration:
+    """The result of a fit: parameters with their standard deviations, and all decay tests with the fitted model."""
+    space, x = fit.problem.space, fit.unknowns.shared
+    model = space.model(fit.problem.model, x)
+    tests = series_of(fit.problem, fit.records, fit.unknowns)
+    parameters = estimates(fit, tests)
+    held = [record for record in campaign.used("holdout") if record.kind == "decay"]
+    if held:
+        # the coefficients stay; a record's release and its sensors' offsets are its own
+        empty = ParameterSpace(())
+        other = pose(model, campaign, held, empty)
+        judge = Fit(other, held, Unknowns(jnp.zeros(0), first_guess(held, other.data)), lambda *_: None)
+        weight = weights(held, other.data, judge.scored, judge.spread, np.ones(len(held)))
+        judge.minimise("held-out records", weight, judge.ends, 1e-4, (1.0, 1.0))
+        before = pose(declared, campaign, held, empty)
+        tests += series_of(other, held, judge.unknowns, before)
+    return Calibration(
+        campaign.manifest.name,
+        model,
+        parameters,
+        tuple(tests),
+        fit.converged,
+        fit.iterations,
+        seconds,
+        tuple(fit.history),
+        remarks(campaign, parameters),
+    )
+
+
+def pose(model: Model, campaign: Campaign, records: Sequence[Record], space: ParameterSpace) -> Problem:
+    """The fixed part of a calibration of `model` to decay records."""
+    periods = natural_modes(model).period
+    step = float(periods.min()) / STEPS_PER_PERIOD
+    # a model that starts with periods far too long would step too far for the true ones
+    step = min([step, *(dominant_period(record) / STEPS_PER_PERIOD for record in records)])
+    data = gather(records, model, step)
+    moves = any(label.startswith(("mooring.", "stiffness.")) for label in space.labels)
+    return Problem(model, data, space, campaign.manifest.zero is not None, None if moves else equilibrium(model))
+
+
+def run(fit: Fit) -> None:
+    """The stages of a fit."""
+    data, records = fit.problem.data, fit.records
+    period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time[:, 0])
+    length = (np.asarray(fit.ends) - start) / period
+    even, cycles = np.ones(len(records)), CYCLES
+    while cycles < length.max():
+        until = np.minimum(start + cycles * period, np.asarray(fit.ends))
+        weight = weights(records, data, fit.scored, fit.spread, even, until)
+        fit.minimise(f"first {cycles:.3g} cycles", weight, until, 1e-2, (0.0, 0.4))
+        cycles *= GROWTH
+    weight = weights(records, data, fit.scored, fit.spread, even)
+    fit.minimise("whole records", weight, fit.ends, 1e-3, (0.4, 0.6))
+    noise = np.array([[r.noise.get(DOFS[dof], np.inf) for dof in data.dofs] for r in records])
+    measured = np.isfinite(noise) & (np.asarray(data.present).sum(axis=-1) > 0)
+    for _ in range(3):
+        error = np.sqrt(fit.mean_squares())
+        if (error[measured] < 1.2 * noise[measured]).all():
+            weight = np.where(measured, 1 / noise**2, 0.0)
+            fit.converged = fit.minimise("noise level", weight, fit.ends, 1e-7, (0.8, 1.0))
+            return
+        main = np.where(fit.scored, np.maximum(error, noise) / fit.spread, 0).sum(axis=1)
+        renewed = weights(records, data, fit.scored, fit.spread, 1 / main)
+        settled = np.allclose(renewed / renewed.max(), weight / weight.max(), rtol=0.02)
+        weight = renewed
+        fit.converged = fit.minimise("sum of RMSE", weight, fit.ends, 1e-6, (0.6, 0.9))
+        if settled:
+            break

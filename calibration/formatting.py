@@ -1,0 +1,40 @@
+"""Numbers as people read them."""
+
+import math
+
+_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number with so many significant digits, powers of ten where it is large or small; a dash for none."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}·10{_raised(int(exponent))}"
+
+
+def with_deviation(value: float, deviation: float | None) -> str:
+    """A value and its standard deviation, both to the latter's second digit: `1.512 ± 0.013`, `(3.63 ± 0.05)·10⁸`."""
+    if deviation is None or not math.isfinite(deviation) or deviation <= 0:
+        return number(value)
+    size = max(abs(value), deviation)
+    exponent = math.floor(math.log10(size)) if size >= 1e5 or size < 1e-3 else 0
+    value, deviation = value / 10.0**exponent, deviation / 10.0**exponent
+    places = min(max(0, 1 - math.floor(math.log10(deviation))), 9)
+    text = f"{value:.{places}f} ± {deviation:.{places}f}"
+    return f"({text})·10{_raised(exponent)}" if exponent else text
+
+
+def percent(ratio: float | None) -> str:
+    """A ratio in per cent; a dash where there is none, or it is of something that does not move."""
+    if ratio is None or not abs(ratio) < 1e4:
+        return "–"
+    return f"{100 * ratio:.2g} %" if abs(ratio) < 0.995 else f"{100 * ratio:.0f} %"
+
+
+def _raised(exponent: int) -> str:
+    return str(exponent).translate(_RAISED)

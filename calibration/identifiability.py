@@ -1,0 +1,74 @@
+"""How well the records determine each parameter: standard deviations and a verdict, from the Jacobian."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+CLEAR = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
+VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
+
+
+class Spread(NamedTuple):
+    """Covariance of the coordinates of all unknowns: the shared parameters first, then every record's own."""
+
+    covariance: np.ndarray
+    shared: int
+
+    def deviation(self) -> np.ndarray:
+        """Standard deviations of the shared coordinates."""
+        return np.sqrt(np.diag(self.covariance)[: self.shared])
+
+    def correlation(self) -> np.ndarray:
+        """Correlation matrix of the shared coordinates."""
+        d = self.deviation()
+        return self.covariance[: self.shared, : self.shared] / np.outer(d, d)
+
+
+def assemble(products: np.ndarray, shared: int) -> np.ndarray:
+    """Gauss-Newton matrix of all unknowns from the records' own (record, k, k), whose last row and column are the residual."""
+    records, size = products.shape[0], products.shape[1] - 1
+    own = size - shared
+    total = np.zeros((shared + records * own,) * 2)
+    for i, block in enumerate(products[:, :-1, :-1]):
+        mine = slice(shared + i * own, shared + (i + 1) * own)
+        total[:shared, :shared] += block[:shared, :shared]
+        total[:shared, mine] += block[:shared, shared:]
+        total[mine, :shared] += block[shared:, :shared]
+        total[mine, mine] += block[shared:, shared:]
+    return total
+
+
+def memory(residual: np.ndarray) -> float:
+    """Integrated autocorrelation of a residual: how many samples count as one. At least 1.
+
+    Initial positive sequence of paired autocorrelations (Geyer 1992, Statistical Science 7, 473-483, section 3.3).
+    """
+    x = residual - residual.mean()
+    n = len(x)
+    if n < 8 or not np.any(x):
+        return 1.0
+    spectrum = np.abs(np.fft.rfft(x, 2 * n)) ** 2
+    rho = np.fft.irfft(spectrum)[:n]
+    rho = rho / rho[0]
+    pairs = rho[0 : n - n % 2 : 2] + rho[1 : n - n % 2 + 1 : 2]
+    stop = np.argmax(pairs <= 0) if (pairs <= 0).any() else len(pairs)
+    return float(max(1.0, 2 * pairs[:stop].sum() - 1))
+
+
+def spread(
+    products: np.ndarray, weight: np.ndarray, variance: np.ndarray, inflation: np.ndarray, prior: np.ndarray
+) -> Spread:
+    """Covariance of the estimates by the sandwich H^-1 S H^-1 (White 1982, Econometrica 50, 1-25, theorem 3.2).
+
+    `products` (record, channel, k, k) are the [J r]^T [J r], `weight` what multiplied their squares in the fit, `variance`
+    that of the residuals, `inflation` how many of their samples count as one, `prior` the ridge on the shared coordinates and
+    on each own one. The ridge stands for a prior of VAGUE standard deviations, so that what no record touches is reported so.
+    """
+    shared = len(prior) - 1
+    hessian = assemble(np.einsum("rckl,rc->rkl", products, weight), shared)
+    scatter = assemble(np.einsum("rckl,rc->rkl", products, weight**2 * variance * inflation), shared)
+    ridge = np.concatenate([prior[:-1], np.full(len(hessian) - shared, prior[-1])]) ** 2
+    scale = 1 / np.sqrt(np.diag(hessian) + ridge)
+    inverse = np.linalg.pinv((hessian + np.diag(ridge)) * np.outer(scale, scale), rcond=1e-15, hermitian=True)
+    inverse = inverse * np.outer(scale, scale)
+    return Spread(inverse @ (scatter + VAGUE**2 * np.diag(ridge**2)) @ inverse, shared)

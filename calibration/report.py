@@ -1,0 +1,173 @@
+"""One self-contained HTML page of what is in a result folder."""
+
+import base64
+from collections.abc import Iterable
+from html import escape
+from os import PathLike
+from pathlib import Path
+from string import Template
+
+from calibration.formatting import number, percent, with_deviation
+from calibration.outputs import FIGURES, GENERATOR, REPORT, RESULT
+from calibration.saved import Error, Fitted, Parameter, Saved, read_saved
+from jaxhydro.files import write_whole
+from jaxhydro.problems import InputError, Problem
+
+_USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
+_PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def write_report(folder: str | PathLike[str]) -> Path:
+    """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
+    folder = Path(folder)
+    try:
+        there = folder.is_dir() and (folder / RESULT).is_file()
+    except (OSError, ValueError):
+        there = False
+    if not there:
+        found = f"no {RESULT}" if folder.is_dir() else "no such folder"
+        raise InputError(str(folder), [Problem("", "a folder that `jaxhydro calibrate` wrote", found)])
+    saved = read_saved(folder)
+    write_whole(folder / REPORT, page(saved, folder))
+    return folder / REPORT
+
+
+def page(saved: Saved, folder: Path) -> str:
+    """The page's text. Whatever comes from files is escaped; images are part of the page."""
+    fitted = saved.baseline
+    errors = saved.errors(str(folder / RESULT))
+    return _PAGE.substitute(
+        generator=f'{GENERATOR} {escape(saved.jaxhydro)}">',
+        title=escape(saved.campaign),
+        version=escape(saved.jaxhydro),
+        state=_state(fitted),
+        tests=_tests(saved, errors),
+        parameters=_parameters(fitted.parameters),
+        notes=_notes(fitted.notes),
+        figures=_figures(saved, folder),
+    )
+
+
+def _state(fitted: Fitted) -> str:
+    objective = fitted.objective
+    meaning = "Objective J, the sum of RMSE over standard deviation"
+    lines = [f"{meaning}: <b>{number(objective.fit, 3)}</b> over the fitted tests"]
+    if objective.holdout is not None:
+        lines[0] += f", <b>{number(objective.holdout, 3)}</b> over those held out"
+    if fitted.iterations is not None and fitted.seconds is not None:
+        lines.append(f"{fitted.iterations} iterations in {fitted.seconds:.0f} s")
+    warning = "" if fitted.converged else (
+        '<p class="warning">The fit did not converge: what follows is where it stopped, not a calibration.</p>'
+    )
+    return f"{warning}<p>{'; '.join(lines)}.</p>"
+
+
+def _tests(saved: Saved, errors: dict[str, dict[str, Error]]) -> str:
+    rows = []
+    for id, channels in errors.items():
+        about, use = saved.tests.get(id), str(saved.baseline.error[id].get("use", ""))
+        kind = " in ".join(filter(None, (about.kind, about.degree_of_freedom))) if about else ""
+        length = f"{number(about.duration, 3)} s" if about and about.duration is not None else ""
+        named = sorted(channels.items(), key=lambda item: not item[1].in_objective)
+        for i, (name, error) in enumerate(named or [("", None)]):
+            first = [id, kind, length, _USE.get(use, use)] if i == 0 else [""] * 4
+            cells = [*first, name, *_error(error)]
+            muted = ' class="muted"' if error is not None and not error.in_objective else ""
+            rows.append(f"<tr{muted}>{_cells(cells, 5)}</tr>")
+    heads = ["Test", "Kind", "Length", "Use", "Channel", "RMSE", "of its motion", "before"]
+    return _table(heads, rows, 5)
+
+
+def _error(error: Error | None) -> list[str]:
+    if error is None:
+        return ["not finite", "", ""]
+    before = percent(error.before.relative) if error.before is not None else "–"
+    return [f"{number(error.rmse, 2)} {error.unit}", percent(error.relative), before]
+
+
+def _parameters(parameters: dict[str, Parameter]) -> str:
+    rows = []
+    for label, one in parameters.items():
+        value = with_deviation(one.value, one.standard_deviation) if one.identifiable else "not identifiable"
+        flag = "at its bound" if one.at_bound else ""
+        cells = [label, one.meaning, number(one.start, 3), value, one.unit, flag]
+        rows.append(f"<tr{'' if one.identifiable else ' class=muted'}>{_cells(cells, 2, 4)}</tr>")
+    return _table(["Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit", ""], rows, 2, 4)
+
+
+def _notes(notes: list[str]) -> str:
+    if not notes:
+        return ""
+    return f"<h2>Notes</h2><ul>{''.join(f'<li>{escape(note)}</li>' for note in notes)}</ul>"
+
+
+def _figures(saved: Saved, folder: Path) -> str:
+    """Figures in their stated order, then others that are there; only PNG files of the folder itself are taken."""
+    there = {path.name: path for path in sorted((folder / FIGURES).glob("*.png")) if path.is_file()}
+    captions = {Path(figure.file).name: figure.caption for figure in saved.figures}
+    names = [name for name in captions if name in there] + [name for name in there if name not in captions]
+    parts = []
+    for name in names:
+        content = there[name].read_bytes()
+        if content.startswith(_PNG):
+            data = base64.b64encode(content).decode("ascii")
+            caption = escape(captions.get(name) or name)
+            parts.append(f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}'
+                         "</figcaption></figure>")  # fmt: skip
+    return f"<h2>Figures</h2><div class=figures>{''.join(parts)}</div>" if parts else ""
+
+
+def _table(heads: list[str], rows: Iterable[str], first: int, last: int = 99) -> str:
+    head = "".join(f"<th{_right(i, first, last)}>{escape(name)}</th>" for i, name in enumerate(heads))
+    return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
+
+
+def _cells(cells: list[str], first: int, last: int = 99) -> str:
+    return "".join(f"<td{_right(i, first, last)}>{escape(cell)}</td>" for i, cell in enumerate(cells))
+
+
+def _right(i: int, first: int, last: int) -> str:
+    return " class=number" if first <= i < last else ""
+
+
+_PAGE = Template("""\
+<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+$generator
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>$title</title>
+<style>
+body { font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; color: #22262c; background: #fff;
+  max-width: 62rem; margin: 2rem auto; padding: 0 1.2rem; }
+h1 { font-size: 1.5rem; margin: 0 0 .2rem; } h2 { font-size: 1.1rem; margin: 2rem 0 .5rem; }
+.by, .muted td, figcaption { color: #6a717b; }
+.by { margin: 0 0 1.2rem; }
+.warning { background: #fbe9e7; border-left: 4px solid #d1495b; padding: .6rem .9rem; font-weight: 600; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .92rem; }
+th, td { text-align: left; padding: .2rem .9rem .2rem 0; border-bottom: 1px solid #e4e6ea; vertical-align: top; }
+th { border-bottom: 1px solid #9aa1ab; font-weight: 600; }
+.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
+td:first-child { white-space: nowrap; }
+.figures { columns: 2; column-gap: 2rem; }
+figure { margin: 0 0 1.6rem; break-inside: avoid; } img { width: 100%; height: auto; }
+figcaption { font-size: .85rem; line-height: 1.35; }
+@media (max-width: 45rem) { .figures { columns: 1; } }
+@media print { body { margin: 0; max-width: none; font-size: 10pt; } }
+</style>
+</head>
+<body>
+<h1>$title</h1>
+<p class="by">Calibration by jaxhydro $version</p>
+$state
+<h2>Tests</h2>
+$tests
+<h2>Parameters</h2>
+$parameters
+$notes
+$figures
+</body>
+</html>
+""")

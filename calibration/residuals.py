@@ -1,0 +1,196 @@
+"""Decay records against the model: residuals, their Jacobian, and what of both least squares needs.
+
+A record's residual is model less measured at the recorded times, channel by channel. Its unknowns are the model's parameters,
+shared by all records, and its own: initial position, initial rate and sensor offset of every measured channel. Least squares
+only needs the products J^T J, J^T r and r^T r, so a record of thousands of samples becomes one small matrix per channel,
+and the optimiser sees its square root: as many rows as there are unknowns and one.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from calibration.parameters import ParameterSpace
+from calibration.records import Record
+from jaxhydro.environment import DOFS
+from jaxhydro.integrate import integrate
+from jaxhydro.model import Model, State
+from jaxhydro.statics import equilibrium
+from jaxhydro.waves.sea import StillWater
+
+
+class Data(eqx.Module):
+    """Decay records in arrays of one shape: record first, then channel or sample. SI."""
+
+    time: Float[Array, "r t"]  # s; beyond the last sample the last one again
+    measured: Float[Array, "r c t"]
+    present: Float[Array, "r c t"]  # 1 where there is a sample, 0 where not
+    step: Float[Array, " r"]
+    count: Int[Array, " r"]  # steps
+    unit: Float[Array, "r c"]  # m, rad: what a coordinate of 1 stands for in position and offset
+    pace: Float[Array, " r"]  # rad/s: ... times this in rate
+    capacity: int = eqx.field(static=True)
+    dofs: tuple[int, ...] = eqx.field(static=True)
+
+
+class Unknowns(NamedTuple):
+    """Coordinates of everything that is fitted: shared parameters, and position, rate and offset by record and channel."""
+
+    shared: Float[Array, " p"]
+    own: Float[Array, "r 3*c"]
+
+
+def characteristic_length(model: Model) -> float:
+    """Length (m) that makes an angle comparable to a displacement: the radius of gyration in roll and pitch."""
+    inertia = np.asarray(model.body.inertia_at_reference())
+    return float(np.sqrt(0.5 * (inertia[0, 0] + inertia[1, 1]) / float(model.body.mass)))
+
+
+def gather(records: Sequence[Record], model: Model, step: float) -> Data:
+    """Records as arrays. `step` (s) is the largest time step."""
+    channels = [dof for dof in DOFS if any(dof in record.values for record in records)]
+    longest = max(len(record.time) for record in records)
+    shape = (len(records), len(channels), longest)
+    measured, present, time = np.zeros(shape), np.zeros(shape), np.zeros((shape[0], longest))
+    count, size, unit, pace = [], [], np.ones(shape[:2]), []
+    length = characteristic_length(model)
+    for i, record in enumerate(records):
+        n = len(record.time)
+        time[i] = np.pad(record.time, (0, longest - n), mode="edge")
+        for j, channel in enumerate(channels):
+            if channel in record.values:
+                measured[i, j, :n], present[i, j, :n] = record.values[channel], 1.0
+        duration = record.time[-1] - record.time[0]
+        count.append(int(np.ceil(duration / step)))
+        size.append(duration / count[-1])
+        main = record.degree_of_freedom or channels[0]
+        spread = float(np.std(record.values[main]))
+        metres = spread * length if DOFS.index(main) > 2 else spread
+        unit[i] = [metres / length if DOFS.index(channel) > 2 else metres for channel in channels]
+        pace.append(2 * np.pi / max(dominant_period(record), 4 * step))
+    capacity = int(np.ceil(max(count) / 50) * 50)
+    arrays = (time, measured, present, size, count, unit, pace)
+    return Data(*map(jnp.asarray, arrays), capacity, tuple(DOFS.index(channel) for channel in channels))
+
+
+def dominant_period(record: Record) -> float:
+    """Period (s) of a decay's own oscillation, from the crossings of its mean level."""
+    motion = record.values[record.degree_of_freedom or next(iter(record.values))]
+    tail = motion[len(motion) // 2 :]
+    level = motion - tail.mean()
+    quiet = 0.05 * np.abs(level).max()
+    sign = np.sign(np.where(np.abs(level) > quiet, level, 0.0))
+    clear = np.flatnonzero(sign)
+    flips = clear[1:][np.diff(sign[clear]) != 0]
+    if len(flips) < 2:
+        return float(record.time[-1] - record.time[0])
+    return float(2 * np.diff(record.time[flips]).mean())
+
+
+def first_guess(records: Sequence[Record], data: Data) -> Float[Array, "r 3*c"]:
+    """Position and rate at every record's start, from a quadratic through its first eighth of a period; no offset."""
+    own = np.zeros((len(records), 3, len(data.dofs)))
+    for i, record in enumerate(records):
+        early = record.time - record.time[0] <= 0.125 * 2 * np.pi / float(data.pace[i])
+        early[: min(8, len(early))] = True
+        t = record.time[early] - record.time[0]
+        for j, dof in enumerate(data.dofs):
+            values = record.values.get(DOFS[dof])
+            if values is None:
+                continue
+            _, rate, position = np.polyfit(t, values[early], 2)
+            own[i, 0, j] = position / float(data.unit[i, j])
+            own[i, 1, j] = rate / float(data.unit[i, j] * data.pace[i])
+    return jnp.asarray(own.reshape(len(records), -1))
+
+
+class Problem(eqx.Module):
+    """A calibration's fixed part: the model that starts, its free parameters, and the records.
+
+    `from_rest`: measured motion counts from the static equilibrium, otherwise from the reference position.
+    """
+
+    model: Model
+    data: Data
+    space: ParameterSpace = eqx.field(static=True)
+    from_rest: bool = eqx.field(static=True)
+    rest: Float[Array, "6"] | None  # None where free parameters move the equilibrium
+
+    def motion(self, x: Float[Array, " p"], own: Float[Array, " o"], record: Data) -> Float[Array, "c t"]:
+        """What the sensors of one record should have read: the model's motion, and the sensors' offset."""
+        model = self.space.model(self.model, x)
+        rest = equilibrium(model) if self.rest is None else self.rest
+        position, rate, offset = own.reshape(3, -1) * record.unit
+        dofs = jnp.array(record.dofs)
+        base = rest if self.from_rest else jnp.zeros(6)
+        # what is not measured starts at rest
+        q = rest.at[dofs].set(base[dofs] + position)
+        rates = jnp.zeros(6).at[dofs].set(rate * record.pace)
+        state = State(q, model.body_velocity(q, rates), model.rest().memory)
+        grid = integrate(
+            model, StillWater(), state, record.time[0], record.step, record.capacity, count=record.count
+        )
+        return (grid.at(record.time, record.dofs)[0] - base[dofs] + offset).T
+
+    def products(
+        self, unknowns: Unknowns, until: Float[Array, " r"]
+    ) -> Float[Array, "r c k k"]:
+        """For every record and channel [J r]^T [J r] over the samples up to `until` (s), k the unknowns and one."""
+
+        def of_record(inputs):
+            own, record, until = inputs
+            both = jnp.concatenate([unknowns.shared, own])
+            split = len(unknowns.shared)
+
+            # no further than the window
+            needed = jnp.ceil((until - record.time[0]) / record.step - 1e-9).astype(int)
+            record = eqx.tree_at(lambda d: d.count, record, jnp.minimum(record.count, jnp.maximum(needed, 1)))
+
+            def residual(z):
+                r = (self.motion(z[:split], z[split:], record) - record.measured) * (record.time <= until)
+                r = r * record.present
+                return r, r
+
+            slope, r = jax.jacfwd(residual, has_aux=True)(both)
+            full = jnp.concatenate([slope, r[..., None]], axis=-1)
+            return jnp.einsum("ctk,ctl->ckl", full, full)
+
+        return jax.lax.map(of_record, (unknowns.own, self.data, until))
+
+
+def square_root(products: Float[Array, "... k k"]) -> Float[Array, "... k k"]:
+    """The symmetric square root of a positive semi-definite matrix: unique, and continuous where a Cholesky factor is not."""
+    values, vectors = jnp.linalg.eigh(products)
+    return (vectors * jnp.sqrt(jnp.maximum(values, 0.0))[..., None, :]) @ jnp.swapaxes(vectors, -1, -2)
+
+
+@jax.custom_jvp
+def condensed(
+    unknowns: Unknowns, problem: Problem, weight: Float[Array, "r c"], until: Float[Array, " r"]
+) -> tuple[Float[Array, "r k"], Float[Array, "r c k k"]]:
+    """A residual vector with the norm, the gradient and the Gauss-Newton matrix of the weighted residuals of all records.
+
+    `weight` multiplies the squares. It is the last column of the square root of sum_c w_c [J r]^T [J r], record by record,
+    and its Jacobian the other columns. Also returns the [J r]^T [J r], which are not differentiated.
+    """
+    roots, products = _roots(unknowns, problem, weight, until)
+    return roots[..., -1], products
+
+
+def _roots(unknowns, problem, weight, until):
+    products = problem.products(unknowns, until)
+    return square_root(jnp.einsum("rckl,rc->rkl", products, weight)), products
+
+
+@condensed.defjvp
+def _condensed_jvp(primals, tangents):
+    roots, products = _roots(*primals)
+    d_shared, d_own = tangents[0]
+    p = d_shared.shape[0]
+    d = roots[..., :p] @ d_shared + jnp.einsum("rkl,rl->rk", roots[..., p:-1], d_own)
+    return (roots[..., -1], products), (d, jnp.zeros_like(products))

@@ -1,0 +1,123 @@
+"""A written calibration.json, read back and checked."""
+
+import json
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from calibration.outputs import RESULT
+from jaxhydro.problems import InputError, Number, Problem, validate
+
+
+class _Open(BaseModel):
+    """Keys that are not known are taken and left alone: results may grow."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class Parameter(_Open):
+    """One calibrated parameter."""
+
+    value: Number
+    unit: str
+    standard_deviation: Number | None = None
+    at_bound: bool = False
+    identifiable: bool = True
+    start: Number | None = None
+    meaning: str = ""
+
+
+class Error(_Open):
+    """RMSE of one channel, in m or deg, and over the standard deviation of what was measured."""
+
+    rmse: Number
+    unit: str
+    relative: Number
+    in_objective: bool = True
+    before: "Error | None" = None
+
+
+class Objective(_Open):
+    """J over the fitted and over the held-out tests."""
+
+    fit: Number
+    holdout: Number | None = None
+
+
+class Fitted(_Open):
+    """A model as it was calibrated. `error` has `use`, and channels, by test."""
+
+    parameters: dict[str, Parameter]
+    error: dict[str, dict[str, Any]]
+    objective: Objective
+    converged: bool
+    iterations: int | None = None
+    seconds: Number | None = None
+    notes: list[str] = Field(default_factory=list)
+
+
+class About(_Open):
+    """What a test was."""
+
+    use: str = ""
+    kind: str = ""
+    degree_of_freedom: str | None = None
+    file: str = ""
+    duration: Number | None = None
+    samples: int | None = None
+
+
+class Drawn(_Open):
+    """A figure, its file below the folder, and its caption."""
+
+    file: str
+    caption: str = ""
+
+
+class Saved(_Open):
+    """calibration.json."""
+
+    campaign: str
+    jaxhydro: str
+    baseline: Fitted
+    tests: dict[str, About] = Field(default_factory=dict)
+    figures: list[Drawn] = Field(default_factory=list)
+
+    def errors(self, source: str) -> dict[str, dict[str, Error]]:
+        """Test -> channel -> error. Raises InputError for what is none."""
+        return {
+            id: {name: validate(Error, value, f"{source}: baseline.error.{id}.{name}")
+                 for name, value in row.items() if name not in ("use", "bands")}
+            for id, row in self.baseline.error.items()
+        }  # fmt: skip
+
+
+def read_saved(path: str | PathLike[str]) -> Saved:
+    """The result in a calibration.json, or in the folder that has one. Raises InputError with all that is wrong."""
+    path = Path(path)
+    try:
+        path = path / RESULT if path.is_dir() else path
+        data = json.loads(path.read_bytes().decode("utf-8-sig"))
+    except FileNotFoundError:
+        raise _wrong(path, f"a {RESULT}, as `jaxhydro calibrate` writes it", "no such file") from None
+    except (json.JSONDecodeError, RecursionError) as error:
+        place = f"line {error.lineno}, column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
+        raise _wrong(path, "valid JSON", getattr(error, "msg", "lists nested too deeply"), place) from None
+    except UnicodeDecodeError:
+        raise _wrong(path, "text in UTF-8", "other bytes") from None
+    except (OSError, ValueError) as error:
+        raise _wrong(path, f"a {RESULT} that can be read", str(getattr(error, "strerror", None) or error)) from None
+    if not isinstance(data, dict):
+        raise _wrong(path, "a mapping of keys to values", type(data).__name__)
+    return validate(Saved, data, str(path))
+
+
+def read_values(path: str | PathLike[str]) -> dict[str, float]:
+    """The calibrated values in a calibration.json, by label. Raises InputError."""
+    return {label: one.value for label, one in read_saved(path).baseline.parameters.items()}
+
+
+def _wrong(path: Path, expected: str, found: str, where: str = "") -> InputError:
+    return InputError(str(path), [Problem(where, expected, found)])

@@ -1,0 +1,102 @@
+"""The simulate command: from options to files and tables."""
+
+import math
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+
+import jaxhydro
+from jaxhydro.console import complain, say, table
+from jaxhydro.environment import DOFS
+from jaxhydro.export import Motion, write_motion
+from jaxhydro.loads import Buoyancy
+from jaxhydro.model import Model
+from jaxhydro.platform import build
+from jaxhydro.platform_schema import load_platform
+from jaxhydro.plot import for_people, unit_of
+from jaxhydro.problems import InputError, Problem
+from jaxhydro.simulate import default_step, free_decay
+from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.waves.sea import AirySea, regular_wave
+
+GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
+STEPS_PER_WAVE = 32
+
+
+def run(
+    model: Model, platform: str, out: Path, duration: float, dt: float, offset: dict[str, float],
+    wave: tuple[float, float] | None, heading: float, step: float | None,
+) -> bool:  # fmt: skip
+    """Simulate, write and print; False where the motion grows beyond all bounds. `offset` in m, rad, `heading` in deg.
+
+    Raises InputError for a wave that cannot be, EquilibriumError where the platform does not rest.
+    """
+    sea, ramp = None, 0.0
+    if wave is not None:
+        ramp = min(GROWTH * wave[1], 0.25 * duration)
+        sea = _sea(model, wave, heading, ramp)
+        step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
+    _print_rest(model, platform)
+    times = dt * np.arange(math.floor(duration / dt * (1 + 1e-12)) + 1)
+    response = free_decay(model, offset, times, sea=sea, step=step)
+    position = np.asarray(response.position)
+    if not np.isfinite(position).all():
+        first = times[np.argmin(np.isfinite(position).all(axis=1))]
+        complain(f"the motion grows beyond all bounds at {first:.4g} s; nothing was written. Try a smaller --step.")
+        return False
+    elevation = None if sea is None else np.asarray(sea.elevation(jnp.asarray(times)))
+    motion = Motion.of(times, position, elevation)
+    write_motion(motion, out, platform, f"jaxhydro {jaxhydro.__version__}")
+    _print_motion(motion, wave, ramp)
+    say(f"Results are in {out}")
+    return True
+
+
+def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float) -> AirySea:
+    try:
+        return regular_wave(*wave, model.environment, heading=math.radians(heading), ramp=ramp)
+    except ValueError as error:
+        expected = "a wave that does not break"
+        raise InputError("--wave-height", [Problem("", expected, f"one too steep ({error})")]) from None
+
+
+def _print_rest(model: Model, platform: str) -> None:
+    rest, modes = np.asarray(equilibrium(model)), natural_modes(model)
+    rest = rest.round(8) + 0.0  # no -0.0000
+    rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q)):.4f}") for dof, q in zip(DOFS, rest)]
+    table(f"{platform}: at rest", ("Motion", "Position"), rows)
+    rows = []
+    for period, shape in zip(modes.period, modes.shape):
+        shares = sorted(((abs(share), dof) for share, dof in zip(shape, DOFS) if abs(share) > 0.2), reverse=True)
+        rows.append((" and ".join(dof for _, dof in shares), f"{period:.2f} s"))
+    table("Natural periods, undamped", ("Mode", "Period"), rows)
+
+
+def _print_motion(motion: Motion, wave: tuple[float, float] | None, ramp: float) -> None:
+    values = motion.values
+    heads = ["Motion", "Mean", "Standard deviation", "Least", "Largest"]
+    columns = [values.mean(axis=0), values.std(axis=0), values.min(axis=0), values.max(axis=0)]
+    if wave is not None:
+        heads += [f"Amplitude at {wave[1]:g} s", "per m of wave amplitude"]
+        amplitude = motion.amplitude(wave[1])
+        columns += [amplitude, amplitude / (0.5 * wave[0])]
+        say(f"Waves grow over the first {ramp:g} s; amplitudes are those of the last half")
+    rows = []
+    for i, dof in enumerate(DOFS):
+        numbers = (f"{column[i]:.4g}" if abs(column[i]) > 1e-9 else "0" for column in columns)
+        rows.append((f"{dof} ({unit_of(dof)})", *numbers))
+    table("Motion", heads, rows)
+
+
+def particulars(name: str) -> tuple[str, ...]:
+    """A built-in platform: name, title, mass (t), displaced volume (m3), natural periods of surge, heave, pitch (s)."""
+    platform = load_platform(name)
+    model = build(platform)
+    load = next(load for load in model.loads if isinstance(load, Buoyancy))
+    volume = platform.hydrostatics.displaced_volume
+    if volume is None:
+        volume = float(load.geometry(jnp.zeros(()), jnp.array([0.0, 0.0, 1.0]))[0].sum())
+    modes = natural_modes(model)
+    periods = (modes.of(dof) for dof in ("surge", "heave", "pitch"))
+    return name, platform.name, f"{float(model.body.mass) / 1e3:.0f}", f"{volume:.0f}", *(f"{p:.1f}" for p in periods)

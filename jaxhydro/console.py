@@ -1,0 +1,75 @@
+"""What the command line prints: tables, messages, progress. Text that comes from files is never read as markup."""
+
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
+from rich.text import Text
+
+WIDTH = 120  # where there is no terminal to ask
+
+
+def console(stderr: bool = False) -> Console:
+    """The console of standard output or standard error."""
+    terminal = (sys.stderr if stderr else sys.stdout).isatty()
+    return Console(stderr=stderr, width=None if terminal else WIDTH, highlight=False)
+
+
+def say(message: str, style: str = "", stderr: bool = False) -> None:
+    """Print text as it is, unwrapped where it goes to a file."""
+    console(stderr).print(Text(message, style=style), soft_wrap=True)
+
+
+def complain(message: str) -> None:
+    """Print what is wrong, on standard error."""
+    console(stderr=True).print(Text.assemble(("jaxhydro: ", "bold red"), message), soft_wrap=True)
+
+
+def table(title: str, heads: Iterable[str], rows: Iterable[Iterable[str]], left: int = 1, stderr: bool = False) -> None:
+    """Print a table; columns from the `left`-th on are numbers."""
+    drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for i, head in enumerate(heads):
+        drawn.add_column(Text(head), justify="left" if i < left else "right", overflow="fold")
+    for row in rows:
+        drawn.add_row(*(Text(cell) for cell in row))
+    say(f"\n{title}", "bold", stderr)
+    console(stderr).print(drawn)
+
+
+@contextmanager
+def progress() -> Iterator[Callable[[Any], None]]:
+    """A line on standard error with the progress of a calibration: stage, iteration, objective, time gone and left.
+
+    Without a terminal it is one line per stage.
+    """
+    shown = console(stderr=True)
+    if not shown.is_terminal:
+        stages: list[str] = []
+
+        def note(now: Any) -> None:
+            if now.stage not in stages:
+                stages.append(now.stage)
+                shown.print(Text(f"{now.stage}: iteration {now.iteration}, J = {now.objective:.4g}"), soft_wrap=True)
+
+        yield note
+        return
+    columns = (
+        TextColumn("{task.description}"), BarColumn(bar_width=24), TextColumn("{task.fields[state]}"),
+        TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
+    )  # fmt: skip
+    with Progress(*columns, console=shown, transient=True) as bar:
+        task = bar.add_task("preparing", total=1.0, state="")
+        furthest = 0.0
+
+        def update(now: Any) -> None:
+            nonlocal furthest
+            furthest = max(furthest, now.fraction)
+            state = f"iteration {now.iteration}, J = {now.objective:.4g}"
+            bar.update(task, description=str(now.stage), completed=furthest, state=state)
+
+        yield update

@@ -1,0 +1,114 @@
+"""Result folders: a set of files that appears whole or not at all."""
+
+import os
+import re
+import secrets
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from jaxhydro.problems import InputError, Problem
+
+
+def check_folder(folder: str | os.PathLike[str], option: str = "--out") -> Path:
+    """The folder as a path, once it is sure that results can be written there; nothing is left behind.
+
+    Raises InputError that names `option` where it is a file, or cannot be made or written.
+    """
+    folder = Path(folder)
+    try:
+        if os.path.lexists(folder) and not folder.is_dir():
+            raise InputError(option, [Problem("", "a folder", f"{str(folder)!r}, which is a file")])
+        trial = _beside(folder)
+        trial.mkdir()
+        # a name that the file system does not take shows here, before the work
+        made = trial / (folder.resolve().name or "x")
+        made.mkdir()
+        made.rmdir()
+        trial.rmdir()
+    except (OSError, ValueError) as error:
+        raise _unwritable(folder, error, option) from None
+    return folder
+
+
+@contextmanager
+def staged(folder: Path, obsolete: Callable[[Path], Iterable[str]] | None = None) -> Iterator[Path]:
+    """A temporary folder whose files are moved into `folder` when the block ends well; else `folder` stays as it is.
+
+    Files of the same names are replaced, and those that `obsolete(temporary)` names are taken away; all others stay.
+    Raises InputError where the files cannot be moved into place.
+    """
+    try:
+        temporary = _beside(folder)
+        temporary.mkdir()
+    except OSError as error:
+        raise _unwritable(folder, error) from None
+    try:
+        yield temporary
+        stale = list(obsolete(temporary)) if obsolete else []
+        try:
+            _place(temporary, folder, stale)
+        except OSError as error:
+            raise _unwritable(folder, error) from None
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a text file (UTF-8), whole or not at all. Raises InputError where that cannot be."""
+    with staged(path.parent) as temporary:
+        (temporary / path.name).write_text(text, encoding="utf-8")
+
+
+def safe_name(name: str) -> str:
+    """A name that is not ours, as part of a file's name."""
+    return re.sub(r"[^\w+=., ()@-]", "_", name)[:100] or "_"
+
+
+def _beside(folder: Path) -> Path:
+    """A new name on the file system that `folder` is on: inside it where it is there, else in its nearest ancestor."""
+    place = folder.absolute()
+    while not place.exists():
+        place = place.parent
+    if not place.is_dir():
+        raise NotADirectoryError(20, f"{str(place)!r} is a file")
+    return place / f".jaxhydro-{secrets.token_hex(6)}"
+
+
+def _place(temporary: Path, folder: Path, stale: list[str]) -> None:
+    if not folder.exists():
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        os.rename(temporary, folder)
+        return
+    new = [path.relative_to(temporary) for path in sorted(temporary.rglob("*")) if path.is_file()]
+    for name in new:
+        if (folder / name).is_dir():
+            raise IsADirectoryError(21, f"{name} is a folder there")
+    old = _beside(folder)
+    old.mkdir()
+    undo: list[tuple[Path, Path]] = []
+
+    def move(source: Path, target: Path) -> None:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(source, target)
+        undo.append((target, source))
+
+    try:
+        for name in (*new, *(Path(name) for name in stale if Path(name) not in new)):
+            if os.path.lexists(folder / name):
+                move(folder / name, old / name)
+            if name in new:
+                move(temporary / name, folder / name)
+    except BaseException:
+        for target, source in reversed(undo):
+            os.replace(target, source)
+        raise
+    finally:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+def _unwritable(folder: Path, error: Exception, option: str = "") -> InputError:
+    said = str(getattr(error, "strerror", None) or error)
+    found = f"{str(folder)!r}, which cannot be ({said})"
+    return InputError(option or "results", [Problem("", "a folder that can be written", found)])

@@ -1,0 +1,153 @@
+"""Explicit Runge-Kutta schemes at fixed steps as loops of our own, differentiable forward and reverse.
+
+diffrax has the same schemes. These loops are kept because they are faster for what this package does most: see the bench.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import diffrax
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+BLOCK = 64  # steps per checkpointed block of a reverse gradient
+BATCH = 32  # stages linearised together: fills the vector units and stays in the cache
+
+Rate = Callable[[Any, Float[Array, ""], Float[Array, " s"]], Float[Array, " s"]]
+
+
+class Scheme(NamedTuple):
+    """A Butcher tableau: nodes, weights, and the strictly lower triangular coefficients row by row."""
+
+    nodes: tuple[float, ...]
+    weights: tuple[float, ...]
+    rows: tuple[tuple[float, ...], ...]
+
+    def coefficients(self) -> Float[np.ndarray, "k k"]:
+        size = len(self.nodes)
+        return np.array([np.pad(row, (0, size - len(row))) for row in self.rows])
+
+
+def _of_diffrax(tableau: diffrax.ButcherTableau) -> Scheme:
+    """A tableau of diffrax without its last stage, which is the first of the next step and weighs nothing."""
+    rows = ((), *(tuple(map(float, row)) for row in tableau.a_lower[:-1]))
+    return Scheme((0.0, *map(float, tableau.c[:-1])), tuple(map(float, tableau.b_sol[:-1])), rows)
+
+
+SCHEMES = {
+    "rk4": Scheme((0.0, 0.5, 0.5, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6), ((), (0.5,), (0.0, 0.5), (0.0, 0.0, 1.0))),
+    # Tsitouras 2011, Computers and Mathematics with Applications 62, 770-775
+    "tsit5": _of_diffrax(diffrax.Tsit5.tableau),
+}
+
+
+def _step(driver, y, time, step, rate: Rate, scheme: Scheme):
+    """One step: the state after it, and the states at its stages."""
+    size = len(scheme.nodes)
+
+    # one traced copy of the equation of motion for all stages: a fraction of the compilation
+    def stage(slopes, row):
+        index, node, coefficients = row
+        at = y + step * (coefficients @ slopes)
+        return slopes.at[index].set(rate(driver, time + node * step, at)), at
+
+    rows = (jnp.arange(size), jnp.array(scheme.nodes), jnp.asarray(scheme.coefficients()))
+    slopes, stages = jax.lax.scan(stage, jnp.zeros((size, y.shape[0])), rows)
+    return y + step * (jnp.array(scheme.weights) @ slopes), stages
+
+
+def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: int):
+    """States at the ends of `count` steps and at the stages of each, in arrays for `capacity` steps."""
+
+    def advance(index, carry):
+        y, path, stages = carry
+        after, at = _step(driver, y, start + step * index, step, rate, scheme)
+        return after, path.at[index].set(y), stages.at[index].set(at)
+
+    shape = (capacity + 1, len(scheme.nodes), y.shape[0])
+    carry = (y, jnp.zeros((capacity + 1, y.shape[0])), jnp.zeros(shape))
+    _, path, stages = jax.lax.fori_loop(0, count + 1, advance, carry)
+    return path, stages
+
+
+@eqx.filter_custom_jvp
+def forward(
+    driver: Any,
+    y: Float[Array, " s"],
+    start: Float[Array, ""],
+    step: Float[Array, ""],
+    count: Int[Array, ""],
+    *,
+    rate: Rate,
+    scheme: Scheme,
+    capacity: int,
+) -> Float[Array, "n s"]:
+    """States after 0, 1 ... `count` steps of dy/dt = rate(driver, t, y), in an array for `capacity` steps.
+
+    Has forward derivatives with respect to `driver` and `y`, not to times.
+    """
+    return _march(driver, y, start, step, count, rate, scheme, capacity)[0]
+
+
+@forward.def_jvp
+def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int):
+    """Tangents of a whole simulation from linearisations at every stage, worked out for many stages at once.
+
+    Once the path is known its linearisations do not depend on each other; what is left in sequence is one product of a
+    small matrix per step. The state's part is common to all parameters, so that initial states cost nothing more.
+    """
+    driver, y, start, step, count = primals
+    d_driver, d_y, *_ = tangents
+    path, stages = _march(driver, y, start, step, count, rate, scheme, capacity)
+    nodes, size = jnp.array(scheme.nodes), len(scheme.nodes)
+    total = size * (capacity + 1)
+    points = -(-total // BATCH) * BATCH
+    times = jnp.pad((start + step * (jnp.arange(capacity + 1.0)[:, None] + nodes)).reshape(-1), (0, points - total))
+    states = jnp.pad(stages.reshape(total, -1), ((0, points - total), (0, 0)))
+    blocks = (size * (count + 1) + BATCH - 1) // BATCH
+
+    def over(function):
+        """`function` of time and state at every stage that was taken."""
+
+        def block(index, out):
+            at = index * BATCH
+            part = (jax.lax.dynamic_slice_in_dim(times, at, BATCH), jax.lax.dynamic_slice_in_dim(states, at, BATCH))
+            return jax.lax.dynamic_update_slice_in_dim(out, jax.vmap(function)(*part), at, 0)
+
+        shape = jax.eval_shape(function, times[0], states[0]).shape
+        out = jax.lax.fori_loop(0, blocks, block, jnp.zeros((points, *shape)))
+        return out[:total].reshape(capacity + 1, size, *shape)
+
+    slope = over(lambda time, at: jax.jacfwd(lambda at: rate(driver, time, at))(at))
+    if jax.tree.leaves(d_driver):
+        push = over(lambda time, at: eqx.filter_jvp(lambda d: rate(d, time, at), (driver,), (d_driver,))[1])
+    else:
+        push = jnp.zeros(stages.shape)
+    # the scheme applied to the linearised equation: d_y after a step = transfer d_y + drive
+    eye, table = jnp.eye(y.shape[0]), scheme.coefficients()
+    matrices, vectors = [], []
+    for i in range(size):
+        matrix = eye + step * sum((table[i, j] * matrices[j] for j in range(i)), jnp.zeros_like(slope[:, 0]))
+        vector = step * sum((table[i, j] * vectors[j] for j in range(i)), jnp.zeros_like(push[:, 0]))
+        matrices.append(slope[:, i] @ matrix)
+        vectors.append(push[:, i] + jnp.einsum("nij,nj->ni", slope[:, i], vector))
+    transfer = eye + step * sum(b * m for b, m in zip(scheme.weights, matrices, strict=True))
+    drive = step * sum(b * v for b, v in zip(scheme.weights, vectors, strict=True))
+    d_y = jnp.zeros_like(y) if d_y is None else d_y
+    _, d_path = jax.lax.scan(lambda d, now: (now[0] @ d + now[1], d), d_y, (transfer, drive))
+    return path, d_path
+
+
+def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int) -> Float[Array, "n s"]:
+    """The same path, all of it, for a reverse gradient: states at the beginning of blocks are kept, the rest recomputed."""
+
+    def advance(y, index):
+        return _step(driver, y, start + step * index, step, rate, scheme)[0], y
+
+    blocks = -(-(capacity + 1) // BLOCK)
+    index = jnp.arange(blocks * BLOCK, dtype=float).reshape(blocks, BLOCK)
+    _, saved = jax.lax.scan(jax.checkpoint(lambda y, index: jax.lax.scan(advance, y, index)), y, index)
+    return saved.reshape(-1, y.shape[0])[: capacity + 1]
