@@ -186,7 +186,9 @@ class ReferenceModel:
         total = np.abs(through)
         total[:n] = total[n:2 * n] = np.sqrt(through[:n]**2 + through[n:2 * n]**2)
         added = self.direction_mass * wet
-        load = self.static_load(position, turn, offset, share) - self.damping @ speed
+        damped = self.damping @ np.concatenate([speed[:3] @ turn, spin @ turn])          # along body axes
+        load = self.static_load(position, turn, offset, share)
+        load -= np.concatenate([turn @ damped[:3], turn @ damped[3:]])
         load -= reach @ (added * centripetal + self.direction_drag * wet * total * through)
 
         arm = turn @ self.centre_of_mass

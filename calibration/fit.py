@@ -28,6 +28,7 @@ GROWTH = 2.5  # the window grows by this factor, from CYCLES cycles to the whole
 CYCLES = 1.25
 STEPS_PER_PERIOD = 16  # of the shortest natural period: an error of some 1e-7 in the period
 PATIENCE = 60  # iterations at most per stage
+REFUSED = 8  # refused steps in a row after which a stage ends
 SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # stages end by their own tolerance
 
 
@@ -85,28 +86,41 @@ class Fit:
         self.scored, self.spread = scored(records, problem.data)
         self.weight, self.samples, self.products = np.ones(self.scored.shape), np.ones(self.scored.shape), None
 
-    def minimise(self, stage: str, weight, until, tolerance: float, fraction: tuple[float, float]) -> bool:
+    def minimise(
+        self, stage: str, weight, until, tolerance: float, fraction: tuple[float, float], patience: int = 1
+    ) -> bool:
         """Levenberg-Marquardt from where the fit is, to a relative decrease below `tolerance`."""
-        self.weight = np.asarray(weight)
+        # in units of the cost so far, so that damping and ridge mean the same in every stage
+        weight = np.asarray(weight) / self.cost(weight)
+        self.weight = weight
         time, present = np.asarray(self.problem.data.time), np.asarray(self.problem.data.present)
         self.samples = (present * (time <= np.asarray(until)[:, None])[:, None]).sum(axis=-1)
         weight, until = jnp.asarray(weight), jnp.asarray(until)
         state = _begin(self.problem, self.unknowns, weight, until, self.prior)
-        last, idle = np.inf, 0
+        last, idle, refused, accepted = np.inf, 0, 0, 0
         for i in range(PATIENCE):
             self.unknowns, state, _ = _step(self.problem, self.unknowns, state, weight, until, self.prior)
             self.products = np.asarray(state.aux)
             self.iterations += 1
             cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
-            idle = idle + 1 if abs(last - cost) < tolerance * cost else 0
+            taken = int(state.num_accepted_steps) > accepted
+            accepted = int(state.num_accepted_steps)
+            refused = 0 if taken else refused + 1
+            idle = idle + 1 if taken and last - cost < tolerance * cost else 0 if taken else idle
             last = cost
             objective = self.objective()
             self.history.append(objective)
             self.report(stage, self.iterations, objective, fraction[0] + (fraction[1] - fraction[0]) * min(1.0, i / 15))
-            # a rejected step leaves the cost where it is: two in a row, or small gains, mean that nothing is left
-            if idle >= 2:
+            # nothing left to gain, or nowhere to go however short the step
+            if idle >= patience or refused >= REFUSED:
                 return True
         return False
+
+    def cost(self, weight: np.ndarray) -> float:
+        """Weighted sum of squares where the fit is; 1 before it has begun."""
+        if self.products is None:
+            return 1.0
+        return float(np.sum(self.products[..., -1, -1] * weight))
 
     def mean_squares(self) -> np.ndarray:
         """Mean square residual by record and channel over the window of the last stage (m2, rad2)."""
@@ -256,12 +270,12 @@ def run(fit: Fit) -> None:
         error = np.sqrt(fit.mean_squares())
         if (error[measured] < 1.2 * noise[measured]).all():
             weight = np.where(measured, 1 / noise**2, 0.0)
-            fit.converged = fit.minimise("noise level", weight, fit.ends, 1e-7, (0.8, 1.0))
+            fit.converged = fit.minimise("noise level", weight, fit.ends, 1e-6, (0.8, 1.0), 2)
             return
         main = np.where(fit.scored, np.maximum(error, noise) / fit.spread, 0).sum(axis=1)
         renewed = weights(records, data, fit.scored, fit.spread, 1 / main)
         settled = np.allclose(renewed / renewed.max(), weight / weight.max(), rtol=0.02)
         weight = renewed
-        fit.converged = fit.minimise("sum of RMSE", weight, fit.ends, 1e-6, (0.6, 0.9))
+        fit.converged = fit.minimise("sum of RMSE", weight, fit.ends, 1e-5, (0.6, 0.9), 2)
         if settled:
             break

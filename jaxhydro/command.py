@@ -3,6 +3,7 @@
 import math
 from pathlib import Path
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -45,7 +46,10 @@ def run(
         first = times[np.argmin(np.isfinite(position).all(axis=1))]
         complain(f"the motion grows beyond all bounds at {first:.4g} s; nothing was written. Try a smaller --step.")
         return False
-    elevation = None if sea is None else np.asarray(sea.elevation(jnp.asarray(times)))
+    elevation = None
+    if sea is not None:
+        here = jnp.zeros((2, 1))
+        elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, here)[0])(jnp.asarray(times)))
     motion = Motion.of(times, position, elevation)
     write_motion(motion, out, platform, f"jaxhydro {jaxhydro.__version__}")
     _print_motion(motion, wave, ramp)

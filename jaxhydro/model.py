@@ -9,16 +9,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
-from jaxhydro.loads.base import AbstractLoad, Instant, Parameter
-from jaxhydro.rotations import angular_velocity, attitude_rates, cross, rotation, skew, step
+from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripShape
+from jaxhydro.rotations import angular_velocity, attitude_rates, cross, rotation, skew
 from jaxhydro.solve6 import accelerate
-from jaxhydro.strips import Hull
-from jaxhydro.strips import wetted as wetted_fraction
+from jaxhydro.strips import Hull, end_wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
-
-END_SMOOTH = 0.5  # m over which a column's end enters the water
-
 
 class RigidBody(eqx.Module):
     """Mass (kg), centre of mass (m from the reference point) and inertia about it (kg m2), body axes."""
@@ -113,35 +109,40 @@ class Model(eqx.Module):
         """What the loads read: the motion, and how the water moves past strips and ends."""
         # the barrier keeps XLA from working out the sines anew in every kernel that reads the matrix
         matrix = jax.lax.optimization_barrier(rotation(state.position[3:]))
-        strip_flow, end_flow = self._flows(time, state, matrix, sea)
-        strips, ends = self.hull.strips, self.hull.ends
-        return Instant(
-            time, state.position, matrix, state.velocity, self.environment, strips, ends, strip_flow, end_flow
-        )
-
-    def _flows(
-        self, time: Float[Array, ""], state: State, matrix: Float[Array, "3 3"], sea: AbstractSea
-    ) -> tuple[StripFlow, EndFlow]:
-        hull, strips, ends = self.hull, self.hull.strips, self.hull.ends
-        n = strips.length.shape[0]
-        own, own_end = hull.split(-(state.velocity @ hull.lever))
-        flow = sea.flow(time, state.position[:3, None] + matrix @ hull.places)
+        hull, strips, ends, place = self.hull, self.hull.strips, self.hull.ends, state.position[:3]
+        n, m = len(strips.element), ends.area.shape[0]
+        roots = jnp.concatenate([hull.elements.start, ends.position], axis=1)
         if self.wetting == "mean":
-            vertical, depth = jnp.array([0.0, 0.0, 1.0]), -hull.places[2]
+            vertical, depth = jnp.array([0.0, 0.0, 1.0]), -roots[2]
         else:
             vertical = matrix[2]
-            depth = -(state.position[2] + vertical @ hull.places)
-            depth = depth if flow is None else depth + flow.elevation
-        wet = wetted_fraction(strips, vertical, depth[:n])
-        end_wet = step(depth[n:] / END_SMOOTH)
+            depth = -(place[2] + vertical @ roots)
+            surface = sea.elevation(time, place[:2, None] + matrix[:2] @ hull.waterline())
+            depth = depth if surface is None else depth + surface
+        wet, reach = hull.wetted(vertical, depth[: roots.shape[1] - m])
+        covered, reach = (jnp.stack([wet, reach]) @ hull.spread) * jnp.stack([strips.weight, strips.fraction])
+        away = hull.join(jnp.stack([reach, reach]), jnp.zeros(m))
+        lever = hull.lever + hull.twist * away
+        own, own_end = hull.split(-(state.velocity @ lever))
+        extent = strips.size + strips.taper * reach
+        p, q, r = state.velocity[3:]
+        square = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r])
+        inward = square @ hull.inward + away * (square @ hull.outgoing)
+        lines = Lines(lever, inward)
+        shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
+        end_wet = end_wetted(depth[roots.shape[1] - m :])
+        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
+        flow = sea.flow(time, place[:, None] + matrix @ points)
         if flow is None:
-            return StripFlow(own, None, wet), EndFlow(own_end, None, None, end_wet)
-        velocity, acceleration = matrix.T @ flow.velocity, matrix.T @ flow.acceleration
-        water = [(strips.directions * field[:, None, :n]).sum(axis=0) for field in (velocity, acceleration)]
-        end_water = [(ends.axis * field[:, n:]).sum(axis=0) for field in (velocity, acceleration)]
-        return (
-            StripFlow(own + water[0], water[1], wet),
-            EndFlow(own_end + end_water[0], end_water[1], flow.pressure[n:], end_wet),
+            past, past_end = StripFlow(own, None), EndFlow(own_end, None, None, end_wet)
+        else:
+            velocity, acceleration = matrix.T @ flow.velocity, matrix.T @ flow.acceleration
+            water = [(strips.directions * field[:, None, :n]).sum(axis=0) for field in (velocity, acceleration)]
+            end_water = [(ends.axis * field[:, n:]).sum(axis=0) for field in (velocity, acceleration)]
+            past = StripFlow(own + water[0], water[1])
+            past_end = EndFlow(own_end + end_water[0], end_water[1], flow.pressure[n:], end_wet)
+        return Instant(
+            time, state.position, matrix, state.velocity, self.environment, strips, ends, shape, past, past_end, lines
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":
@@ -157,12 +158,10 @@ class Model(eqx.Module):
             force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
         on_strips, on_ends = jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
         line_mass = self.hull.join(total("strip_mass", on_strips), total("end_mass", on_ends))
-        p, q, r = now.velocity[3:]
-        inward = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r]) @ self.hull.inward
         return Total(
             force,
             total("added_mass", jnp.zeros((6, 6))),
-            self.hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * inward,
+            self.hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward,
             line_mass,
             tuple(action.memory_rate for action in actions),
         )
@@ -180,8 +179,7 @@ class Model(eqx.Module):
             total.force - gyroscopic,
             total.line_mass,
             total.line_force,
-            self.hull.lever,
-            self.hull.mass_product,
+            now.lines.lever,
         )
         turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
         position_rate = jnp.concatenate([now.rotation @ linear, attitude_rates(state.position[3:], spin)])
@@ -204,5 +202,5 @@ class Model(eqx.Module):
         state = State(position, jnp.zeros(6), self.rest().memory)
         now = self.instant(jnp.zeros(()), state, StillWater() if sea is None else sea)
         total = self.sum_of_loads(now, state.memory)
-        force = total.force + self.hull.lever @ total.line_force
+        force = total.force + now.lines.lever @ total.line_force
         return jnp.concatenate([now.rotation @ force[:3], now.rotation @ force[3:]])

@@ -37,23 +37,22 @@ def accelerate(
     line_mass: Float[Array, " l"],
     line_force: Float[Array, " l"],
     lever: Float[Array, "6 l"],
-    mass_product: Float[Array, "l 36"],
 ) -> Float[Array, "6"]:
     """x of (M + sum m_l h_l h_l^T) x = f + sum h_l f_l: acceleration from masses and forces on the body and on its lines.
 
-    `lever` holds the h_l, `mass_product` their outer products. Derivatives reuse the inverse, dx = M^-1 (df - dM x), and never
-    form the derivative of the matrix: a Jacobian of many parameters costs one product with `lever`, not with `mass_product`.
+    `lever` holds the h_l. Derivatives reuse the inverse, dx = M^-1 (df - dM x), and never form that of the matrix: a
+    Jacobian of many parameters costs a product of a vector with `lever` for each.
     """
-    total = mass + (line_mass @ mass_product).reshape(6, 6)
-    return inverse6(total) @ (force + lever @ line_force)
+    return inverse6(mass + (lever * line_mass) @ lever.T) @ (force + lever @ line_force)
 
 
 @accelerate.defjvp
 def _accelerate_jvp(primals, tangents):
-    mass, force, line_mass, line_force, lever, mass_product = primals
-    d_mass, d_force, d_line_mass, d_line_force, _, _ = tangents  # the geometry is constant
-    inverse = jax.lax.optimization_barrier(inverse6(mass + (line_mass @ mass_product).reshape(6, 6)))
+    mass, force, line_mass, line_force, lever = primals
+    d_mass, d_force, d_line_mass, d_line_force, d_lever = tangents
+    inverse = jax.lax.optimization_barrier(inverse6(mass + (lever * line_mass) @ lever.T))
     solution = inverse @ (force + lever @ line_force)
     along = jax.lax.optimization_barrier(solution @ lever)
-    d_line = lever @ (d_line_force - d_line_mass * along)
-    return solution, inverse @ (d_force - d_mass @ solution + d_line)
+    net = line_force - line_mass * along
+    d_net = d_line_force - d_line_mass * along - line_mass * (solution @ d_lever)
+    return solution, inverse @ (d_force - d_mass @ solution + lever @ d_net + d_lever @ net)

@@ -1,13 +1,13 @@
-"""Members cut into strips: what every hydrodynamic load is integrated over.
-
-A member is cut into load elements, and each is integrated by two-point Gauss quadrature: it makes two strips, which are
-looked at in the Gauss points and wetted over their own halves of the element. Inertia is then exact, and so is the drag of a
-rotating member, where midpoints would need several times as many (Abramowitz and Stegun 1964, eq. 25.4.30).
+"""Members cut into load elements, and these into the points that every hydrodynamic load is integrated over.
 
 Everything is in body axes about the reference point; the strip is the last axis. A strip is loaded in the two directions
 across its member's axis, an end along it. A member steeper than 45 degrees is a column: both directions take the transverse
 coefficients (t) and its ends the axial ones (z). A flatter one is a pontoon: its horizontal direction takes t, the other,
 near-vertical one z, and its ends take none.
+
+A load element is integrated by Gauss quadrature over the length that is under water (Abramowitz and Stegun 1964, eq.
+25.4.30). So the strips of a column that pierces the surface move along it with the surface: the wetted length is
+exact, forces are smooth in the motion, and no strip is spent on what is dry.
 
 A *line* is a strip's direction or an end's axis. Its velocity is `lever . (u, v, w, p, q, r)`, so the velocities of all lines
 are one matrix product and the load on the platform is its transpose.
@@ -22,12 +22,12 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.rotations import ramp
+from jaxhydro.rotations import ramp, step
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
-COLUMN_ELEMENT = 4.0  # m, longest load element of a column where the platform file does not say
-PONTOON_ELEMENT = 10.0  # m, of a pontoon
-GAUSS = 0.5 / math.sqrt(3.0)  # of an element's length, from its middle to either point of two-point Gauss quadrature
+SPACING = 2.5  # m, of the strips of a column under still water, where the platform file does not say
+PONTOON_SPACING = 5.0  # m, of a pontoon
+SMOOTH = 0.25  # m over which an end of an element enters or leaves the water
 
 
 class Member(NamedTuple):
@@ -78,49 +78,51 @@ class Member(NamedTuple):
     def area(self, size: np.ndarray) -> np.ndarray:
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
 
-    def edges(self) -> np.ndarray:
-        """Fractions of the length at which the load elements begin and end.
+    def elements_and_orders(self) -> list[tuple[float, float, int]]:
+        """Load elements as fractions of the length from a to b, with the number of strips of each.
 
-        As many as the platform file says, evenly; else short ones that end at every station and at still water.
+        As many as the platform file says, two strips each; else one between stations, with as many as its length asks for.
         """
         length = float(np.linalg.norm(self.b - self.a))
         if self.elements is not None:
-            return np.linspace(0.0, 1.0, self.elements + 1)
-        longest = COLUMN_ELEMENT if self.column else PONTOON_ELEMENT
-        ends = set(self.stations)
-        if self.column and min(self.a[2], self.b[2]) < 0 < max(self.a[2], self.b[2]):
-            ends.add(self.a[2] / (self.a[2] - self.b[2]))
-        at = np.array(sorted(ends))
-        parts = [
-            np.linspace(lo, hi, max(1, math.ceil((hi - lo) * length / longest - 1e-9)) + 1)[:-1]
-            for lo, hi in zip(at[:-1], at[1:], strict=True)
-        ]
-        return np.append(np.concatenate(parts), 1.0)
+            at = np.linspace(0.0, 1.0, self.elements + 1)
+            return [(lo, hi, 2) for lo, hi in zip(at[:-1], at[1:], strict=True)]
+        found = []
+        for lo, hi in zip(self.stations[:-1], self.stations[1:], strict=True):
+            low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
+            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9)) if self.column else 1.0
+            count = math.ceil(under * (hi - lo) * length / (SPACING if self.column else PONTOON_SPACING))
+            found.append((float(lo), float(hi), max(2, min(count, 20))))
+        return found
 
 
 class Strips(eqx.Module):
-    """Strips of all members. See the module's docstring for the frame and the two directions."""
+    """Strips of all load elements. See the module's docstring for the frame and the two directions.
 
-    position: Float[Array, "3 n"]  # m, the Gauss point
-    middle: Float[Array, " n"]  # m along the axis, from there to the strip's middle
+    A strip is at `start + fraction * reach * axis`, `reach` the wetted length of its element (its whole length where it does
+    not pierce the surface), and stands for the share `weight` of the wetted length. Sizes vary linearly along an element.
+    """
+
+    start: Float[Array, "3 n"]  # m, the lower end of the strip's element
     axis: Float[Array, "3 n"]
     directions: Float[Array, "3 2 n"]
-    length: Float[Array, " n"]  # m
-    area: Float[Array, " n"]  # m2, of the section
-    extent: Float[Array, "2 n"]  # m, size along either direction
-    blur: Float[Array, " n"]  # m, length of the member's longest strip
-    thickness: Float[Array, " n"]  # m, vertical extent beyond that of the axis: none for a column
+    fraction: Float[Array, " n"]
+    weight: Float[Array, " n"]
+    size: Float[Array, "2 n"]  # m, extent along either direction at the element's start
+    taper: Float[Array, "2 n"]  # its change per metre
+    shape: Float[Array, " n"]  # area over the product of extents: pi/4 for a circle
     label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and strip
     labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
+    element: tuple[int, ...] = eqx.field(static=True)
 
-    @property
-    def volume(self) -> Float[Array, " n"]:
-        return self.length * self.area
 
-    @property
-    def facing(self) -> Float[Array, "2 n"]:
-        """Projected area (m2) that a flow along either direction sees."""
-        return self.extent[::-1] * self.length
+class Elements(eqx.Module):
+    """Load elements of all members: what is wetted."""
+
+    start: Float[Array, "3 e"]  # m, the lower end
+    axis: Float[Array, "3 e"]  # upward for a column
+    length: Float[Array, " e"]  # m
+    thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: a column
 
 
 class Ends(eqx.Module):
@@ -136,95 +138,132 @@ class Ends(eqx.Module):
 
 
 class Hull(eqx.Module):
-    """Strips and ends, and the constant matrices between the platform's motion and that of their lines.
+    """Elements, strips and ends, and the constant matrices between the platform's motion and that of their lines.
 
-    Lines are the strips' first directions, their second ones, then the ends. `lever` (6, line) is d and r x d. `inward` (6,
-    line) gives the centripetal acceleration along a line from the products p^2, q^2, r^2, pq, pr, qr of the angular velocity.
-    `mass_product` (line, 36) is lever lever^T: a line's mass times it is its share of the 6 x 6 added mass.
+    Lines are the strips' first directions, their second ones, then the ends. A line's lever is `lever + twist * s`, s the
+    distance of its strip from the element's start; its centripetal acceleration is `inward + outgoing * s` times the products p^2,
+    q^2, r^2, pq, pr, qr of the angular velocity.
     """
 
+    elements: Elements
     strips: Strips
     ends: Ends
-    places: Float[Array, "3 n+m"]
     lever: Float[Array, "6 l"]
+    twist: Float[Array, "6 l"]
     inward: Float[Array, "6 l"]
-    mass_product: Float[Array, "l 36"]
+    outgoing: Float[Array, "6 l"]
+    spread: Float[Array, "e n"]  # 1 where a strip belongs to an element
 
     @classmethod
     def of(cls, members: Sequence[Member]) -> "Hull":
         """The hull that members make."""
-        strips, tips = cut(members), ends(members)
-        position = np.concatenate([strips.position, strips.position, tips.position], axis=1)
+        elements, strips = cut(members)
+        tips = ends(members)
+        point = np.concatenate([strips.start, strips.start, tips.position], axis=1)
         first, second = np.asarray(strips.directions[:, 0]), np.asarray(strips.directions[:, 1])
         direction = np.concatenate([first, second, tips.axis], axis=1)
-        lever = np.concatenate([direction, np.cross(position, direction, axis=0)])
-        (dx, dy, dz), (x, y, z) = direction, position
-        # omega (omega . r) - omega^2 r along d, by product of angular velocities
-        inward = np.stack(
-            [-dy * y - dz * z, -dx * x - dz * z, -dx * x - dy * y, dx * y + dy * x, dx * z + dz * x, dy * z + dz * y]
-        )
-        product = np.einsum("il,jl->lij", lever, lever).reshape(-1, 36)
-        places = np.concatenate([strips.position, tips.position], axis=1)
-        return cls(strips, tips, *map(jnp.asarray, (places, lever, inward, product)))
+        along = np.concatenate([strips.axis, strips.axis, np.zeros_like(tips.axis)], axis=1)
+        lever = np.concatenate([direction, np.cross(point, direction, axis=0)])
+        twist = np.concatenate([np.zeros_like(direction), np.cross(along, direction, axis=0)])
+        spread = np.zeros((elements.length.shape[0], len(strips.element)))
+        spread[list(strips.element), range(len(strips.element))] = 1.0
+        arrays = (lever, twist, _centripetal(direction, point), _centripetal(direction, along), spread)
+        return cls(elements, strips, tips, *map(jnp.asarray, arrays))
 
     def split(self, lines: Float[Array, " l"]) -> tuple[Float[Array, "2 n"], Float[Array, " m"]]:
         """What belongs to the strips, by direction, and what to the ends."""
-        n = self.strips.length.shape[0]
+        n = len(self.strips.element)
         return lines[: 2 * n].reshape(2, n), lines[2 * n :]
 
     def join(self, strips: Float[Array, "2 n"], ends: Float[Array, " m"]) -> Float[Array, " l"]:
         """The inverse of `split`."""
         return jnp.concatenate([strips.reshape(-1), ends])
 
+    def waterline(self) -> Float[Array, "3 e+m"]:
+        """Points (m) where the surface elevation is looked up for elements and ends: a column's axis at still water, a pontoon's
+        middle."""
+        elements = self.elements
+        column = elements.thickness == 0
+        at = jnp.where(column, -elements.start[2] / jnp.where(column, elements.axis[2], 1.0), 0.5 * elements.length)
+        ends = self.ends.position - self.ends.axis * (self.ends.position[2] / self.ends.axis[2])
+        return jnp.concatenate([elements.start + elements.axis * at, ends], axis=1)
 
-def cut(members: Sequence[Member]) -> Strips:
-    """Cut members into strips: two for every load element."""
+    def wetted(
+        self, vertical: Float[Array, "3"], depth: Float[Array, " e"]
+    ) -> tuple[Float[Array, " e"], Float[Array, " e"]]:
+        """Length (m) of every element that is under water, and over which its strips are distributed.
+
+        `vertical` is the vertical in body axes, `depth` (m) that of the elements' lower ends under the surface. Exact, but for
+        a quarter of a metre about the element's ends. A pontoon loses volume evenly as its height leaves the water.
+        """
+        elements = self.elements
+        column, slope = elements.thickness == 0, vertical @ elements.axis
+        steep = jnp.where(column, jnp.maximum(slope, 1e-3), 1.0)
+        rise = jnp.where(column, steep * elements.length, jnp.abs(slope) * elements.length + elements.thickness)
+        low = depth + jnp.where(column, 0.0, 0.5 * elements.thickness + jnp.maximum(-slope, 0.0) * elements.length)
+        under = SMOOTH * (ramp(low / SMOOTH) - ramp((low - rise) / SMOOTH))
+        wet = under / rise * elements.length
+        return wet, jnp.where(column, wet, elements.length)
+
+
+def _centripetal(direction: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """omega (omega . r) - omega^2 r along d, by product of angular velocities."""
+    (dx, dy, dz), (x, y, z) = direction, point
+    return np.stack(
+        [-dy * y - dz * z, -dx * x - dz * z, -dx * x - dy * y, dx * y + dy * x, dx * z + dz * x, dy * z + dz * y]
+    )
+
+
+def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
+    """Cut members into load elements and strips."""
     labels: list[tuple[str, str]] = []
+    elements: list[tuple] = []
     rows: list[tuple] = []
     for member in members:
-        first, second = member.directions
-        edges = member.edges()
-        whole, centre = np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
-        point = np.stack([centre - GAUSS * whole, centre + GAUSS * whole], axis=1).reshape(-1)
-        halves = np.sort(np.concatenate([edges, centre]))
-        span = float(np.linalg.norm(member.b - member.a))
-        sense = 1.0 if member.axis @ (member.b - member.a) > 0 else -1.0
-        offset = sense * span * (0.5 * (halves[1:] + halves[:-1]) - point)
-        length = np.diff(halves) * span
-        size = member.size(point)
-        for kind in ("t", "t" if member.column else "z"):
+        kinds = ("t", "t" if member.column else "z")
+        for kind in kinds:
             if (member.group, kind) not in labels:
                 labels.append((member.group, kind))
-        label = (labels.index((member.group, "t")), labels.index((member.group, "t" if member.column else "z")))
-        n = len(point)
-        rows.append(
-            (
-                member.a[:, None] + (member.b - member.a)[:, None] * point,
-                offset,
-                np.repeat(member.axis[:, None], n, axis=1),
-                np.repeat(np.stack([first, second], axis=1)[:, :, None], n, axis=2),
-                length,
-                np.full(n, length.max()),
-                # the mean area of a tapered strip (frustum), so that the volume is exact
-                _mean_area(member, halves),
-                size.T,
-                np.repeat(np.array(label)[:, None], n, axis=1),
-            )
-        )
-    empty = (np.zeros((3, 0)), np.zeros(0), np.zeros(0), np.zeros((3, 0)), np.zeros((3, 2, 0)), np.zeros(0), np.zeros(0), np.zeros((2, 0)), np.zeros((2, 0)))
-    columns = [np.concatenate(column, axis=-1) for column in zip(*(rows or [empty]), strict=True)]
-    position, middle, axis, directions, length, blur, area, extent, label_of = columns
-    column = np.concatenate([np.full(len(row[1]), m.column) for m, row in zip(members, rows, strict=True)] or [np.zeros(0)])
-    thickness = np.where(column, 0.0, (np.abs(directions[2]) * extent).sum(axis=0))
-    arrays = (position, middle, axis, directions, length, area, extent, blur, thickness)
-    return Strips(*map(jnp.asarray, arrays), tuple(tuple(map(int, row)) for row in label_of), tuple(labels))
-
-
-def _mean_area(member: Member, edges: np.ndarray) -> np.ndarray:
-    """Volume over length between edges; Simpson's rule is exact for a section that varies linearly."""
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    area = [member.area(member.size(at)) for at in (edges[:-1], middle, edges[1:])]
-    return (area[0] + 4 * area[1] + area[2]) / 6
+        label = [labels.index((member.group, kind)) for kind in kinds]
+        span = float(np.linalg.norm(member.b - member.a))
+        directions = np.stack(member.directions, axis=1)
+        upright = member.axis @ (member.b - member.a) > 0
+        for lo, hi, order in member.elements_and_orders():
+            near, far = (lo, hi) if upright else (hi, lo)
+            length = (hi - lo) * span
+            first, last = member.size(np.array(near)), member.size(np.array(far))
+            start = member.a + (member.b - member.a) * near
+            thickness = 0.0 if member.column else float(np.abs(directions[2]) @ (0.5 * (first + last)))
+            point, weight = np.polynomial.legendre.leggauss(order)
+            for fraction, share in zip(0.5 * (1 + point), 0.5 * weight, strict=True):
+                rows.append(
+                    (
+                        start,
+                        member.axis,
+                        directions,
+                        fraction,
+                        share,
+                        first,
+                        (last - first) / length,
+                        math.pi / 4 if member.circular else 1.0,
+                        label,
+                        len(elements),
+                    )
+                )
+            elements.append((start, member.axis, length, thickness))
+    if not rows:
+        none = np.zeros((3, 0)), np.zeros((3, 0)), np.zeros(0), np.zeros(0)
+        pair, flat = np.zeros((2, 0)), np.zeros(0)
+        arrays = (*none[:2], np.zeros((3, 2, 0)), flat, flat, pair, pair, flat)
+        return Elements(*map(jnp.asarray, none)), Strips(*map(jnp.asarray, arrays), ((), ()), (), ())
+    *geometry, label, element = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
+    whole = (np.stack(column, axis=-1) for column in zip(*elements, strict=True))
+    return Elements(*map(jnp.asarray, whole)), Strips(
+        *map(jnp.asarray, geometry),
+        tuple(tuple(map(int, row)) for row in label),
+        tuple(labels),
+        tuple(map(int, element)),
+    )
 
 
 def ends(members: Sequence[Member]) -> Ends:
@@ -246,16 +285,6 @@ def ends(members: Sequence[Member]) -> Ends:
     return Ends(*map(jnp.asarray, arrays), tuple(label), labels)
 
 
-def wetted(strips: Strips, upward: Float[Array, "3"], depth: Float[Array, " n"]) -> Float[Array, " n"]:
-    """Fraction of every strip that is under water: smooth, and exact in the sum over a member.
-
-    `upward` is the vertical in body axes, `depth` (m) that of the strip's Gauss point under the surface. All strips of a
-    member are blurred by one kernel, as wide as its longest, so that they add up to the exact wetted length unless the
-    surface is within a strip of the member's end.
-    """
-    slope = upward @ strips.axis
-    steep = jnp.abs(slope)
-    half = 0.5 * (steep * strips.length + strips.thickness)
-    blur = 0.5 * (steep * strips.blur + strips.thickness)
-    middle = depth - slope * strips.middle
-    return 0.5 * blur / half * (ramp((middle + half) / blur) - ramp((middle - half) / blur))
+def end_wetted(depth: Float[Array, " m"]) -> Float[Array, " m"]:
+    """Share of ends at `depth` (m) that is under water."""
+    return step(depth / (2 * SMOOTH))

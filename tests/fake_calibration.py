@@ -20,12 +20,17 @@ NEAR_TRUTH = {
 FEW = ("surge-1", "heave-1", "pitch-1")
 
 
-def motion(model: jh.Model, record: Record) -> dict[str, np.ndarray]:
-    """The model's motion from the record's first sample, at rest, still water at zero."""
+def motion(model: jh.Model, record: Record, samples: int) -> dict[str, np.ndarray]:
+    """The model's motion from the record's first sample, at rest, still water at zero.
+
+    So many samples are simulated whatever the record's length: records sampled alike share one compilation.
+    """
     first = {name: float(values[0]) for name, values in record.values.items()}
-    response = jh.simulate(model, record.time, position=first)
+    n, step = len(record.time), record.time[1] - record.time[0]
+    times = np.concatenate([record.time, record.time[-1] + step * np.arange(1, samples - n + 1)])
+    response = jh.simulate(model, times, position=first)
     still = np.asarray(jh.equilibrium(model))
-    return {name: np.asarray(response[name]) - still[jh.DOFS.index(name)] for name in record.values}
+    return {name: np.asarray(response[name])[:n] - still[jh.DOFS.index(name)] for name in record.values}
 
 
 def fake_calibration(
@@ -50,11 +55,12 @@ def fake_calibration(
             unit=about.unit, meaning=about.meaning, start=float(declared.values[label]),
             at_bound=len(fitted) > 3 and i == 3, identifiable=not lost,
         )  # fmt: skip
-    tests = []
+    tests: list[TestFit] = []
+    longest = max(len(record.time) for record in campaign.records)
     for record in campaign.records:
         if record.use == "ignore" or record.kind != "decay" or (only and record.id not in only):
             continue
-        after, before = motion(model, record), motion(declared, record)
+        after, before = motion(model, record, longest), motion(declared, record, longest)
         series = tuple(
             Series(name, values, after[name], 0.0, record.noise[name], name == record.degree_of_freedom)
             for name, values in record.values.items()

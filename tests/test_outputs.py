@@ -10,6 +10,7 @@ import jsonschema
 import numpy as np
 import pytest
 import xarray as xr
+from fake_calibration import small
 from PIL import Image
 
 import calibration
@@ -21,7 +22,6 @@ from calibration.result import Calibration, Estimate
 from calibration.saved import read_saved, read_values
 from jaxhydro.files import check_folder, staged
 from jaxhydro.problems import InputError
-from tests.fake_calibration import small
 
 SCHEMAS = [
     Path(calibration.__file__).parent / "outputs.schema.json",
@@ -177,9 +177,10 @@ def test_every_figure_is_half_a_page_wide_and_named_in_the_document(written: Pat
 
 def test_figures_of_odd_results_can_be_drawn(result: Calibration, tmp_path: Path) -> None:
     """Nothing before, one channel, nothing that oscillates, parameters at zero and far apart, no parameters."""
-    still = replace(result.tests[0], start={}, series=(replace(result.tests[0].main, measured=0 * result.tests[0].time),))
-    odd = [Estimate(f"a.{i}", value, sd, unit, "", start, False, True) for i, (value, sd, unit, start) in enumerate(
-        [(0.0, 0.0, "N", 0.0), (1e-9, 1e-10, "m", 1e6), (-5.0, np.inf, "N/m", 3.0), (1e8, None, "N", 2e3)])]  # fmt: skip
+    first = result.tests[0]
+    still = replace(first, start={}, series=(replace(first.main, measured=0 * first.time),))
+    values = [(0.0, 0.0, "N", 0.0), (1e-9, 1e-10, "m", 1e6), (-5.0, np.inf, "N/m", 3.0), (1e8, None, "N", 2e3)]
+    odd = [Estimate(f"a.{i}", *value[:3], "", value[3], False, True) for i, value in enumerate(values)]
     strange = replace(result, tests=(still,), parameters={one.label: one for one in odd})
     write_calibration(strange, tmp_path / "a")
     assert not (tmp_path / "a" / "figures" / "decay-surge.png").exists()

@@ -23,12 +23,27 @@ class Parameter(NamedTuple):
     null: float = 0.0
 
 
+class StripShape(NamedTuple):
+    """What of each strip is under water: displaced volume (m3), and the area (m2) that a flow along either direction sees."""
+
+    volume: Float[Array, " n"]
+    facing: Float[Array, "2 n"]
+
+
+class Lines(NamedTuple):
+    """Lines of strips and ends: d and r x d, and the centripetal acceleration along d (m/s2)."""
+
+    lever: Float[Array, "6 l"]
+    inward: Float[Array, " l"]
+
+
 class Instant(eqx.Module):
     """Everything a load may read, worked out once per evaluation of the equation of motion.
 
     `position` is surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point; `rotation` takes body to earth axes;
     `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
-    same along earth axes. `strips` and `ends` are fixed in the body; `strip_flow` and `end_flow` say how the water moves past.
+    same along earth axes. `strip_shape` says what of the strips is under water, `strip_flow` and `end_flow` how the water
+    moves past strips and ends.
     """
 
     time: Float[Array, ""]
@@ -38,8 +53,10 @@ class Instant(eqx.Module):
     environment: Environment
     strips: Strips
     ends: Ends
+    strip_shape: StripShape
     strip_flow: StripFlow
     end_flow: EndFlow
+    lines: Lines
 
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""

@@ -37,7 +37,7 @@ class StripInertia(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow = now.strip_flow
-        water = now.environment.density * now.strips.volume * flow.wet
+        water = now.environment.density * now.strip_shape.volume
         mass = spread(now.strips, self.values, "Ca") * water
         force = None if flow.acceleration is None else (water + mass) * flow.acceleration
         return Action(strip_force=force, strip_mass=mass)

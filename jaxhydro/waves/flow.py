@@ -5,29 +5,26 @@ from jaxtyping import Array, Float
 
 
 class Flow(eqx.Module):
-    """Water at points, along earth axes: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2), and the
-    surface elevation (m) above or below each point."""
+    """Water at points, along earth axes: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2)."""
 
     velocity: Float[Array, "3 n"]
     acceleration: Float[Array, "3 n"]
     pressure: Float[Array, " n"]
-    elevation: Float[Array, " n"]
 
 
 class StripFlow(eqx.Module):
     """Flow past strips along their two directions.
 
-    `relative` is the water's velocity less the strip's (m/s), `acceleration` the water's (m/s2; None in still water), `wet`
-    the fraction of the strip under water.
+    `relative` is the water's velocity less the strip's (m/s), `acceleration` the water's (m/s2; None in still water).
     """
 
     relative: Float[Array, "2 n"]
     acceleration: Float[Array, "2 n"] | None
-    wet: Float[Array, " n"]
 
 
 class EndFlow(eqx.Module):
-    """The same for the ends of columns, along their axes; `pressure` is the dynamic pressure over density (m2/s2)."""
+    """The same for the ends of columns, along their axes; `pressure` is the dynamic pressure over density (m2/s2), `wet` 1
+    under water and 0 above."""
 
     relative: Float[Array, " m"]
     acceleration: Float[Array, " m"] | None

@@ -19,11 +19,18 @@ class AbstractSea(eqx.Module):
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"]) -> Flow | None:
         """Water at `points` (m) and `time` (s); None means still water everywhere, which costs nothing."""
 
+    @abc.abstractmethod
+    def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
+        """Surface elevation (m) at horizontal `points` (m) and `time` (s), None in still water."""
+
 
 class StillWater(AbstractSea):
     """No waves and no current."""
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"]) -> None:
+        return None
+
+    def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> None:
         return None
 
 
@@ -60,12 +67,12 @@ class AirySea(AbstractSea):
         au, aw = -omega * gk * c * sin, -omega * gk * s * cos
         velocity = jnp.concatenate([along.T @ u, w.sum(axis=0)[None]])
         acceleration = jnp.concatenate([along.T @ au, aw.sum(axis=0)[None]])
-        return Flow(velocity, acceleration, self.environment.gravity * (c * cos).sum(axis=0), cos.sum(axis=0))
+        return Flow(velocity, acceleration, self.environment.gravity * (c * cos).sum(axis=0))
 
-    def elevation(self, time: Float[Array, " t"], x: float = 0.0, y: float = 0.0) -> Float[Array, " t"]:
-        """Surface elevation (m) over time at one place."""
-        at = self.wavenumber * (x * jnp.cos(self.heading) + y * jnp.sin(self.heading))
-        return self.growth(time) * (jnp.cos(time[:, None] * self.omega - at + self.phase) @ self.amplitude)
+    def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
+        along = jnp.stack([jnp.cos(self.heading), jnp.sin(self.heading)], axis=1)
+        angle = self.omega[:, None] * time - self.wavenumber[:, None] * (along @ points) + self.phase[:, None]
+        return self.growth(time) * (self.amplitude @ jnp.cos(angle))
 
     def growth(self, time: Float[Array, "..."]) -> Float[Array, "..."]:
         duration = jnp.asarray(self.ramp)
