@@ -43,8 +43,10 @@ def run(campaign: Campaign, out: Path, figures: bool = True) -> Calibration | No
         return None
     table("Parameters", *tables.parameters(result))
     table("Errors, before and after", *tables.errors(result), left=3)
+    warned = {str(finding) for finding in campaign.findings}
     for note in result.notes:
-        say(f"Note: {note}")
+        if note not in warned:
+            say(f"Note: {note}")
     say(tables.outcome(result))
     say(f"Results are in {out}")
     if not result.converged:

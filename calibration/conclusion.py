@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
     """The fitted parameters: a standard deviation where the records determine them, none where not."""
     problem, data, space, products = fit.problem, fit.problem.data, fit.problem.space, fit.products
+    assert products is not None, "nothing has been minimised yet"
     samples = np.maximum(np.asarray(data.present).sum(axis=-1), 1)
     inflation = np.ones(samples.shape)
     for i, test in enumerate(tests):
@@ -33,26 +34,26 @@ def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
             inflation[i, j] = memory(series.simulated - series.measured)
     unknowns = products.shape[-1] - 1
     variance = products[..., -1, -1] / np.maximum(samples - unknowns / len(data.dofs), 1)
-    ridge = np.append(np.asarray(fit.prior[1]), fit.ridge)
-    deviation = spread(products, fit.weight, variance, inflation, ridge).deviation()
+    ridge, width = np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
+    deviation = spread(products, fit.weight, variance, inflation, ridge, width).deviation()
     x = np.asarray(fit.unknowns.shared)
     slope = slopes(space, x)
     found = {}
     for i, parameter in enumerate(space.free):
         bound = parameter.transform.at_bound(x[i])
-        value, width = float(parameter.transform.forward(jnp.asarray(x[i]))), float(abs(slope[i]) * deviation[i])
+        value, small = float(parameter.transform.forward(jnp.asarray(x[i]))), float(abs(slope[i]) * deviation[i])
         # known to a quarter of its size, or known to be small
-        clear = (deviation[i] < CLEAR or width < CLEAR * abs(parameter.start)) and not bound
+        clear = bool(deviation[i] < CLEAR or small < CLEAR * abs(parameter.start)) and not bound
         about = problem.model.about(parameter.label)
         found[parameter.label] = Estimate(
             parameter.label,
             value,
-            width if clear else None,
+            small if clear else None,
             about.unit,
             about.meaning,
             parameter.start,
             bound,
-            bool(clear),
+            clear,
         )
     return found
 

@@ -27,7 +27,7 @@ class ClippedDescent(optx.AbstractDescent):
 
     def step(self, step_size: Any, state: Any) -> tuple[PyTree, optx.RESULTS]:
         diff, result = self.descent.step(step_size, state)
-        largest = jnp.max(jnp.stack([jnp.max(jnp.abs(leaf)) for leaf in jax.tree.leaves(diff)]))
+        largest = jnp.max(jnp.stack([jnp.max(jnp.abs(leaf), initial=0.0) for leaf in jax.tree.leaves(diff)]))
         scale = jnp.minimum(1.0, self.longest / jnp.maximum(largest, 1e-300))
         return jax.tree.map(lambda leaf: scale * leaf, diff), result
 
@@ -61,7 +61,7 @@ class _Region(optx.ClassicalTrustRegion):
 
     high_cutoff: float = 0.75
     low_cutoff: float = 0.01
-    high_constant: float = 4.0
+    high_constant: float = 2.5
     low_constant: float = 0.25
 
     def init(self, y: PyTree, f_info_struct: Any) -> Any:

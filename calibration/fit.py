@@ -2,7 +2,7 @@
 
 import time as clock
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import equinox as eqx
 import jax
@@ -12,6 +12,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, series_of
 from calibration.descent import ClippedLevenbergMarquardt
+from calibration.identifiability import VAGUE
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record
 from calibration.residuals import Data, Problem, Unknowns, condensed, dominant_period, first_guess, gather
@@ -23,7 +24,7 @@ from jaxhydro.problems import InputError
 from jaxhydro.problems import Problem as Wrong
 from jaxhydro.statics import equilibrium, natural_modes
 
-RIDGE = 1e-3  # standard deviations of the prior are 1/RIDGE in units of a relative error: keeps idle parameters where they are
+SIDE = 0.1  # weight of a record's other channels against the released one, on the same footing in metres of the hull
 GROWTH = 2.5  # the window grows by this factor, from CYCLES cycles to the whole record
 CYCLES = 1.25
 STEPS_PER_PERIOD = 16  # of the shortest natural period: an error of some 1e-7 in the period
@@ -68,7 +69,7 @@ def _objective(unknowns: Unknowns, args):
     problem, weight, until, prior = args
     mean, precision = prior
     rows, products = condensed(unknowns, problem, weight, until)
-    return (rows, precision * (unknowns.shared - mean), RIDGE * unknowns.own), products
+    return (rows, precision * (unknowns.shared - mean)), products
 
 
 class Fit:
@@ -78,43 +79,59 @@ class Fit:
         self.problem, self.records, self.unknowns, self.report = problem, records, unknowns, report
         space = problem.space
         mean = jnp.array([p.prior_mean if np.isfinite(p.prior_deviation) else s for p, s in zip(space.free, space.start)])
-        tight = jnp.array([1 / p.prior_deviation if np.isfinite(p.prior_deviation) else 0.0 for p in space.free])
-        self.prior = (mean, jnp.sqrt(tight**2 + RIDGE**2))
-        self.ridge = RIDGE
-        self.iterations, self.history, self.converged = 0, [], True
+        width = jnp.array([p.prior_deviation if np.isfinite(p.prior_deviation) else VAGUE for p in space.free])
+        self.prior = (mean, 1 / width)
+        self.iterations, self.converged = 0, True
+        self.history: list[float] = []
+        self.ridge: np.ndarray = np.zeros(len(space.free))
         self.ends = jnp.array([record.time[-1] for record in records])
         self.scored, self.spread = scored(records, problem.data)
-        self.weight, self.samples, self.products = np.ones(self.scored.shape), np.ones(self.scored.shape), None
+        self.weight, self.samples = np.ones(self.scored.shape), np.ones(self.scored.shape)
+        self.products: np.ndarray | None = None
 
     def minimise(
-        self, stage: str, weight, until, tolerance: float, fraction: tuple[float, float], patience: int = 1
+        self, stage: str, weight, until, tolerance: float, fraction: tuple[float, float],
+        samples: float | None = None,
     ) -> bool:
-        """Levenberg-Marquardt from where the fit is, to a relative decrease below `tolerance`."""
+        """Levenberg-Marquardt from where the fit is, to a relative decrease below `tolerance`.
+
+        Every free parameter has a prior, VAGUE unless the manifest says otherwise, about where it started. It weighs as one
+        observation among `samples` independent ones, so that what the records do not say stays where it was.
+        """
         # in units of the cost so far, so that damping and ridge mean the same in every stage
         weight = np.asarray(weight) / self.cost(weight)
         self.weight = weight
+        mean, precision = self.prior
+        self.ridge = precision / np.sqrt(self.information(until) if samples is None else samples)
+        prior = (mean, self.ridge)
         time, present = np.asarray(self.problem.data.time), np.asarray(self.problem.data.present)
         self.samples = (present * (time <= np.asarray(until)[:, None])[:, None]).sum(axis=-1)
         weight, until = jnp.asarray(weight), jnp.asarray(until)
-        state = _begin(self.problem, self.unknowns, weight, until, self.prior)
-        last, idle, refused, accepted = np.inf, 0, 0, 0
+        state = _begin(self.problem, self.unknowns, weight, until, prior)
+        last, refused, accepted = np.inf, 0, 0
         for i in range(PATIENCE):
-            self.unknowns, state, _ = _step(self.problem, self.unknowns, state, weight, until, self.prior)
+            self.unknowns, state, _ = _step(self.problem, self.unknowns, state, weight, until, prior)
             self.products = np.asarray(state.aux)
             self.iterations += 1
             cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
             taken = int(state.num_accepted_steps) > accepted
             accepted = int(state.num_accepted_steps)
             refused = 0 if taken else refused + 1
-            idle = idle + 1 if taken and last - cost < tolerance * cost else 0 if taken else idle
+            idle = taken and last - cost < tolerance * cost
             last = cost
             objective = self.objective()
             self.history.append(objective)
             self.report(stage, self.iterations, objective, fraction[0] + (fraction[1] - fraction[0]) * min(1.0, i / 15))
             # nothing left to gain, or nowhere to go however short the step
-            if idle >= patience or refused >= REFUSED:
+            if idle or refused >= REFUSED:
                 return True
         return False
+
+    def information(self, until) -> float:
+        """How many independent observations the records stand for when the model's error, not noise, is what is left: four
+        for every cycle of the released motion."""
+        period = 2 * np.pi / np.asarray(self.problem.data.pace)
+        return float(np.sum(4 * (np.asarray(until) - np.asarray(self.problem.data.time[:, 0])) / period))
 
     def cost(self, weight: np.ndarray) -> float:
         """Weighted sum of squares where the fit is; 1 before it has begun."""
@@ -124,6 +141,7 @@ class Fit:
 
     def mean_squares(self) -> np.ndarray:
         """Mean square residual by record and channel over the window of the last stage (m2, rad2)."""
+        assert self.products is not None, "nothing has been minimised yet"
         return self.products[..., -1, -1] / np.maximum(self.samples, 1)
 
     def objective(self) -> float:
@@ -155,7 +173,7 @@ def weights(
     until = time[:, -1] if until is None else np.asarray(until)
     samples = (np.asarray(data.present) * (time <= until[:, None])[:, None]).sum(axis=-1)
     scale = np.where(counts, spreads, np.asarray(data.unit))
-    return factor[:, None] / (np.maximum(samples, 1) * scale**2)
+    return np.where(counts, 1.0, SIDE) * factor[:, None] / (np.maximum(samples, 1) * scale**2)
 
 
 def calibrate(
@@ -169,9 +187,9 @@ def calibrate(
 
     What is minimised is the contract's J = sum of RMSE / standard deviation over the records' released degrees of freedom, by
     least squares with weights renewed from the errors reached (so that the sum of RMSE, not of squares, is stationary). The
-    window grows from a little over one cycle to the whole record, which finds the natural periods before the phase
-    of late cycles matters. Where the fit comes down to the noise everywhere, a last pass weighs every sample by its noise, which is
-    maximum likelihood. Initial position, rate and sensor offset of every record and channel are free.
+    window grows from a little over one cycle to the whole record, which finds the natural periods before the phase of
+    late cycles matters. Where the fit comes down to the noise everywhere, a last pass weighs every sample by its noise, which
+    is maximum likelihood. Initial position, rate and sensor offset of every record and channel are free.
 
     `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
     Raises InputError where there is nothing to fit, Interrupted (a KeyboardInterrupt) with what was reached.
@@ -270,12 +288,12 @@ def run(fit: Fit) -> None:
         error = np.sqrt(fit.mean_squares())
         if (error[measured] < 1.2 * noise[measured]).all():
             weight = np.where(measured, 1 / noise**2, 0.0)
-            fit.converged = fit.minimise("noise level", weight, fit.ends, 1e-6, (0.8, 1.0), 2)
+            fit.converged = fit.minimise("noise level", weight, fit.ends, 2e-6, (0.8, 1.0), fit.samples.sum())
             return
         main = np.where(fit.scored, np.maximum(error, noise) / fit.spread, 0).sum(axis=1)
         renewed = weights(records, data, fit.scored, fit.spread, 1 / main)
         settled = np.allclose(renewed / renewed.max(), weight / weight.max(), rtol=0.02)
         weight = renewed
-        fit.converged = fit.minimise("sum of RMSE", weight, fit.ends, 1e-5, (0.6, 0.9), 2)
+        fit.converged = fit.minimise("sum of RMSE", weight, fit.ends, 1e-5, (0.6, 0.9))
         if settled:
             break

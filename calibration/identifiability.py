@@ -56,19 +56,25 @@ def memory(residual: np.ndarray) -> float:
 
 
 def spread(
-    products: np.ndarray, weight: np.ndarray, variance: np.ndarray, inflation: np.ndarray, prior: np.ndarray
+    products: np.ndarray,
+    weight: np.ndarray,
+    variance: np.ndarray,
+    inflation: np.ndarray,
+    ridge: np.ndarray,
+    width: np.ndarray,
 ) -> Spread:
     """Covariance of the estimates by the sandwich H^-1 S H^-1 (White 1982, Econometrica 50, 1-25, theorem 3.2).
 
     `products` (record, channel, k, k) are the [J r]^T [J r], `weight` what multiplied their squares in the fit, `variance`
-    that of the residuals, `inflation` how many of their samples count as one, `prior` the ridge on the shared coordinates and
-    on each own one. The ridge stands for a prior of VAGUE standard deviations, so that what no record touches is reported so.
+    that of the residuals, `inflation` how many of their samples count as one. `ridge` is the prior's row in the fit, `width`
+    its standard deviation: a parameter that no record touches is reported with that.
     """
-    shared = len(prior) - 1
+    shared = len(ridge)
     hessian = assemble(np.einsum("rckl,rc->rkl", products, weight), shared)
     scatter = assemble(np.einsum("rckl,rc->rkl", products, weight**2 * variance * inflation), shared)
-    ridge = np.concatenate([prior[:-1], np.full(len(hessian) - shared, prior[-1])]) ** 2
-    scale = 1 / np.sqrt(np.diag(hessian) + ridge)
-    inverse = np.linalg.pinv((hessian + np.diag(ridge)) * np.outer(scale, scale), rcond=1e-15, hermitian=True)
+    own = np.zeros(len(hessian) - shared)
+    square, wide = np.concatenate([ridge**2, own]), np.concatenate([width**2, own])
+    scale = 1 / np.sqrt(np.maximum(np.diag(hessian) + square, 1e-300))
+    inverse = np.linalg.pinv((hessian + np.diag(square)) * np.outer(scale, scale), rcond=1e-14, hermitian=True)
     inverse = inverse * np.outer(scale, scale)
-    return Spread(inverse @ (scatter + VAGUE**2 * np.diag(ridge**2)) @ inverse, shared)
+    return Spread(inverse @ (scatter + np.diag(wide * square**2)) @ inverse, shared)

@@ -191,7 +191,8 @@ def _scale(ax: Axes, unit: str, group: list[Estimate]) -> float:
     """Choose a linear or a logarithmic axis; gives what values are divided by."""
     sizes = np.array([v for one in group for v in (one.start, one.value)])
     largest = float(np.abs(sizes).max(initial=0.0))
-    if (sizes > 0).all() and largest / sizes.min() > 60:
+    sure = all(one.value > 2 * (one.standard_deviation or 0.0) for one in group)
+    if sure and (sizes > 0).all() and largest / sizes.min() > 60:
         ax.set_xscale("log")
         ax.xaxis.set_minor_formatter(NullFormatter())
         ax.xaxis.set_major_formatter(LogFormatterSciNotation())

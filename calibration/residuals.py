@@ -7,7 +7,7 @@ and the optimiser sees its square root: as many rows as there are unknowns and o
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -75,7 +75,9 @@ def gather(records: Sequence[Record], model: Model, step: float) -> Data:
         pace.append(2 * np.pi / max(dominant_period(record), 4 * step))
     capacity = int(np.ceil(max(count) / 50) * 50)
     arrays = (time, measured, present, size, count, unit, pace)
-    return Data(*map(jnp.asarray, arrays), capacity, tuple(DOFS.index(channel) for channel in channels))
+    names = ("time", "measured", "present", "step", "count", "unit", "pace")
+    fields: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
+    return Data(**fields, capacity=capacity, dofs=tuple(DOFS.index(channel) for channel in channels))
 
 
 def dominant_period(record: Record) -> float:

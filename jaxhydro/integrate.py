@@ -1,9 +1,8 @@
 """Fixed-step time integration, and output at any times."""
 
 from functools import partial
-from typing import Literal
+from typing import Literal, TypeAlias
 
-import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -16,7 +15,7 @@ from jaxhydro.waves.sea import AbstractSea
 
 Method = Literal["tsit5", "rk4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]
-Path = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
+Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
 class Grid(eqx.Module):
@@ -55,10 +54,10 @@ class Grid(eqx.Module):
         return x, v, a
 
 
-Path = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
+Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 def _by_scan(
     scheme: runge_kutta.Scheme, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
-) -> Path:
+) -> Motion:
     """An explicit Runge-Kutta scheme as this package's own loop: positions and body velocities at the ends of the steps."""
     y, unravel = ravel_pytree(state)
     run = runge_kutta.forward if adjoint == "forward" else runge_kutta.backward
@@ -71,11 +70,13 @@ def _by_scan(
     return states.position, states.velocity
 
 
-def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Path:
+def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
     """diffrax's Tsitouras 5(4) on the same grid.
 
     `StepTo`, not `ConstantStepSize`, whose reverse gradients are wrong with output on the step grid (diffrax 0.7.2).
     """
+    import diffrax
+
     grid = start + step * jnp.arange(capacity + 1.0)
     solution = diffrax.diffeqsolve(
         diffrax.ODETerm(lambda t, y, args: args[0].rate(t, y, args[1])),
@@ -111,7 +112,8 @@ def integrate(
     """
     count = jnp.asarray(capacity) if count is None else count
     # two steps more, so that the differences at the last one are central
-    run = _by_diffrax if method == "diffrax" else partial(_by_scan, runge_kutta.SCHEMES[method])
+    scheme = runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()
+    run = _by_diffrax if method == "diffrax" else partial(_by_scan, scheme)
     position, velocity = run(model, sea, state, start, step, count + 2, capacity + 2, adjoint)
     rate = jax.vmap(model.position_rate)(position, velocity)
     return Grid(start, step, count, position, rate, differences(rate, step))
@@ -123,7 +125,7 @@ def differences(values: Float[Array, "n 6"], step: Float[Array, ""]) -> Float[Ar
     Abramowitz and Stegun 1964, table 25.2, m = 5.
     """
     if values.shape[0] < 5:
-        return jnp.gradient(values, axis=0) / step
+        return jnp.asarray(jnp.gradient(values, axis=0)) / step
     inside = (values[:-4] - 8 * values[1:-3] + 8 * values[3:-1] - values[4:]) / 12
     first = jnp.array([[-25.0, 48.0, -36.0, 16.0, -3.0], [-3.0, -10.0, 18.0, -6.0, 1.0]]) / 12
     begin, end = first @ values[:5], -(first @ values[-1:-6:-1])[::-1]

@@ -16,6 +16,7 @@ from jaxhydro.strips import Hull, end_wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
+
 class RigidBody(eqx.Module):
     """Mass (kg), centre of mass (m from the reference point) and inertia about it (kg m2), body axes."""
 
@@ -120,7 +121,8 @@ class Model(eqx.Module):
             surface = sea.elevation(time, place[:2, None] + matrix[:2] @ hull.waterline())
             depth = depth if surface is None else depth + surface
         wet, reach = hull.wetted(vertical, depth[: roots.shape[1] - m])
-        covered, reach = (jnp.stack([wet, reach]) @ hull.spread) * jnp.stack([strips.weight, strips.fraction])
+        of = jnp.array(strips.element, dtype=int)
+        covered, reach = wet[of] * strips.weight, reach[of] * strips.fraction
         away = hull.join(jnp.stack([reach, reach]), jnp.zeros(m))
         lever = hull.lever + hull.twist * away
         own, own_end = hull.split(-(state.velocity @ lever))

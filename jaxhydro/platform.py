@@ -3,6 +3,7 @@
 import math
 from os import PathLike
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -44,7 +45,7 @@ def build(platform: schema.Platform) -> Model:
     members = members_of(platform)
     hull = Hull.of(members)
     loads: list[AbstractLoad] = [
-        Weight(body.mass, body.centre, {}),
+        Weight(mass=body.mass, centre=body.centre, values={}),
         _declared_hydrostatics(buoyancy(members), platform, mass, float(centre[2])),
     ]
     loads += _mooring(platform)
@@ -150,18 +151,8 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
         # volume that the members do not have is at the centre of buoyancy of those that they have
         extra = 0.0 if name == "C33" else force * own["centre_of_buoyancy"]
         stiffness.append(extra if buoyant is None else buoyant - own[name])
-    return Buoyancy(
-        load.lower,
-        load.axis,
-        load.length,
-        load.area,
-        load.second_moment,
-        load.directions,
-        load.thickness,
-        jnp.asarray(force),
-        jnp.asarray(stiffness),
-        {},
-    )
+    changed = (jnp.asarray(force), jnp.asarray(stiffness))
+    return eqx.tree_at(lambda b: (b.extra_force, b.extra_stiffness), load, changed)
 
 
 def _line_pull(load: AbstractLoad) -> float:

@@ -1,5 +1,6 @@
 """What a simulation returns, and pure analysis of motion records."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import equinox as eqx
@@ -49,7 +50,7 @@ def extremes(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[
         return np.zeros(0), np.zeros(0)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(sign[clear])) + 1, [len(clear)]])
     times, values = [], []
-    for first, last in zip(starts[:-1], starts[1:], strict=True):
+    for first, last in pairwise(starts):
         span = slice(clear[first], clear[last - 1] + 1)
         t, x = time[span], motion[span]
         tip = int(np.argmax(np.abs(x)))

@@ -3,10 +3,10 @@
 diffrax has the same schemes. These loops are kept because they are faster for what this package does most: see the bench.
 """
 
+import functools
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -31,17 +31,20 @@ class Scheme(NamedTuple):
         return np.array([np.pad(row, (0, size - len(row))) for row in self.rows])
 
 
-def _of_diffrax(tableau: diffrax.ButcherTableau) -> Scheme:
-    """A tableau of diffrax without its last stage, which is the first of the next step and weighs nothing."""
+RK4 = Scheme((0.0, 0.5, 0.5, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6), ((), (0.5,), (0.0, 0.5), (0.0, 0.0, 1.0)))
+
+
+@functools.cache
+def tsit5() -> Scheme:
+    """Tsitouras 2011, Computers and Mathematics with Applications 62, 770-775, table 1: diffrax's tableau.
+
+    Without its last stage, which is the first of the next step and weighs nothing.
+    """
+    import diffrax  # takes a fifth of a second
+
+    tableau = diffrax.Tsit5.tableau
     rows = ((), *(tuple(map(float, row)) for row in tableau.a_lower[:-1]))
     return Scheme((0.0, *map(float, tableau.c[:-1])), tuple(map(float, tableau.b_sol[:-1])), rows)
-
-
-SCHEMES = {
-    "rk4": Scheme((0.0, 0.5, 0.5, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6), ((), (0.5,), (0.0, 0.5), (0.0, 0.0, 1.0))),
-    # Tsitouras 2011, Computers and Mathematics with Applications 62, 770-775
-    "tsit5": _of_diffrax(diffrax.Tsit5.tableau),
-}
 
 
 def _step(driver, y, time, step, rate: Rate, scheme: Scheme):
@@ -128,7 +131,8 @@ def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int
         push = jnp.zeros(stages.shape)
     # the scheme applied to the linearised equation: d_y after a step = transfer d_y + drive
     eye, table = jnp.eye(y.shape[0]), scheme.coefficients()
-    matrices, vectors = [], []
+    matrices: list[Array] = []
+    vectors: list[Array] = []
     for i in range(size):
         matrix = eye + step * sum((table[i, j] * matrices[j] for j in range(i)), jnp.zeros_like(slope[:, 0]))
         vector = step * sum((table[i, j] * vectors[j] for j in range(i)), jnp.zeros_like(push[:, 0]))

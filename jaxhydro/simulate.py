@@ -59,8 +59,9 @@ def simulate(
     by name, absolute where an array) and `rate` (m/s, rad/s of surge ... yaw). `step` (s) is the largest internal step; the
     one taken divides the duration. Positions are those of the reference point, equilibrium included.
 
-    `method` "tsit5" is Tsitouras 5(4) with diffrax's tableau in a loop of this package, "rk4" the classical scheme in the same
-    loop, "diffrax" diffrax's own solver; steps are fixed. BENCH_NOTE `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
+    `method` "tsit5" is Tsitouras 5(4) with diffrax's tableau in a loop of this package, "rk4" the classical scheme
+    in the same loop, "diffrax" diffrax's own solver; steps are fixed. BENCH_NOTE
+    `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
 
     Raises ValueError for times that do not increase, EquilibriumError where the platform does not rest.
     """

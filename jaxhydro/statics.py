@@ -29,9 +29,9 @@ def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
 def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
     # The least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is.
     linear = lx.AutoLinearSolver(well_posed=False)
-    solver = optx.Newton(rtol=1e-12, atol=1e-12, linear_solver=linear)
+    solver: optx.Newton = optx.Newton(rtol=1e-12, atol=1e-12, linear_solver=linear)
     adjoint = optx.ImplicitAdjoint(linear_solver=linear)
-    solution = optx.root_find(_balance, solver, jnp.zeros(6), model, max_steps=64, throw=False, adjoint=adjoint)
+    solution: optx.Solution = optx.root_find(_balance, solver, jnp.zeros(6), model, max_steps=64, throw=False, adjoint=adjoint)
     return solution.value, _balance(solution.value, model)
 
 
@@ -39,7 +39,8 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
     """Where the platform rests in still water: surge, sway, heave (m), roll, pitch, yaw (rad), from its reference position.
 
     Found by optimistix's Newton iteration; differentiable in the model. Motions without restoring stay at zero. Raises
-    EquilibriumError where no balance to 1e-8 of the weight is found, naming the motion.
+    EquilibriumError where no balance to 1e-8 of the weight is found, or one that no platform rests in: it sank or rose out of
+    the water, or lies on its side.
     """
     position, residual = _solve(model)
     if isinstance(residual, jax.core.Tracer):
@@ -51,6 +52,11 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
             f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
         )
+    draught = float(jnp.max(jnp.abs(model.hull.elements.start[2]), initial=0.0))
+    far = [abs(float(position[2])) > max(draught, 20.0), *(abs(float(a)) > 1.0 for a in position[3:5])]
+    if any(far):
+        at = ", ".join(f"{dof} {float(x):.3g} {u}" for dof, x, u in zip(DOFS[2:5], position[2:5], ("m", "rad", "rad")))
+        raise EquilibriumError(f"the platform only balances at {at}: check mass, centre of mass, volume and mooring")
     return position
 
 
@@ -61,7 +67,7 @@ class Modes(NamedTuple):
     shape: np.ndarray
 
     def of(self, dof: str) -> float:
-        """Period (s) of the mode in which `dof` takes the largest part of the kinetic energy's coordinate; nan if none."""
+        """Longest period (s) of a mode in whose shape `dof` is the largest entry; nan if there is none."""
         index = DOFS.index(dof)
         mine = [period for period, shape in zip(self.period, self.shape, strict=True) if np.argmax(np.abs(shape)) == index]
         return float(mine[0]) if mine else float("nan")

@@ -15,7 +15,8 @@ are one matrix product and the load on the platform is its transpose.
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -86,9 +87,9 @@ class Member(NamedTuple):
         length = float(np.linalg.norm(self.b - self.a))
         if self.elements is not None:
             at = np.linspace(0.0, 1.0, self.elements + 1)
-            return [(lo, hi, 2) for lo, hi in zip(at[:-1], at[1:], strict=True)]
+            return [(lo, hi, 2) for lo, hi in pairwise(at)]
         found = []
-        for lo, hi in zip(self.stations[:-1], self.stations[1:], strict=True):
+        for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
             under = min(1.0, max(0.0, -low) / max(high - low, 1e-9)) if self.column else 1.0
             count = math.ceil(under * (hi - lo) * length / (SPACING if self.column else PONTOON_SPACING))
@@ -141,8 +142,8 @@ class Hull(eqx.Module):
     """Elements, strips and ends, and the constant matrices between the platform's motion and that of their lines.
 
     Lines are the strips' first directions, their second ones, then the ends. A line's lever is `lever + twist * s`, s the
-    distance of its strip from the element's start; its centripetal acceleration is `inward + outgoing * s` times the products p^2,
-    q^2, r^2, pq, pr, qr of the angular velocity.
+    distance of its strip from the element's start; its centripetal acceleration is `inward + outgoing * s` times the
+    products p^2, q^2, r^2, pq, pr, qr of the angular velocity.
     """
 
     elements: Elements
@@ -152,7 +153,6 @@ class Hull(eqx.Module):
     twist: Float[Array, "6 l"]
     inward: Float[Array, "6 l"]
     outgoing: Float[Array, "6 l"]
-    spread: Float[Array, "e n"]  # 1 where a strip belongs to an element
 
     @classmethod
     def of(cls, members: Sequence[Member]) -> "Hull":
@@ -165,10 +165,9 @@ class Hull(eqx.Module):
         along = np.concatenate([strips.axis, strips.axis, np.zeros_like(tips.axis)], axis=1)
         lever = np.concatenate([direction, np.cross(point, direction, axis=0)])
         twist = np.concatenate([np.zeros_like(direction), np.cross(along, direction, axis=0)])
-        spread = np.zeros((elements.length.shape[0], len(strips.element)))
-        spread[list(strips.element), range(len(strips.element))] = 1.0
-        arrays = (lever, twist, _centripetal(direction, point), _centripetal(direction, along), spread)
-        return cls(elements, strips, tips, *map(jnp.asarray, arrays))
+        arrays = (lever, twist, _centripetal(direction, point), _centripetal(direction, along))
+        lines: dict[str, Any] = dict(zip(("lever", "twist", "inward", "outgoing"), map(jnp.asarray, arrays), strict=True))
+        return cls(elements, strips, tips, **lines)
 
     def split(self, lines: Float[Array, " l"]) -> tuple[Float[Array, "2 n"], Float[Array, " m"]]:
         """What belongs to the strips, by direction, and what to the ends."""
@@ -180,8 +179,8 @@ class Hull(eqx.Module):
         return jnp.concatenate([strips.reshape(-1), ends])
 
     def waterline(self) -> Float[Array, "3 e+m"]:
-        """Points (m) where the surface elevation is looked up for elements and ends: a column's axis at still water, a pontoon's
-        middle."""
+        """Points (m) where the surface elevation is looked up for elements and ends: a column's axis at still water, a
+        pontoon's middle."""
         elements = self.elements
         column = elements.thickness == 0
         at = jnp.where(column, -elements.start[2] / jnp.where(column, elements.axis[2], 1.0), 0.5 * elements.length)
@@ -212,6 +211,9 @@ def _centripetal(direction: np.ndarray, point: np.ndarray) -> np.ndarray:
     return np.stack(
         [-dy * y - dz * z, -dx * x - dz * z, -dx * x - dy * y, dx * y + dy * x, dx * z + dz * x, dy * z + dz * y]
     )
+
+
+_STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")
 
 
 def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
@@ -251,19 +253,19 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
                     )
                 )
             elements.append((start, member.axis, length, thickness))
-    if not rows:
-        none = np.zeros((3, 0)), np.zeros((3, 0)), np.zeros(0), np.zeros(0)
-        pair, flat = np.zeros((2, 0)), np.zeros(0)
-        arrays = (*none[:2], np.zeros((3, 2, 0)), flat, flat, pair, pair, flat)
-        return Elements(*map(jnp.asarray, none)), Strips(*map(jnp.asarray, arrays), ((), ()), (), ())
-    *geometry, label, element = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
-    whole = (np.stack(column, axis=-1) for column in zip(*elements, strict=True))
-    return Elements(*map(jnp.asarray, whole)), Strips(
-        *map(jnp.asarray, geometry),
-        tuple(tuple(map(int, row)) for row in label),
-        tuple(labels),
-        tuple(map(int, element)),
-    )
+    triple, pair, flat = np.zeros((3, 0)), np.zeros((2, 0)), np.zeros(0)
+    whole = [triple, triple, flat, flat]
+    parts = [triple, triple, np.zeros((3, 2, 0)), flat, flat, pair, pair, flat]
+    label_of: tuple[tuple[int, ...], ...] = ((), ())
+    element_of: tuple[int, ...] = ()
+    if rows:
+        whole = [np.stack(column, axis=-1) for column in zip(*elements, strict=True)]
+        *parts, which, home = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
+        label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
+    of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
+    strips = Strips(**of_strips, label=label_of, labels=tuple(labels), element=element_of)
+    of_elements: dict[str, Any] = dict(zip(("start", "axis", "length", "thickness"), map(jnp.asarray, whole), strict=True))
+    return Elements(**of_elements), strips
 
 
 def ends(members: Sequence[Member]) -> Ends:
@@ -282,7 +284,8 @@ def ends(members: Sequence[Member]) -> Ends:
     points, along = np.array(position).reshape(-1, 3).T, np.array(axis).reshape(-1, 3).T
     areas = np.array(area)
     arrays = (points, along, np.array(outward), areas, np.sqrt(areas / math.pi))
-    return Ends(*map(jnp.asarray, arrays), tuple(label), labels)
+    fields: dict[str, Any] = dict(zip(("position", "axis", "outward", "area", "radius"), map(jnp.asarray, arrays), strict=True))
+    return Ends(**fields, label=tuple(label), labels=labels)
 
 
 def end_wetted(depth: Float[Array, " m"]) -> Float[Array, " m"]:

@@ -37,5 +37,6 @@ class EndInertia(AbstractLoad):
         mass = density * spread_ends(ends, self.values, "Ca") * volume * flow.wet
         if flow.acceleration is None:
             return Action(end_mass=mass)
+        assert flow.pressure is not None
         pressure = -density * flow.pressure * ends.area * ends.outward * flow.wet
         return Action(end_force=mass * flow.acceleration + pressure, end_mass=mass)

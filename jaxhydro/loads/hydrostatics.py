@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -87,9 +88,7 @@ class Buoyancy(AbstractLoad):
     def upright(self, weight_density: float) -> dict[str, float]:
         """Displaced volume (m3), its centroid's z (m), C33 (N/m), C44 and C55 (N m/rad, without the weight's share) of the
         members alone, about the upright platform at its reference position."""
-        zeros = jnp.zeros(6)
-        volume, moment = self.geometry(zeros[0], jnp.eye(3)[2])
-        slope = jax.jacfwd(lambda q: self.force(q, rotation(q[3:]), weight_density))(zeros)
+        volume, moment, slope = _upright(self, jnp.asarray(weight_density))
         total = float(volume.sum())
         return {
             "displaced_volume": total,
@@ -98,6 +97,13 @@ class Buoyancy(AbstractLoad):
             "C44": -float(slope[3, 3]),
             "C55": -float(slope[4, 4]),
         }
+
+
+@eqx.filter_jit
+def _upright(load: Buoyancy, weight_density: Float[Array, ""]):
+    zeros = jnp.zeros(6)
+    slope = jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(zeros)
+    return *load.geometry(zeros[0], jnp.eye(3)[2]), slope
 
 
 def buoyancy(members: Sequence[Member]) -> Buoyancy:
@@ -127,8 +133,10 @@ def buoyancy(members: Sequence[Member]) -> Buoyancy:
                     thickness,
                 )
             )
-    if not rows:
-        arrays = [np.zeros((3, 0)), np.zeros((3, 0)), np.zeros(0), np.zeros(0), np.zeros((2, 0)), np.zeros((3, 2, 0)), np.zeros(0)]
-    else:
+    flat, triple = np.zeros(0), np.zeros((3, 0))
+    arrays = [triple, triple, flat, flat, np.zeros((2, 0)), np.zeros((3, 2, 0)), flat]
+    if rows:
         arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
-    return Buoyancy(*map(jnp.asarray, arrays), jnp.zeros(()), jnp.zeros(3), {})
+    names = ("lower", "axis", "length", "area", "second_moment", "directions", "thickness")
+    pieces: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
+    return Buoyancy(**pieces, extra_force=jnp.zeros(()), extra_stiffness=jnp.zeros(3), values={})

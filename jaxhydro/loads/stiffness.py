@@ -12,7 +12,8 @@ from jaxhydro.loads.matrix import assemble, place, unit
 class Stiffness(AbstractLoad):
     """F = F0 - C q, q the displacement of the reference point in earth axes and roll, pitch, yaw; F0 the preload (N, N m).
 
-    Labels are `mooring.C11` or `stiffness.C11` and so on. Jonkman 2007, NREL/TP-500-41958, eq. 4-27: the linearised mooring system.
+    Labels are `mooring.C11` or `stiffness.C11` and so on.
+    Jonkman 2007, NREL/TP-500-41958, eq. 4-27: the linearised mooring system.
     """
 
     values: dict[str, Float[Array, ""]]

@@ -22,8 +22,8 @@ class StripInertia(AbstractLoad):
     """f = rho V (1 + Ca) a_water - rho V Ca a_strip, across the member, on the wetted part of each strip.
 
     The transverse inertia term of the relative Morison equation: Morison et al. 1950 (Petroleum Transactions 189, eq. 7) in the
-    relative form of Chakrabarti 1987, Hydrodynamics of Offshore Structures, eq. 6.33. The 1 is the Froude-Krylov force. Ca refers
-    to the displaced volume V of the strip, in a circular and in a rectangular section alike. The strip's acceleration
+    relative form of Chakrabarti 1987, Hydrodynamics of Offshore Structures, eq. 6.33. The 1 is the Froude-Krylov force. Ca
+    refers to the displaced volume V of the strip, in a circular and in a rectangular section alike. The strip's acceleration
     includes the centripetal part. Directions turn with the body.
     """
 

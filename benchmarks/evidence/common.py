@@ -1,0 +1,110 @@
+"""What the sections of docs/validation.md share: where things are, a cache keyed by what a number depends on, tables."""
+
+import hashlib
+import json
+import multiprocessing as mp
+import os
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+ROOT = Path(__file__).resolve().parents[2]
+SHARED = ROOT.parent / "shared"
+CACHE = Path(os.environ.get("JAXHYDRO_VALIDATE_CACHE", ROOT / ".venv" / "validate-cache"))
+DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
+# the edge of the packages: no number depends on it
+EDGE = {"cli", "command", "console", "export", "files", "formatting", "outputs", "plot", "report", "saved", "tables"}
+TRUE = {
+    "column.Ca_t": 1.50, "column.Ca_z": 0.12, "column.Cd_t": 2.09, "column.Cd_z": 2.23,
+    "pontoon.Ca_t": 0.11, "pontoon.Ca_z": 1.87, "pontoon.Cd_t": 1.84, "pontoon.Cd_z": 4.96,
+    "linear_damping.B11": 4.4e4, "linear_damping.B33": 1.6e5, "linear_damping.B55": 3.63e8,
+}  # fmt: skip
+
+
+class Section(NamedTuple):
+    """A section of the page: its heading's words, its text, and its figures' files in the cache."""
+
+    title: str
+    text: str
+    figures: tuple[Path, ...] = ()
+
+
+class Absent(Exception):
+    """What a section needs is not on this machine."""
+
+
+def fingerprint(*inputs: Path | str) -> str:
+    """Hash of the packages' sources, the edge left out, and of files, folders and words."""
+    sources = [p for name in ("jaxhydro", "calibration") for p in (ROOT / name).rglob("*.py") if p.stem not in EDGE]
+    digest = hashlib.sha256()
+    for item in [*sorted(sources), *inputs]:
+        if isinstance(item, Path):
+            for path in sorted(item.rglob("*")) if item.is_dir() else [item]:
+                if path.is_file():
+                    digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+        else:
+            digest.update(item.encode() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def cached(section: str, key: str, name: str, work: Callable[[], Any] | None = None) -> Any:
+    """A result (JSON) from the cache, else that of `work`, kept; None where there is neither."""
+    path = CACHE / section / key / f"{name}.json"
+    if path.exists():
+        return json.loads(path.read_text())
+    if work is None:
+        return None
+    return keep(section, key, name, work())
+
+
+def keep(section: str, key: str, name: str, result: Any) -> Any:
+    """Write a result into the cache, whole; gives it as JSON gives it back."""
+    path = CACHE / section / key / f"{name}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_suffix(f".{os.getpid()}")
+    beside.write_text(json.dumps(result))
+    beside.replace(path)
+    return json.loads(path.read_text())
+
+
+def begin() -> None:
+    """What every process does first."""
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+
+
+def parallel(
+    section: str, key: str, names: Sequence[str], work: Callable[[str], Any], processes: int
+) -> Iterator[tuple[str, Any]]:
+    """Results of `work(name)` for all names, those in the cache first; the others from processes of their own."""
+    missing = []
+    for name in names:
+        result = cached(section, key, name)
+        if result is None:
+            missing.append(name)
+        else:
+            yield name, result
+    if missing:
+        with mp.get_context("spawn").Pool(min(processes, len(missing)), begin) as pool:
+            for name, result in pool.imap_unordered(_Named(work), missing):
+                yield name, keep(section, key, name, result)
+
+
+class _Named:
+    def __init__(self, work: Callable[[str], Any]) -> None:
+        self.work = work
+
+    def __call__(self, name: str) -> tuple[str, Any]:
+        return name, self.work(name)
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """A Markdown table, its first column on the left."""
+    lines = [head, [":--", *["--:"] * (len(head) - 1)], *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
+
+
+def say(text: str) -> None:
+    """One line of progress."""
+    print(text, flush=True)

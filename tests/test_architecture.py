@@ -1,0 +1,185 @@
+"""The order of the house: who imports whom, what stays at the edge, and that every load says where it comes from."""
+
+import ast
+import resource
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from jaxhydro.loads import LOADS
+
+ROOT = Path(__file__).resolve().parents[1]
+
+LAYERS = (  # a module imports from layers below its own
+    ("jaxhydro.environment", "jaxhydro.rotations"),
+    ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.runge_kutta"),
+    ("jaxhydro.waves.sea",),
+    ("jaxhydro.waves",),
+    ("jaxhydro.loads.base",),
+    ("jaxhydro.loads.*",),
+    ("jaxhydro.loads",),
+    ("jaxhydro.model",),
+    ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response"),
+    ("jaxhydro.simulate",),
+    # files in, files out: the edge
+    ("jaxhydro.declared",),
+    ("jaxhydro.problems",),
+    ("jaxhydro.body_schema", "jaxhydro.files"),
+    ("jaxhydro.platform_schema",),
+    ("jaxhydro.platform", "jaxhydro.plot"),
+    ("jaxhydro",),
+    ("jaxhydro.export", "jaxhydro.console", "jaxhydro.options"),
+    ("jaxhydro.command",),
+    ("jaxhydro.cli",),
+)
+SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
+    "matrix": "*",
+    "strip_inertia": {"spread"},
+    "end_inertia": {"spread_ends"},
+    "strip_drag": {"REST"},
+}
+NUMERICS = [name for layer in LAYERS[:10] for name in layer]
+EDGE = {  # third-party or built-in, and the only modules that may use it
+    "matplotlib": {"jaxhydro.plot", "calibration.plot"},
+    "PIL": {"jaxhydro.plot"},
+    "ruamel": {"jaxhydro.problems"},
+    "yaml": set(),
+    "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals")},
+    "xarray": {"jaxhydro.export", "calibration.outputs", "calibration.readers"},
+    "typer": {"jaxhydro.cli", "jaxhydro.options"},
+    "rich": {"jaxhydro.console"},
+}
+STANDARD = {"abc", "collections", "functools", "math", "typing"}
+ARRAYS = {"jax", "jaxtyping", "equinox", "diffrax", "optimistix", "lineax", "numpy"}
+
+
+@cache
+def modules() -> dict[str, ast.Module]:
+    """Every module of the two packages, by name, as a syntax tree."""
+    found = {}
+    for package in ("jaxhydro", "calibration"):
+        for path in (ROOT / package).rglob("*.py"):
+            name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+            found[name] = ast.parse(path.read_text(encoding="utf-8"))
+    return found
+
+
+def imports(name: str) -> list[tuple[str, str]]:
+    """(module, name in it or "") of all imports of a module, those inside functions too."""
+    found = []
+    for node in ast.walk(modules()[name]):
+        if isinstance(node, ast.Import):
+            found += [(alias.name, "") for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{name}: imports are absolute"
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                found.append((whole, "") if whole in modules() else (node.module or "", alias.name))
+    return found
+
+
+def layer(name: str) -> int:
+    """Its place in LAYERS."""
+    for pattern in (name, name.rsplit(".", 1)[0] + ".*"):
+        for i, names in enumerate(LAYERS):
+            if pattern in names:
+                return i
+    raise AssertionError(f"{name} has no place in LAYERS of {Path(__file__).name}: say which layer it belongs to")
+
+
+@pytest.mark.parametrize("name", sorted(name for name in modules() if name.startswith("jaxhydro")))
+def test_a_module_imports_only_what_is_below_it(name: str) -> None:
+    """architecture.md, "Who may import whom"."""
+    for module, what in imports(name):
+        if module.split(".")[0] != "jaxhydro":
+            continue
+        if name.startswith("jaxhydro.loads.") and module.startswith("jaxhydro.loads."):
+            short = module.rsplit(".", 1)[1]
+            allowed = SHARED_BY_LOADS.get(short, set())
+            assert short == "base" or allowed == "*" or what in allowed, f"{name} imports {what} of the load {module}"
+        elif (module, what) != ("jaxhydro", ""):  # `import jaxhydro` for its version, in functions of the edge
+            assert layer(module) < layer(name), f"{name} imports {module}, which is not below it"
+
+
+def test_the_shared_helpers_of_loads_are_no_loads() -> None:
+    """A load never imports another load's class: the exceptions above are functions, constants, or no load at all."""
+    classes = {load.__name__ for load in LOADS.values()}
+    for name in modules():
+        if name.startswith("jaxhydro.loads."):
+            assert not classes & {what for module, what in imports(name) if module.startswith("jaxhydro.loads.")}
+
+
+def test_the_simulator_does_not_know_calibration() -> None:
+    """architecture.md: jaxhydro never imports calibration, the command line aside."""
+    simulator = [name for name in modules() if name.startswith("jaxhydro")]
+    users = {name for name in simulator if any(module.startswith("calibration") for module, _ in imports(name))}
+    assert users <= {"jaxhydro.cli", "jaxhydro.command"}
+
+
+def test_calibration_uses_public_names_and_not_the_command_line() -> None:
+    """architecture.md: calibration imports only jaxhydro's public names."""
+    edge = ("jaxhydro.cli", "jaxhydro.command", "jaxhydro.options")
+    for name in modules():
+        if name.startswith("calibration"):
+            for module, what in imports(name):
+                assert module not in edge, f"{name} imports {module}"
+                assert not (module.startswith("jaxhydro") and what.startswith("_")), f"{name} imports {module}.{what}"
+
+
+@pytest.mark.parametrize("package", sorted(EDGE))
+def test_figures_files_and_tables_stay_at_the_edge(package: str) -> None:
+    """architecture.md: YAML, CSV, matplotlib and progress bars live at the edge."""
+    users = {name for name in modules() if any(m.split(".")[0] == package for m, _ in imports(name))}
+    assert users <= EDGE[package]
+
+
+@pytest.mark.parametrize("name", sorted(name for name in modules() if name.startswith("jaxhydro")))
+def test_numerics_are_pure(name: str) -> None:
+    """Numerics import arrays and solvers only; nothing prints; float64 is switched on at the edge."""
+    if any(name == known or (known.endswith(".*") and name.startswith(known[:-1])) for known in NUMERICS):
+        roots = {module.split(".")[0] for module, _ in imports(name)}
+        assert roots <= STANDARD | ARRAYS | {"jaxhydro"}, f"{name} imports {sorted(roots - STANDARD - ARRAYS)}"
+    called = {ast.unparse(node.func) for node in ast.walk(modules()[name]) if isinstance(node, ast.Call)}
+    assert "print" not in called
+    assert name == "jaxhydro.cli" or not any(function.endswith("config.update") for function in called)
+
+
+def test_matplotlib_has_no_global_state_in_the_packages() -> None:
+    """pyplot keeps figures alive; artists are made from Figure."""
+    assert not [name for name in modules() if any(m == "matplotlib.pyplot" for m, _ in imports(name))]
+
+
+def _seconds(statement: str) -> float:
+    """CPU time of the fastest of three fresh interpreters."""
+    times = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([sys.executable, "-c", statement], check=True, cwd=ROOT)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        times.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return min(times)
+
+
+def test_import_is_light() -> None:
+    """At most half a second of CPU over JAX and Equinox, and as much again for what a busy machine adds."""
+    assert _seconds("import jaxhydro") < _seconds("import jax, equinox") + 0.5 + 0.5
+
+
+def test_import_brings_in_nothing_of_the_edge() -> None:
+    """Figures, tables and the command line cost their import only where they are used."""
+    heavy = ("matplotlib", "pandas", "xarray", "h5py", "scipy", "rich", "typer", "PIL", "calibration")
+    code = f"import jaxhydro, sys; print(*[m for m in {heavy!r} if m in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True, text=True)
+    assert run.stdout.split() == []
+
+
+@pytest.mark.parametrize("name", LOADS)
+def test_a_load_names_its_source(name: str) -> None:
+    """architecture.md: a source named in its docstring, and in `source` for people."""
+    load = LOADS[name]
+    assert load.source.strip()
+    assert load.__doc__ and load.source.split()[0] in load.__doc__
+    assert load.__module__ == f"jaxhydro.loads.{'hydrostatics' if name == 'buoyancy' else name}"
