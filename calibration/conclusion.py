@@ -22,8 +22,12 @@ if TYPE_CHECKING:
     from calibration.fit import Fit
 
 
-def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
-    """The fitted parameters: a standard deviation where the records determine them, none where not."""
+TOGETHER = 0.9  # correlation beyond which two vague parameters are said to be known together only
+
+
+def estimates(fit: Fit, tests: Sequence[TestFit]) -> tuple[dict[str, Estimate], list[tuple[str, str]]]:
+    """The fitted parameters: a standard deviation where the records determine them, none where not. And the pairs of vague
+    ones that the records cannot tell apart."""
     problem, data, space, products = fit.problem, fit.problem.data, fit.problem.space, fit.products
     assert products is not None, "nothing has been minimised yet"
     samples = np.maximum(np.asarray(data.present).sum(axis=-1), 1)
@@ -35,7 +39,8 @@ def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
     unknowns = products.shape[-1] - 1
     variance = products[..., -1, -1] / np.maximum(samples - unknowns / len(data.dofs), 1)
     ridge, width = np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
-    deviation = spread(products, fit.weight, variance, inflation, ridge, width).deviation()
+    uncertainty = spread(products, fit.weight, variance, inflation, ridge, width)
+    deviation, correlation = uncertainty.deviation(), uncertainty.correlation()
     x = np.asarray(fit.unknowns.shared)
     slope = slopes(space, x)
     found = {}
@@ -55,7 +60,14 @@ def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
             bound,
             clear,
         )
-    return found
+    labels = list(found)
+    pairs = [
+        (a, b)
+        for i, a in enumerate(labels)
+        for j, b in enumerate(labels[:i])
+        if abs(correlation[i, j]) > TOGETHER and not (found[a].identifiable and found[b].identifiable)
+    ]
+    return found, pairs
 
 
 @eqx.filter_jit
@@ -99,7 +111,9 @@ def series_of(
     return tests
 
 
-def remarks(campaign: Campaign, parameters: dict[str, Estimate]) -> tuple[str, ...]:
+def remarks(
+    campaign: Campaign, parameters: dict[str, Estimate], pairs: Sequence[tuple[str, str]] = ()
+) -> tuple[str, ...]:
     """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
     said = [str(finding) for finding in campaign.findings]
     left = [r.id for r in campaign.records if r.use != "ignore" and r.kind != "decay"]
@@ -108,4 +122,5 @@ def remarks(campaign: Campaign, parameters: dict[str, Estimate]) -> tuple[str, .
     vague = [label for label, p in parameters.items() if not p.identifiable]
     if vague:
         said.append(f"these records do not determine {', '.join(vague)}: their values are not results")
+    said += [f"{a} and {b} cannot be told apart: only their joint effect is known" for a, b in pairs]
     return tuple(said)

@@ -234,7 +234,7 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
     space, x = fit.problem.space, fit.unknowns.shared
     model = space.model(fit.problem.model, x)
     tests = series_of(fit.problem, fit.records, fit.unknowns)
-    parameters = estimates(fit, tests)
+    parameters, pairs = estimates(fit, tests)
     held = [record for record in campaign.used("holdout") if record.kind == "decay"]
     if held:
         # the coefficients stay; a record's release and its sensors' offsets are its own
@@ -254,7 +254,7 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
         fit.iterations,
         seconds,
         tuple(fit.history),
-        remarks(campaign, parameters),
+        remarks(campaign, parameters, pairs),
     )
 
 

@@ -54,7 +54,6 @@ class Grid(eqx.Module):
         return x, v, a
 
 
-Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 def _by_scan(
     scheme: runge_kutta.Scheme, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
 ) -> Motion:

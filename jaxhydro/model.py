@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripShape
-from jaxhydro.rotations import angular_velocity, attitude_rates, cross, rotation, skew
+from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew
 from jaxhydro.solve6 import accelerate
 from jaxhydro.strips import Hull, end_wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
@@ -108,8 +108,7 @@ class Model(eqx.Module):
 
     def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
         """What the loads read: the motion, and how the water moves past strips and ends."""
-        # the barrier keeps XLA from working out the sines anew in every kernel that reads the matrix
-        matrix = jax.lax.optimization_barrier(rotation(state.position[3:]))
+        matrix = rotation(state.position[3:])
         hull, strips, ends, place = self.hull, self.hull.strips, self.hull.ends, state.position[:3]
         n, m = len(strips.element), ends.area.shape[0]
         roots = jnp.concatenate([hull.elements.start, ends.position], axis=1)
@@ -124,12 +123,14 @@ class Model(eqx.Module):
         of = jnp.array(strips.element, dtype=int)
         covered, reach = wet[of] * strips.weight, reach[of] * strips.fraction
         away = hull.join(jnp.stack([reach, reach]), jnp.zeros(m))
-        lever = hull.lever + hull.twist * away
-        own, own_end = hull.split(-(state.velocity @ lever))
+        lever = hull.lever(away)
+        still, turning = (state.velocity @ hull.motion).reshape(2, -1)
+        own, own_end = hull.split(-(still + turning * away))
         extent = strips.size + strips.taper * reach
         p, q, r = state.velocity[3:]
         square = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r])
-        inward = square @ hull.inward + away * (square @ hull.outgoing)
+        inward, outgoing = (square @ hull.inward).reshape(2, -1)
+        inward = inward + away * outgoing
         lines = Lines(lever, inward)
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
         end_wet = end_wetted(depth[roots.shape[1] - m :])
@@ -184,14 +185,13 @@ class Model(eqx.Module):
             now.lines.lever,
         )
         turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
-        position_rate = jnp.concatenate([now.rotation @ linear, attitude_rates(state.position[3:], spin)])
-        return State(position_rate, acceleration - turning, total.memory_rate)
+        return State(self.position_rate(state.position, state.velocity), acceleration - turning, total.memory_rate)
 
     @staticmethod
     def position_rate(position: Float[Array, "6"], velocity: Float[Array, "6"]) -> Float[Array, "6"]:
         """Rates of surge ... yaw of a velocity in body axes."""
-        attitude = position[3:]
-        return jnp.concatenate([rotation(attitude) @ velocity[:3], attitude_rates(attitude, velocity[3:])])
+        both = cosines(position[3:])
+        return jnp.concatenate([rotation_of(both) @ velocity[:3], attitude_rates_of(both, velocity[3:])])
 
     @staticmethod
     def body_velocity(position: Float[Array, "6"], rates: Float[Array, "6"]) -> Float[Array, "6"]:

@@ -4,13 +4,27 @@ Attitude is roll, pitch, yaw with R = Rz(yaw) Ry(pitch) Rx(roll) taking body axe
 Marine Craft Hydrodynamics and Motion Control, eq. 2.18). It is singular at 90 degrees of pitch.
 """
 
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 
+def cosines(attitude: Float[Array, "3"]) -> tuple[Float[Array, "3"], Float[Array, "3"]]:
+    """Cosines and sines of roll, pitch, yaw.
+
+    The barrier keeps XLA from working them out anew in every kernel, and for every entry of a matrix, that reads them.
+    """
+    return jax.lax.optimization_barrier((jnp.cos(attitude), jnp.sin(attitude)))
+
+
 def rotation(attitude: Float[Array, "3"]) -> Float[Array, "3 3"]:
     """Rotation matrix from body to earth axes; attitude is roll, pitch, yaw in rad (Fossen 2011, eq. 2.18)."""
-    (cr, cp, cy), (sr, sp, sy) = jnp.cos(attitude), jnp.sin(attitude)
+    return rotation_of(cosines(attitude))
+
+
+def rotation_of(both: tuple[Float[Array, "3"], Float[Array, "3"]]) -> Float[Array, "3 3"]:
+    """`rotation` from cosines and sines."""
+    (cr, cp, cy), (sr, sp, sy) = both
     return jnp.array(
         [
             [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -22,17 +36,23 @@ def rotation(attitude: Float[Array, "3"]) -> Float[Array, "3 3"]:
 
 def attitude_rates(attitude: Float[Array, "3"], angular: Float[Array, "3"]) -> Float[Array, "3"]:
     """Rates of roll, pitch, yaw (rad/s) of an angular velocity in body axes (Fossen 2011, eq. 2.28)."""
+    return attitude_rates_of(cosines(attitude), angular)
+
+
+def attitude_rates_of(
+    both: tuple[Float[Array, "3"], Float[Array, "3"]], angular: Float[Array, "3"]
+) -> Float[Array, "3"]:
+    """`attitude_rates` from cosines and sines."""
+    (cr, cp, _), (sr, sp, _) = both
     p, q, r = angular
-    cr, sr = jnp.cos(attitude[0]), jnp.sin(attitude[0])
-    turn = (q * sr + r * cr) / jnp.cos(attitude[1])
-    return jnp.stack([p + turn * jnp.sin(attitude[1]), q * cr - r * sr, turn])
+    turn = (q * sr + r * cr) / cp
+    return jnp.stack([p + turn * sp, q * cr - r * sr, turn])
 
 
 def angular_velocity(attitude: Float[Array, "3"], rates: Float[Array, "3"]) -> Float[Array, "3"]:
     """Angular velocity in body axes (rad/s) of rates of roll, pitch, yaw: the inverse of `attitude_rates`."""
     roll, pitch, yaw = rates
-    cr, sr = jnp.cos(attitude[0]), jnp.sin(attitude[0])
-    cp, sp = jnp.cos(attitude[1]), jnp.sin(attitude[1])
+    (cr, cp, _), (sr, sp, _) = cosines(attitude)
     return jnp.stack([roll - yaw * sp, pitch * cr + yaw * cp * sr, -pitch * sr + yaw * cp * cr])
 
 

@@ -12,6 +12,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model, State
+from jaxhydro.solve6 import gram
 from jaxhydro.waves.sea import StillWater
 
 
@@ -84,7 +85,7 @@ def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, 
         now = model.instant(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater())
         total = model.sum_of_loads(now, rest.memory)
         lever = now.lines.lever
-        return model.body.mass_matrix() + total.added_mass + (lever * total.line_mass) @ lever.T
+        return model.body.mass_matrix() + total.added_mass + gram(lever, total.line_mass)
 
     mass = mass_of(position)
     return mass, -mass @ jax.jacfwd(acceleration)(position)

@@ -141,18 +141,16 @@ class Ends(eqx.Module):
 class Hull(eqx.Module):
     """Elements, strips and ends, and the constant matrices between the platform's motion and that of their lines.
 
-    Lines are the strips' first directions, their second ones, then the ends. A line's lever is `lever + twist * s`, s the
-    distance of its strip from the element's start; its centripetal acceleration is `inward + outgoing * s` times the
-    products p^2, q^2, r^2, pq, pr, qr of the angular velocity.
+    Lines are the strips' first directions, their second ones, then the ends. What belongs to a line is linear in the distance
+    s of its strip from the element's start, and stored as the part for s = 0 and the part that goes with s: `motion` is the
+    lever, `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity the centripetal acceleration.
     """
 
     elements: Elements
     strips: Strips
     ends: Ends
-    lever: Float[Array, "6 l"]
-    twist: Float[Array, "6 l"]
-    inward: Float[Array, "6 l"]
-    outgoing: Float[Array, "6 l"]
+    motion: Float[Array, "6 2*l"]
+    inward: Float[Array, "6 2*l"]
 
     @classmethod
     def of(cls, members: Sequence[Member]) -> "Hull":
@@ -165,9 +163,15 @@ class Hull(eqx.Module):
         along = np.concatenate([strips.axis, strips.axis, np.zeros_like(tips.axis)], axis=1)
         lever = np.concatenate([direction, np.cross(point, direction, axis=0)])
         twist = np.concatenate([np.zeros_like(direction), np.cross(along, direction, axis=0)])
-        arrays = (lever, twist, _centripetal(direction, point), _centripetal(direction, along))
-        lines: dict[str, Any] = dict(zip(("lever", "twist", "inward", "outgoing"), map(jnp.asarray, arrays), strict=True))
+        motion = np.concatenate([lever, twist], axis=1)
+        inward = np.concatenate([_centripetal(direction, point), _centripetal(direction, along)], axis=1)
+        lines: dict[str, Any] = dict(zip(("motion", "inward"), map(jnp.asarray, (motion, inward)), strict=True))
         return cls(elements, strips, tips, **lines)
+
+    def lever(self, away: Float[Array, " l"]) -> Float[Array, "6 l"]:
+        """d and r x d of every line, its strip `away` (m) from the element's start."""
+        lever, twist = jnp.split(self.motion, 2, axis=1)
+        return lever + twist * away
 
     def split(self, lines: Float[Array, " l"]) -> tuple[Float[Array, "2 n"], Float[Array, " m"]]:
         """What belongs to the strips, by direction, and what to the ends."""

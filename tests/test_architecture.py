@@ -52,7 +52,7 @@ EDGE = {  # third-party or built-in, and the only modules that may use it
     "typer": {"jaxhydro.cli", "jaxhydro.options"},
     "rich": {"jaxhydro.console"},
 }
-STANDARD = {"abc", "collections", "functools", "math", "typing"}
+STANDARD = set(sys.stdlib_module_names) - {"csv", "io", "json", "logging", "os", "pathlib", "random", "sys", "warnings"}
 ARRAYS = {"jax", "jaxtyping", "equinox", "diffrax", "optimistix", "lineax", "numpy"}
 
 

@@ -2,6 +2,7 @@
 
 import math
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -142,7 +143,8 @@ def test_nothing_overflows_in_deep_water() -> None:
 def test_waves_grow_from_rest() -> None:
     """Half a cosine: 0, a half, 1 at the start, the middle and the end; at full height at once without a ramp."""
     sea, full = wave(ramp=40.0), wave()
-    assert_allclose(sea.growth(jnp.array([-1.0, 0.0, 10.0, 20.0, 40.0, 99.0])), [0, 0, 0.5 - math.sqrt(0.125), 0.5, 1, 1], atol=1e-15)
+    share = sea.growth(jnp.array([-1.0, 0.0, 10.0, 20.0, 40.0, 99.0]))
+    assert_allclose(share, [0, 0, 0.5 - math.sqrt(0.125), 0.5, 1, 1], atol=1e-15)
     assert float(full.growth(jnp.asarray(0.0))) == 1.0
     point = np.array([1.0, 2.0, -3.0])
     for ramped, whole in zip(flow(sea, 20.0, point), flow(full, 20.0, point), strict=True):
@@ -195,6 +197,12 @@ def only(model: jh.Model, *kinds: type) -> jh.Model:
     return jh.Model(model.environment, model.body, model.hull, loads, model.wetting)
 
 
+@eqx.filter_jit
+def force_at_rest(model: jh.Model, sea: jh.AbstractSea | None = None) -> jax.Array:
+    """Force on the platform held at its reference position at t = 0."""
+    return model.force_at_rest(jnp.zeros(6), sea)
+
+
 @pytest.mark.parametrize("x, phase", [(0.0, 0.0), (0.0, math.pi / 2), (35.0, 0.8)])
 def test_inertia_force_on_a_fixed_column(x: float, phase: float) -> None:
     """-rho A (1 + Ca) a omega^2 sin(...) times the integral of cosh k(z+h)/sinh kh, in closed form, and its moment by quad.
@@ -204,7 +212,7 @@ def test_inertia_force_on_a_fixed_column(x: float, phase: float) -> None:
     model, sea = only(jh.build(platform(x)), StripInertia), wave(phase=phase)
     k, omega = float(sea.wavenumber[0]), 2 * math.pi / 10
     scale = -1025 * math.pi / 4 * 100 * 1.9 * 2.0 * omega**2 * math.sin(phase - k * x)
-    force = model.force_at_rest(jnp.zeros(6), sea)
+    force = force_at_rest(model, sea)
     depth_integral = (math.sinh(k * 200) - math.sinh(k * 180)) / (k * math.sinh(k * 200))
     moment = quad(lambda z: z * math.cosh(k * (z + 200)) / math.sinh(k * 200), -20, 0)[0]
     assert_allclose(force[0], scale * depth_integral, rtol=1e-9, atol=1e-3)
@@ -219,7 +227,7 @@ def test_end_of_a_fixed_column() -> None:
     pressure = 1025 * 9.81 * 2.0 * math.cosh(k * 180) / math.cosh(k * 200) * math.cos(0.6)
     acceleration = -2.0 * omega**2 * math.sinh(k * 180) / math.sinh(k * 200) * math.cos(0.6)
     expected = pressure * math.pi * 25 + 1025 * 0.5 * 2 / 3 * math.pi * 125 * acceleration
-    assert float(model.force_at_rest(jnp.zeros(6), sea)[2]) == pytest.approx(expected, rel=1e-12)
+    assert float(force_at_rest(model, sea)[2]) == pytest.approx(expected, rel=1e-12)
 
 
 def volturnus(**changes) -> jh.Model:
@@ -237,28 +245,28 @@ def test_surge_force_on_the_fixed_platform(heading: float) -> None:
         angle = 0.4 - k * (towards @ [x, y])
         return -1.5 * omega**2 * math.cosh(k * (z + 200)) / math.sinh(k * 200) * math.sin(angle) * towards
 
+    column = (math.sinh(k * 200) - math.sinh(k * 180)) / (k * math.cosh(k * 200))  # over that of the surface
     total = np.zeros(2)
     for diameter, radius, azimuths in ((10.0, 0.0, [0]), (12.5, 51.75, [60, 180, 300])):
         for azimuth in np.radians(azimuths):
             at = radius * math.cos(azimuth), radius * math.sin(azimuth)
-            depth = (math.sinh(k * 200) - math.sinh(k * 180)) / (k * math.cosh(k * 200))
-            total += 1025 * math.pi / 4 * diameter**2 * 2.5 * acceleration(*at, 0.0) * depth * math.cosh(k * 200) / math.cosh(k * 200)
+            total += 1025 * math.pi / 4 * diameter**2 * 2.5 * acceleration(*at, 0.0) * column
     for azimuth in np.radians([60, 180, 300]):
         c, s = math.cos(azimuth), math.sin(azimuth)
         across = np.array([-s, c])
         along = quad(lambda r, c=c, s=s, across=across: across @ acceleration(r * c, r * s, -16.5), 5.0, 45.5)[0]
         total += 1025 * 12.5 * 7.0 * 1.11 * along * across
-    assert_allclose(model.force_at_rest(jnp.zeros(6), sea)[:2], total, rtol=1e-8)
+    assert_allclose(force_at_rest(model, sea)[:2], total, rtol=1e-8, atol=1e-3)
 
 
 def test_mirrored_and_turned_waves() -> None:
     """The hull is symmetric about the x axis and under a third of a turn: so are the wave forces on it."""
     model = volturnus()
-    still = np.asarray(model.force_at_rest(jnp.zeros(6)))
+    still = np.asarray(force_at_rest(model))
 
     def force(heading):
         sea = jh.regular_wave(3.0, 9.0, model.environment, heading=heading, phase=0.4)
-        return np.asarray(model.force_at_rest(jnp.zeros(6), sea)) - still
+        return np.asarray(force_at_rest(model, sea)) - still
 
     size = np.abs(force(0.5))
     scale = np.array([size[:3].max()] * 3 + [size[3:].max()] * 3)

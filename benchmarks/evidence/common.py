@@ -22,11 +22,12 @@ TRUE = {
 
 
 class Section(NamedTuple):
-    """A section of the page: its heading's words, its text, and its figures' files in the cache."""
+    """A section of the page: its heading's words, its text, its figures' files, and what falls short of a goal."""
 
     title: str
     text: str
     figures: tuple[Path, ...] = ()
+    short: tuple[str, ...] = ()
 
 
 class Absent(Exception):
@@ -47,9 +48,20 @@ def fingerprint(*inputs: Path | str) -> str:
     return digest.hexdigest()[:16]
 
 
+stale: list[str] = []  # sections that took a result of other sources
+accept_stale = False
+
+
 def cached(section: str, key: str, name: str, work: Callable[[], Any] | None = None) -> Any:
-    """A result (JSON) from the cache, else that of `work`, kept; None where there is neither."""
+    """A result (JSON) from the cache, else that of `work`, kept; None where there is neither.
+
+    Where `accept_stale` is set, the latest result of other sources is better than none, and the section is noted in `stale`.
+    """
     path = CACHE / section / key / f"{name}.json"
+    others = sorted((CACHE / section).glob(f"*/{name}.json"), key=lambda p: p.stat().st_mtime) if accept_stale else []
+    if not path.exists() and others:
+        path = others[-1]
+        stale.append(section)
     if path.exists():
         return json.loads(path.read_text())
     if work is None:

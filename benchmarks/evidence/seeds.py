@@ -92,7 +92,12 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
         f"{sum(r['converged'] for r in results)} of {n} converged, in {np.median([r['iterations'] for r in results]):.0f} "
         f"iterations (median).\n"
     )
-    return Section(TITLE, text, (draw(scores, figures / "seeds.png"),))
+    short = []
+    if least < need:
+        short.append(f"one coefficient is inside in {least} of {n} seeds only; the goal is {need}")
+    if share < need:
+        short.append(f"all identifiable coefficients are inside at once in {share} of {n} seeds; the goal is {need}")
+    return Section(TITLE, text, (draw(scores, figures / "seeds.png"),), tuple(short))
 
 
 def draw(scores: dict[str, np.ndarray], path: Path) -> Path:

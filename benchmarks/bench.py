@@ -1,0 +1,111 @@
+"""Speed as ratios in one run: against plain NumPy, finite differences and population searches.
+
+    python -m benchmarks.bench [--quick] [--budget SECONDS] [--out FILE]
+
+writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core, contestants in
+turns, medians; so the machine may be busy. `--quick` is a smoke run, and writes nothing unless `--out` is given.
+"""
+
+import argparse
+import datetime
+import importlib.metadata
+import os
+import platform
+import subprocess
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from benchmarks.bench_timing import Row, pin
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "benchmarks" / "results.md"
+HEADINGS = ("what", "result", "goal", "prototype")
+PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "pymoo")
+
+
+def processor() -> str:
+    """The processor's model, as Linux tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+def revision() -> str:
+    """The commit, and whether the tree differs from it."""
+    command = ["git", "describe", "--always", "--dirty", "--exclude", "*"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    return done.stdout.strip() or "unknown"
+
+
+def machine(cores: int) -> list[str]:
+    """Where and with what it was measured."""
+    versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in PACKAGES)
+    load = " / ".join(f"{value:.1f}" for value in os.getloadavg())
+    return [
+        f"Machine: {processor()}, {cores} cores, of which one was used; load averages {load}.",
+        f"Python {platform.python_version()}, {versions}; jaxhydro {revision()}.",
+    ]
+
+
+def markdown(rows: list[Row], notes: list[str]) -> str:
+    """The results as a file."""
+
+    def line(cells):
+        return "| " + " | ".join(cells) + " |"
+
+    table = [line(HEADINGS), line(["---"] * len(HEADINGS)), *map(line, rows)]
+    return "\n".join(["# Speed", "", *table, "", *(f"- {note}" for note in notes), ""])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="a smoke run of a minute, its numbers worth nothing")
+    parser.add_argument("--budget", type=float, help="CPU seconds for each population search (300; quick: 1)")
+    parser.add_argument("--out", type=Path, help="file to write (benchmarks/results.md; quick: none)")
+    arguments = parser.parse_args()
+    budget = (1.0 if arguments.quick else 300.0) if arguments.budget is None else arguments.budget
+    out = arguments.out or (None if arguments.quick else RESULTS)
+    cores = os.cpu_count() or 1
+    pin()
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    # what compiles in this process is timed too, so it compiles
+    jax.config.update("jax_enable_compilation_cache", arguments.quick)
+    from benchmarks import bench_decay, bench_fit
+    from jaxhydro.files import write_whole
+
+    console = Console(width=None if Console().is_terminal else 160)
+    rows, notes = [], []
+    for part in (lambda: bench_decay.measure(arguments.quick), lambda: bench_fit.measure(budget, arguments.quick)):
+        more, said = part()
+        rows += more
+        notes += said
+        for row in more:
+            console.print(f"{row.what}: {row.result}", style="dim", highlight=False)
+    options = (" --quick" if arguments.quick else "") + f" --budget {budget:g}"
+    begun = [
+        f"{datetime.date.today().isoformat()}, `python -m benchmarks.bench{options}`. Process CPU time on one core, "
+        "contestants in turns, medians; ratios are medians over turns. Compilation is apart everywhere.",
+        *machine(cores),
+    ]
+    if arguments.quick:
+        begun.insert(0, "A smoke run: short decays, one record, few turns. These numbers say nothing.")
+    table = Table(*HEADINGS, title="Speed")
+    for row in rows:
+        table.add_row(*row)
+    console.print(table, highlight=False)
+    for note in begun + notes:
+        console.print(f"- {note}", highlight=False)
+    if out is not None:
+        write_whole(out.absolute(), markdown(rows, begun + notes))
+        console.print(f"Results are in {out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,105 @@
+"""Section 5: the nine decays from far starting values."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.evidence.common import DEMO, TRUE, Section, fingerprint, parallel, say, table
+from calibration.formatting import number
+
+TITLE = "Far starts"
+FACTOR, OFF = 3.0, 0.25  # of every coefficient, and of every natural period
+MODES = ("surge", "heave", "pitch")
+SAME = 1.01
+
+
+def starts(count: int) -> list[dict[str, Any]]:
+    """Starting values log-uniform within FACTOR of the truth, of those whose natural periods are within OFF of the true
+    ones: values, and the natural periods over the true ones."""
+    from calibration.campaign import load_campaign
+    from jaxhydro import build, natural_modes
+
+    model, random, drawn = build(load_campaign(DEMO).platform), np.random.default_rng(2026), []
+
+    def periods(values: dict[str, float]) -> np.ndarray:
+        modes = natural_modes(model.with_values(values))
+        return np.array([modes.of(dof) for dof in MODES])
+
+    true = periods(TRUE)
+    while len(drawn) < count:
+        values = {label: value * FACTOR ** random.uniform(-1, 1) for label, value in TRUE.items()}
+        ratio = periods(values) / true
+        if np.abs(ratio - 1).max() <= OFF:
+            drawn.append({"values": values, "ratio": ratio.tolist()})
+    return drawn
+
+
+def of_start(name: str) -> dict[str, Any]:
+    """The calibration from one start; `name` is its number and how many there are."""
+    from calibration.campaign import load_campaign
+    from calibration.fit import calibrate
+
+    index, count = map(int, name.split("-of-"))
+    start = starts(count)[index - 1]
+    result = calibrate(load_campaign(DEMO), start=start["values"])
+    return start | {
+        "objective": result.objective("fit"), "first": result.history[0], "iterations": result.iterations,
+        "seconds": result.seconds, "converged": result.converged,
+        "reached": {label: [p.value, p.standard_deviation] for label, p in result.parameters.items()},
+    }  # fmt: skip
+
+
+def outcomes(count: int = 20, processes: int = 2) -> list[dict[str, Any]]:
+    """What all starts led to, from the cache where it has been worked out."""
+    from benchmarks.evidence.common import begin
+
+    begin()
+    key = fingerprint(DEMO, Path(__file__))
+    names, found = [f"{i + 1}-of-{count}" for i in range(count)], {}
+    for name, one in parallel("starts", key, names, of_start, processes):
+        found[name] = one
+        say(f"  start {name}: J {one['objective']:.6f}, {one['iterations']} iterations, {one['seconds']:.0f} s")
+    return [found[name] for name in names]
+
+
+def run(count: int, processes: int, figures: Path) -> Section:
+    """Twenty random starts."""
+    found = outcomes(count, processes)
+    best = min(one["objective"] for one in found)
+    same = sum(one["objective"] < SAME * best for one in found)
+    rows = []
+    for i, one in enumerate(found):
+        off = [f"{100 * (r - 1):+.0f} %" for r in one["ratio"]]
+        factor = max(max(one["values"][k] / TRUE[k], TRUE[k] / one["values"][k]) for k in TRUE)
+        rows.append((
+            i + 1, f"{factor:.1f}", *off, f"{one['objective']:.6f}", f"{100 * (one['objective'] / best - 1):.3f} %",
+            one["iterations"], f"{one['seconds']:.0f}", "yes" if one["converged"] else "no",
+        ))  # fmt: skip
+    iterations = [one["iterations"] for one in found]
+    worst = spread_of(found)
+    text = (
+        f"The built-in campaign calibrated from {count} random starts: every one of its eleven coefficients log-uniform within "
+        f"a factor of {FACTOR:g} of the truth, draws whose natural periods are more than {100 * OFF:.0f} % off left out. "
+        f"Below: the largest factor of any coefficient; how far off the periods of surge, heave and pitch are; J reached "
+        f"and how far it is from the best of all starts.\n\n"
+        + table(("Start", "Factor", "Surge", "Heave", "Pitch", "J", "From best", "Iterations", "s", "Converged"), rows)
+        + f"\n{same} of {count} reach J within {100 * (SAME - 1):.0f} % of the best ({number(best)}): "
+        f"{'the goal, all of them, is met' if same == count else 'the goal is all of them: not met'}. Iterations: median "
+        f"{np.median(iterations):.0f}, at most {max(iterations)}. {worst}\n"
+    )
+    short = () if same == count else (f"{count - same} of {count} far starts end elsewhere",)
+    return Section(TITLE, text, (), short)
+
+
+def spread_of(found: list[dict[str, Any]]) -> str:
+    """How far apart the coefficients are that different starts lead to, in their standard deviations."""
+    apart = {}
+    for label in TRUE:
+        values = np.array([one["reached"][label][0] for one in found])
+        sd = [one["reached"][label][1] for one in found if one["reached"][label][1] is not None]
+        apart[label] = float(np.ptp(values) / np.median(sd)) if sd else float("nan")
+    label = max(apart, key=lambda k: apart[k])
+    return f"The coefficient that the starts leave furthest apart is `{label}`: {apart[label]:.2f} of its standard deviation."
+
+

@@ -1,0 +1,108 @@
+"""Makes docs/validation.md and its figures: every number on the page comes from a run of this program.
+
+    python -m benchmarks.validate [--seeds 20] [--starts 20] [--processes 2] [--only SECTION ...] [--fresh] [--stale]
+
+Finished parts are kept in .venv/validate-cache under a hash of the sources and files that they depend on; what has not
+changed is not done again, and a run that was stopped goes on where it was. `--fresh` forgets them first. `--stale`
+takes what earlier sources gave rather than running anything long, and says so on the page.
+"""
+
+import argparse
+import re
+import shutil
+import sys
+import time
+from pathlib import Path
+
+from benchmarks.evidence import common, measured, openfast, periods, seeds, starts
+from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
+
+PAGE = ROOT / "docs" / "validation.md"
+SECTIONS = ("seeds", "periods", "openfast", "measured", "starts")
+INTRO = """\
+# Validation
+
+Made by `make validate` (`python -m benchmarks.validate`); do not edit. Every number is from a run. J is the sum over the
+records of RMSE over standard deviation, *z* an error in its own stated standard deviations.
+"""
+
+
+def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
+    """One section, worked out."""
+    if name == "seeds":
+        return seeds.run(options.seeds, options.processes, figures)
+    if name == "starts":
+        return starts.run(options.starts, options.processes, figures)
+    return {"periods": periods, "openfast": openfast, "measured": measured}[name].run(figures)
+
+
+def command(name: str, options: argparse.Namespace) -> str:
+    """What makes a section alone."""
+    counts = {"seeds": f" --seeds {options.seeds}", "starts": f" --starts {options.starts}"}
+    return f"python -m benchmarks.validate --only {name}{counts.get(name, '')}"
+
+
+def written(name: str, found: Section, options: argparse.Namespace) -> str:
+    """A section as it stands on the page, its figures copied beside it."""
+    lines = [f"## {found.title}", "", f"`{command(name, options)}`", ""]
+    if name in common.stale:
+        lines += ["*From a run of earlier sources.*", ""]
+    lines += [found.text.strip(), ""]
+    folder = PAGE.parent / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in found.figures:
+        shutil.copyfile(path, folder / path.name)
+        lines += [f"![{path.stem.replace('-', ' ')}](figures/{path.name})", ""]
+    lines += [f"Falls short: {words}.\n" for words in found.short]
+    return "\n".join(lines)
+
+
+def former() -> dict[str, str]:
+    """The sections of the page as it is."""
+    text = PAGE.read_text() if PAGE.exists() else ""
+    parts = re.findall(r"<!-- (\w+) -->\n(.*?)(?=<!-- \w+ -->\n|\Z)", text, re.DOTALL)
+    return {name: body.strip() + "\n" for name, body in parts if name in SECTIONS}
+
+
+def write_page(parts: dict[str, str]) -> None:
+    """The page: what falls short first, then the sections in order."""
+    short = re.findall(r"^Falls short: (.*)\.$", "\n".join(parts.values()), re.MULTILINE)
+    head = INTRO + "\nWhat falls short:\n\n" + "".join(f"- {words}\n" for words in short or ["nothing that has a goal here"])
+    body = "".join(f"\n<!-- {name} -->\n{parts[name].strip()}\n" for name in SECTIONS if name in parts)
+    PAGE.parent.mkdir(parents=True, exist_ok=True)
+    PAGE.write_text(head + body)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--seeds", type=int, default=20, help="seeds of noise (default 20)")
+    parser.add_argument("--starts", type=int, default=20, help="far starts (default 20)")
+    parser.add_argument("--processes", type=int, default=2, help="at work at once (default 2)")
+    parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, help="sections to make; others stay")
+    parser.add_argument("--fresh", action="store_true", help="forget finished parts first")
+    parser.add_argument("--stale", action="store_true", help="take finished parts of earlier sources")
+    options = parser.parse_args()
+    begin()
+    common.accept_stale = options.stale
+    parts = former()
+    for number, name in enumerate(options.only, 1):
+        say(f"[{number}/{len(options.only)}] {name}")
+        if options.fresh:
+            shutil.rmtree(CACHE / name, ignore_errors=True)
+        begun = time.monotonic()
+        try:
+            found = section(name, options, CACHE / name / "figures")
+        except Absent as reason:
+            say(f"  skipped: {reason}; {'the page keeps what it had' if name in parts else 'the page is without it'}")
+            continue
+        parts[name] = written(name, found, options)
+        write_page(parts)  # after each, so that a run that is stopped leaves a page
+        say(f"  {time.monotonic() - begun:.0f} s")
+    say(f"{PAGE.relative_to(ROOT)} is written")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit("stopped; finished parts are kept, start again to go on")

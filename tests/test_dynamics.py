@@ -1,0 +1,420 @@
+"""Motion in time: order of the schemes, exact motions, gradients, equilibrium and natural modes."""
+
+import math
+from functools import cache
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.linalg import eigh
+from scipy.spatial.transform import Rotation
+
+import jaxhydro as jh
+from jaxhydro.integrate import Grid, integrate
+from jaxhydro.response import Response
+from jaxhydro.rotations import angular_velocity, attitude_rates, rotation
+from jaxhydro.solve6 import accelerate, inverse6
+
+RHO, G = 1025.0, 9.81
+STILL = jh.StillWater()
+COLUMN = {"name": "column", "shape": "circ", "d": 12.0, "rA": [30, 0, -20], "rB": [30, 0, 15], "heading": [0, 120, 240]}
+SPRINGS = {
+    "kind": "linear_springs",
+    "lines": [
+        {"anchor": anchor, "fairlead": fairlead, "stiffness": 45e3, "pretension": 1.5e6}
+        for anchor, fairlead in (
+            ([150.0, 259.8, -14.0], [29.0, 50.2, -14.0]),
+            ([-300.0, 0.0, -14.0], [-58.0, 0.0, -14.0]),
+            ([150.0, -259.8, -14.0], [29.0, -50.2, -14.0]),
+        )
+    ],
+}
+
+
+def platform(**changes) -> jh.Platform:
+    """A bare body: no members, held by its declared hydrostatics."""
+    data = {
+        "name": "body",
+        "water": {"density": RHO, "depth": 200.0, "gravity": G},
+        "rigid_body": {"mass": 8e6, "centre_of_mass": [0, 0, 0], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}},
+    }
+    return jh.Platform.model_validate(data | changes)
+
+
+@cache
+def smooth() -> jh.Model:
+    """Nonlinear by its springs and its rotations, without anything that has a kink."""
+    return jh.build(
+        platform(
+            mooring=SPRINGS,
+            hydrostatics={"C33": 4e6, "C44": 4e8, "C55": 5e8},
+            linear_damping={"B11": 5e4, "B33": 3e5, "B55": 1e8},
+        )
+    )
+
+
+@cache
+def hull() -> jh.Model:
+    """Three columns with every strip load, on springs."""
+    mass = RHO * 3 * math.pi * 36 * 20
+    inertia = {"Ixx": 4e9, "Iyy": 4e9, "Izz": 6e9}
+    return jh.build(
+        platform(
+            rigid_body={"mass": mass, "centre_of_mass": [0, 0, -3], "inertia": inertia},
+            members=[COLUMN],
+            coefficients={"column": {"Ca_t": 0.9, "Ca_z": 0.6, "Cd_t": 1.1, "Cd_z": 2.3}},
+            linear_damping={"B11": 5e4, "B33": 3e5},
+            mooring=SPRINGS,
+        )
+    )
+
+
+START = jnp.array([12.0, -5.0, 2.0, 0.1, 0.25, -0.3])
+
+
+@eqx.filter_jit
+def run(model, position, velocity, step, capacity, method="tsit5", adjoint="forward", sea=STILL) -> Grid:
+    """Motion from a position (m, rad) and a velocity in body axes."""
+    state = jh.State(position, velocity, model.rest().memory)
+    return integrate(model, sea, state, jnp.zeros(()), jnp.asarray(step), capacity, method, adjoint)
+
+
+def final(model, duration, steps, method, start=START) -> np.ndarray:
+    return np.asarray(run(model, start, jnp.zeros(6), duration / steps, steps, method).position[steps])
+
+
+# schemes
+
+
+@pytest.mark.parametrize("method, order, steps", [("rk4", 4, (16, 32, 64)), ("tsit5", 5, (12, 24, 48))])
+def test_order_of_convergence(method: str, order: int, steps: tuple[int, ...]) -> None:
+    """The error of a decay over 24 s falls with the step to the power of the scheme's order."""
+    exact = final(smooth(), 24.0, 600, "tsit5")
+    errors = [np.linalg.norm(final(smooth(), 24.0, n, method) - exact) for n in steps]
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert -slope == pytest.approx(order, abs=0.3)
+
+
+def test_own_loop_against_diffrax() -> None:
+    """The same scheme in this package's loop and in diffrax, with drag and added mass: the same numbers."""
+    own, other = (run(hull(), START, jnp.zeros(6), 0.5, 40, method) for method in ("tsit5", "diffrax"))
+    for name in ("position", "rate", "acceleration"):
+        one, two = getattr(own, name)[:41], getattr(other, name)[:41]
+        assert_allclose(one, two, rtol=1e-10, atol=1e-10 * float(jnp.abs(one).max()))
+
+
+def test_forward_and_checkpointed_paths_are_the_same() -> None:
+    """Which adjoint is asked for does not change the motion."""
+    one, two = (run(hull(), START, jnp.zeros(6), 0.5, 40, "tsit5", adjoint) for adjoint in ("forward", "reverse"))
+    assert_allclose(one.position[:41], two.position[:41], rtol=1e-13, atol=1e-13)
+
+
+def test_output_at_recorded_times() -> None:
+    """Irregular output times do not touch the integration, and the inner step shows with the scheme's error only."""
+    times = np.sort(np.concatenate([[0.0, 40.0], np.random.default_rng(0).uniform(0, 40, 61)]))
+    responses = [jh.simulate(smooth(), times, position=START, step=step) for step in (0.5, 0.25, 0.05)]
+    for coarse, tolerance in zip(responses[:2], (1e-4, 5e-6), strict=True):
+        for name, factor in (("position", 1), ("rate", 2), ("acceleration", 10)):
+            fine = np.asarray(getattr(responses[2], name))
+            assert np.abs(np.asarray(getattr(coarse, name)) - fine).max() < tolerance * factor * np.abs(fine).max()
+    few = jh.simulate(smooth(), times[[0, 7, 20, -1]], position=START, step=0.25)
+    assert_allclose(few.position, responses[1].position[np.array([0, 7, 20, -1])], rtol=1e-12, atol=1e-12)
+
+
+def test_interpolation_is_of_sixth_order() -> None:
+    """Quintic Hermite of a sine: error (h omega)^6 / (2^6 6!) at most, velocity and acceleration consistent with it."""
+    errors = []
+    for step in (0.4, 0.2):
+        t = step * jnp.arange(60)
+        curve = [jnp.tile(f(t)[:, None], 6) for f in (jnp.sin, jnp.cos, lambda t: -jnp.sin(t))]
+        grid = Grid(jnp.zeros(()), jnp.asarray(step), jnp.asarray(59), *curve)
+        at = jnp.linspace(0.3, 10.0, 197)
+        x, v, a = grid.at(at, (1,))
+        assert float(jnp.abs(v[:, 0] - jnp.cos(at)).max()) < 3 * step**5 / 720
+        assert float(jnp.abs(a[:, 0] + jnp.sin(at)).max()) < 3 * step**4 / 24
+        errors.append(float(jnp.abs(x[:, 0] - jnp.sin(at)).max()))
+        assert errors[-1] < step**6 / (64 * 720) * 1.01
+        knots = grid.at(t[:-1], (1,))
+        assert_allclose(knots[0][:, 0], jnp.sin(t[:-1]), rtol=1e-14, atol=1e-14)
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(6, abs=0.2)
+
+
+# gradients
+
+
+LABELS = ("column.Ca_t", "column.Ca_z", "column.Cd_t", "column.Cd_z", "linear_damping.B33", "mooring.line2.stiffness")
+
+
+def objective(unknowns, adjoint):
+    """A scalar of a decay: a weighted square of the motion, by factors on six parameters and by the initial position."""
+    factors, start = unknowns
+    model = hull()
+    values = {label: factor * model.values[label] for label, factor in zip(LABELS, factors, strict=True)}
+    state = jh.State(start, jnp.zeros(6), model.rest().memory)
+    step = jnp.asarray(0.5)
+    grid = integrate(model.with_values(values), STILL, state, jnp.zeros(()), step, 60, "tsit5", adjoint)
+    position, rate, acceleration = grid.at(jnp.linspace(0.0, 29.7, 37))
+    weights = jnp.array([1.0, 2.0, 3.0, 50.0, 70.0, 60.0])
+    return ((weights * position) ** 2).mean() + ((weights * rate) ** 2).mean() + ((weights * acceleration) ** 2).mean()
+
+
+UNKNOWNS = (jnp.array([1.0, 1.1, 0.9, 1.2, 1.0, 1.0]), START)
+
+
+@cache
+def central_differences() -> np.ndarray:
+    """Of the whole simulation, step 1e-5, fourth order."""
+    value = jax.jit(lambda flat: objective((flat[:6], flat[6:]), "forward"))
+    at, found = jnp.concatenate(UNKNOWNS), []
+    for i in range(12):
+        h = 1e-3 * jnp.eye(12)[i] * jnp.maximum(jnp.abs(at[i]), 0.1)
+        f = [float(value(at + k * h)) for k in (-2, -1, 1, 2)]
+        found.append((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * float(h[i])))
+    return np.array(found)
+
+
+def test_gradients_through_a_simulation() -> None:
+    """Reverse = forward to rounding, and both = central differences of the simulation, for parameters and initial state."""
+    forward = jnp.concatenate(jax.jit(jax.jacfwd(lambda u: objective(u, "forward")))(UNKNOWNS))
+    reverse = jnp.concatenate(jax.jit(jax.grad(lambda u: objective(u, "reverse")))(UNKNOWNS))
+    assert_allclose(forward, reverse, rtol=1e-8, atol=1e-8 * float(jnp.abs(reverse).max()))
+    assert_allclose(forward, central_differences(), rtol=1e-6, atol=1e-6)
+
+
+def test_gradients_under_vmap() -> None:
+    """A batch of gradients is the gradients of the batch."""
+    factors = jnp.stack([UNKNOWNS[0], 1.3 * UNKNOWNS[0]])
+
+    def slope(f):
+        return jax.jvp(lambda f: objective((f, START), "forward"), (f,), (jnp.ones(6),))
+
+    single = jax.jit(slope)
+    batch = jax.jit(jax.vmap(slope))(factors)
+    for i in range(2):
+        for one, many in zip(single(factors[i]), batch, strict=True):
+            assert_allclose(one, many[i], rtol=1e-9)
+
+
+def test_gradient_by_diffrax_reverse() -> None:
+    """diffrax's own checkpointed adjoint agrees with ours, at output times on the step grid and between."""
+
+    def value(start, method, adjoint):
+        grid = run.__wrapped__(smooth(), start, jnp.zeros(6), 0.5, 30, method, adjoint)
+        return (grid.at(jnp.array([3.0, 7.3, 14.9]))[0] ** 2).sum()
+
+    ours = jax.jit(jax.grad(lambda s: value(s, "tsit5", "reverse")))(START)
+    theirs = jax.jit(jax.grad(lambda s: value(s, "diffrax", "reverse")))(START)
+    assert_allclose(ours, theirs, rtol=1e-8, atol=1e-8 * float(jnp.abs(ours).max()))
+
+
+# exact motions
+
+
+def test_free_body_keeps_its_momentum_and_energy() -> None:
+    """Euler's equations: a tumbling body off its reference point, nothing acting on it (gravity 1e-12)."""
+    body = {"mass": 8e6, "centre_of_mass": [3, -2, -8], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 7e9, "Ixz": 3e8}}
+    model = jh.build(platform(rigid_body=body, water={"density": RHO, "depth": 200.0, "gravity": 1e-12}))
+    spin, position = jnp.array([0.05, -0.08, 0.5]), jnp.array([1.0, 2.0, 3.0, 0.2, -0.3, 0.5])
+    grid = run(model, position, jnp.concatenate([jnp.array([0.7, -0.4, 0.2]), spin]), 0.05, 600)
+    inertia, centre = np.asarray(model.body.inertia), np.array([3.0, -2, -8])
+    momentum, energy, drift = [], [], []
+    for q, rate in zip(np.asarray(grid.position[:601:20]), np.asarray(grid.rate[:601:20]), strict=True):
+        v = np.asarray(model.body_velocity(jnp.asarray(q), jnp.asarray(rate)))
+        matrix = Rotation.from_euler("ZYX", q[:2:-1]).as_matrix()
+        velocity = v[:3] + np.cross(v[3:], centre)
+        momentum.append(matrix @ inertia @ v[3:])
+        drift.append(matrix @ velocity)
+        energy.append(0.5 * 8e6 * velocity @ velocity + 0.5 * v[3:] @ inertia @ v[3:])
+    assert np.ptp(np.array(grid.position[:601, 5])) > 4.0  # it did turn
+    for kept in (momentum, energy, drift):
+        kept = np.array(kept)
+        assert_allclose(kept, np.broadcast_to(kept[0], kept.shape), rtol=1e-7, atol=1e-7 * np.abs(kept).max())
+
+
+@pytest.mark.parametrize("damping", [0.0, 3e5, 2e6])
+def test_linear_oscillator(damping: float) -> None:
+    """m x'' + b x' + c x = 0 from rest: A exp(-zeta w t) (cos wd t + zeta w/wd sin wd t)."""
+    changes = {"linear_damping": {"B33": damping}} if damping else {}
+    model = jh.build(platform(hydrostatics={"C33": 4e6}, added_mass={"A33": 2e6}, **changes))
+    times = np.linspace(0.0, 60.0, 77)
+    found = np.asarray(jh.free_decay(model, {"heave": 3.0}, times, step=0.1)["heave"])
+    omega = math.sqrt(4e6 / 1e7)
+    zeta = damping / (2 * math.sqrt(4e6 * 1e7))
+    damped = omega * math.sqrt(1 - zeta**2)
+    exact = 3.0 * np.exp(-zeta * omega * times) * (np.cos(damped * times) + zeta * omega / damped * np.sin(damped * times))
+    assert_allclose(found, exact, atol=3e-8)
+
+
+def test_initial_rate_by_name() -> None:
+    """x = v/w sin wt, and what is not named is at rest."""
+    model = jh.build(platform(hydrostatics={"C33": 4e6}))
+    times = np.linspace(0.0, 20.0, 41)
+    response = jh.simulate(model, times, rate={"heave": 0.5}, step=0.1)
+    omega = math.sqrt(0.5)
+    assert_allclose(response["heave"], 0.5 / omega * np.sin(omega * times), atol=1e-8)
+    assert_allclose(response.rate[:, 2], 0.5 * np.cos(omega * times), atol=1e-7)
+    assert_allclose(response.acceleration[:, 2], -0.5 * omega * np.sin(omega * times), atol=1e-5)
+    assert_allclose(response["surge"], 0.0, atol=1e-12)
+
+
+# rotations and the solver
+
+
+def test_rotations_against_scipy() -> None:
+    """R = Rz Ry Rx by scipy; body rates from dR/dt = R S(omega); attitude_rates and angular_velocity are inverse."""
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        attitude, rates = jnp.asarray(rng.uniform(-1.2, 1.2, 3)), jnp.asarray(rng.normal(size=3))
+        matrix, turning = jax.jvp(rotation, (attitude,), (rates,))
+        assert_allclose(matrix, Rotation.from_euler("ZYX", attitude[::-1]).as_matrix(), atol=1e-14)
+        spin = np.asarray(matrix).T @ np.asarray(turning)
+        omega = angular_velocity(attitude, rates)
+        assert_allclose([spin[2, 1], spin[0, 2], spin[1, 0]], omega, atol=1e-13)
+        assert_allclose(attitude_rates(attitude, omega), rates, atol=1e-13)
+
+
+def test_position_rate_and_its_inverse() -> None:
+    """The two static methods of Model undo each other."""
+    q, rates = START, jnp.array([1.0, -2.0, 0.5, 0.1, 0.2, -0.3])
+    assert_allclose(jh.Model.position_rate(q, jh.Model.body_velocity(q, rates)), rates, atol=1e-14)
+
+
+def positive_definite(rng) -> np.ndarray:
+    root = rng.normal(size=(6, 6)) * np.array([1, 1, 1, 40, 40, 40])[:, None]
+    return 1e6 * (root @ root.T + np.diag([1, 1, 1, 2e3, 2e3, 2e3]))
+
+
+def test_inverse_against_numpy() -> None:
+    """Mass matrices of a platform's scales: metres and radians, 1e6 and 1e10."""
+    rng = np.random.default_rng(2)
+    for _ in range(5):
+        matrix = positive_definite(rng)
+        scale = np.sqrt(np.diag(matrix))
+        product = np.asarray(inverse6(jnp.asarray(matrix))) @ matrix
+        assert_allclose(product * scale[:, None] / scale, np.eye(6), atol=1e-9)
+
+
+def test_acceleration_and_its_derivatives() -> None:
+    """The solution against numpy.linalg.solve; its own rule of differentiation against JAX's through jnp.linalg.solve."""
+    rng = np.random.default_rng(3)
+    lever = rng.normal(size=(6, 9)) * np.array([1, 1, 1, 30, 30, 30])[:, None]
+    arguments = [positive_definite(rng), rng.normal(size=6), rng.uniform(0, 1e6, 9), rng.normal(size=9), lever]
+    arguments = [jnp.asarray(x) for x in arguments]
+
+    def plain(mass, force, line_mass, line_force, lever):
+        return jnp.linalg.solve(mass + (lever * line_mass) @ lever.T, force + lever @ line_force)
+
+    assert_allclose(accelerate(*arguments), plain(*arguments), rtol=1e-9)
+    weights = jnp.asarray(rng.normal(size=6)) / jnp.abs(plain(*arguments))
+    for differentiate in (jax.grad, jax.jacfwd):
+        found, expected = (
+            differentiate(lambda *x, f=f: f(*x) @ weights, argnums=tuple(range(5)))(*arguments) for f in (accelerate, plain)
+        )
+        for one, other in zip(found, expected, strict=True):
+            other = 0.5 * (other + other.T) if one.shape == (6, 6) else other
+            one = 0.5 * (one + one.T) if one.shape == (6, 6) else one
+            assert_allclose(one, other, rtol=1e-7, atol=1e-9 * float(jnp.abs(other).max()))
+
+
+# statics
+
+
+def test_a_platform_that_is_too_heavy_has_no_equilibrium() -> None:
+    """Twice the mass that its columns can carry: the error names heave."""
+    mass = 2 * RHO * 3 * math.pi * 36 * 35
+    inertia = {"Ixx": 4e9, "Iyy": 4e9, "Izz": 6e9}
+    model = jh.build(
+        platform(
+            rigid_body={"mass": mass, "centre_of_mass": [0, 0, -3], "inertia": inertia},
+            members=[COLUMN],
+            coefficients={"column": {}},
+        )
+    )
+    with pytest.raises(jh.EquilibriumError, match="heave"):
+        jh.equilibrium(model)
+    with pytest.raises(jh.EquilibriumError, match="heave"):
+        jh.simulate(model, [0.0, 1.0], step=0.5)
+
+
+def test_equilibrium_of_a_lighter_platform() -> None:
+    """It rises by the missing weight over rho g A; what nothing restrains stays where it is."""
+    area = 3 * math.pi * 36
+    inertia = {"Ixx": 4e9, "Iyy": 4e9, "Izz": 6e9}
+    model = jh.build(
+        platform(
+            rigid_body={"mass": RHO * area * 18.5, "centre_of_mass": [0, 0, -3], "inertia": inertia},
+            members=[COLUMN],
+            coefficients={"column": {}},
+        )
+    )
+    assert_allclose(jh.equilibrium(model), [0, 0, 1.5, 0, 0, 0], atol=1e-9)
+
+
+def test_equilibrium_is_differentiable() -> None:
+    """d heave / d preload = 1/C33, by the implicit function theorem."""
+    matrix = {"kind": "stiffness_matrix", "stiffness": {"C11": 5e4, "C33": 1e6}, "preload": [1e5, 0, 0, 0, 0, 0]}
+    model = jh.build(platform(hydrostatics={"C33": 4e6, "C44": 4e8, "C55": 5e8}, mooring=matrix))
+    assert float(jh.equilibrium(model)[0]) == pytest.approx(2.0, rel=1e-9)
+    slope = jax.grad(lambda c: jh.equilibrium(model.with_values({"mooring.C11": c}))[0])(5e4)
+    assert float(slope) == pytest.approx(-1e5 / 5e4**2, rel=1e-6)
+
+
+def test_natural_modes() -> None:
+    """T = 2 pi sqrt((m + a)/c) in heave, and of coupled surge and pitch by scipy's generalised eigenproblem."""
+    stiffness = {"C11": 7e4, "C22": 5e4, "C15": 1e6, "C55": 3e8}
+    body = {"mass": 8e6, "centre_of_mass": [0, 0, -3], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}
+    model = jh.build(
+        platform(rigid_body=body, hydrostatics={"C33": 4e6, "C44": 4e8, "C55": 5e8}, stiffness=stiffness, added_mass={"A33": 2e6})
+    )
+    modes = jh.natural_modes(model)
+    assert modes.of("heave") == pytest.approx(2 * math.pi * math.sqrt(1e7 / 4e6), rel=1e-9)
+    lever = 8e6 * -3
+    mass = np.array([[8e6, lever], [lever, 5e9 + 8e6 * 9]])
+    square = eigh(np.array([[7e4, 1e6], [1e6, 8e8]]), mass, eigvals_only=True)
+    assert_allclose([modes.of("surge"), modes.of("pitch")], 2 * np.pi / np.sqrt(square), rtol=1e-9)
+    assert math.isnan(modes.of("yaw"))
+    assert list(modes.period) == sorted(modes.period, reverse=True)
+    assert_allclose(np.abs(modes.shape).max(axis=1), 1.0)
+
+
+# errors
+
+
+@pytest.mark.parametrize("times", [[0.0], [0.0, 1.0, 1.0], [1.0, 0.0], [[0.0, 1.0]], []])
+def test_times_must_increase(times: list) -> None:
+    """A message, not a wrong motion."""
+    with pytest.raises(ValueError, match="increasing"):
+        jh.simulate(smooth(), times)
+
+
+def test_unknown_names() -> None:
+    """Every name is checked, and the message says what there is."""
+    with pytest.raises(KeyError, match="surge"):
+        jh.simulate(smooth(), [0.0, 1.0], position={"hieve": 1.0})
+    with pytest.raises(KeyError, match="surge"):
+        jh.simulate(smooth(), [0.0, 1.0], rate={"Surge": 1.0})
+    with pytest.raises(KeyError, match="surge"):
+        Response(*(jnp.zeros((2, 6)),) * 4)["hieve"]
+    with pytest.raises(KeyError, match="column.Ca_t"):
+        hull().with_values({"column.Ca_x": 1.0})
+    with pytest.raises(KeyError, match="column.Ca_t"):
+        hull().about("bogus")
+
+
+def test_nan_times_are_refused() -> None:
+    """nan compares false with everything."""
+    with pytest.raises(ValueError):
+        jh.simulate(smooth(), [0.0, float("nan"), 2.0])
+
+
+def test_float64_is_needed() -> None:
+    """Built in single precision, a model would be wrong quietly."""
+    jax.config.update("jax_enable_x64", False)
+    try:
+        with pytest.raises(RuntimeError, match="float64"):
+            jh.build(platform())
+    finally:
+        jax.config.update("jax_enable_x64", True)

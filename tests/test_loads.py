@@ -1,0 +1,552 @@
+"""Every load under one contract, and each against closed forms, quadrature or brute force done here in NumPy."""
+
+import math
+from functools import cache
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import quad
+from scipy.spatial.transform import Rotation
+
+import jaxhydro as jh
+from jaxhydro.loads import (
+    LOADS,
+    AbstractLoad,
+    AddedMass,
+    Buoyancy,
+    EndDrag,
+    EndInertia,
+    LinearDamping,
+    MooringLines,
+    QuadraticDamping,
+    Stiffness,
+    StripDrag,
+    StripInertia,
+    Weight,
+)
+
+RHO, G = 1025.0, 9.81
+BODY = {"mass": 8e6, "centre_of_mass": [0, 0, -8], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}
+COLUMN = {"name": "column", "shape": "circ", "d": 10.0, "rA": [0, 0, -20], "rB": [0, 0, 15]}
+PONTOON = {"name": "pontoon", "shape": "rect", "d": [12.5, 7.0], "rA": [5, 0, -16.5], "rB": [45, 0, -16.5]}
+COEFFICIENTS = {"Ca_t": 0.9, "Ca_z": 0.6, "Cd_t": 1.1, "Cd_z": 2.3}
+SPRINGS = {
+    "kind": "linear_springs",
+    "lines": [
+        {"anchor": anchor, "fairlead": fairlead, "stiffness": 45e3, "pretension": 1.5e6}
+        for anchor, fairlead in (
+            ([150.0, 259.80762, -14.0], [29.0, 50.22947, -14.0]),
+            ([-300.0, 0.0, -14.0], [-58.0, 0.0, -14.0]),
+            ([150.0, -259.80762, -14.0], [29.0, -50.22947, -14.0]),
+        )
+    ],
+}
+EVERYTHING = {
+    "members": [COLUMN, PONTOON],
+    "linear_damping": {"B11": 4e4, "B33": 1e5, "B55": 3e8, "B15": 1e5},
+    "quadratic_damping": {"B22": 3e5, "B44": 1e9},
+    "added_mass": {"A33": 2e6, "A15": 1e6},
+    "stiffness": {"C11": 2e4, "C35": 4e5},
+    "mooring": SPRINGS,
+}
+
+
+def build(*members: dict, **changes) -> jh.Model:
+    """A platform of these members, all with the same coefficients."""
+    members = members or tuple(changes.pop("members", ()))
+    data = {
+        "name": "test",
+        "water": {"density": RHO, "depth": 200.0, "gravity": G},
+        "rigid_body": BODY,
+        "members": members,
+        "coefficients": {member["name"]: COEFFICIENTS for member in members},
+    }
+    return jh.build(jh.Platform.model_validate(data | changes))
+
+
+@cache
+def everything() -> jh.Model:
+    """One of every load."""
+    return build(**EVERYTHING)
+
+
+def only(model: jh.Model, *kinds: type) -> jh.Model:
+    """The model with some of its loads."""
+    return model_of(model, *(load for load in model.loads if isinstance(load, kinds)))
+
+
+def model_of(model: jh.Model, *loads: AbstractLoad) -> jh.Model:
+    return jh.Model(model.environment, model.body, model.hull, loads, model.wetting)
+
+
+@eqx.filter_jit
+def wrench(model: jh.Model, position, velocity, sea=None) -> tuple[jax.Array, jax.Array]:
+    """Force (N, N m) of all loads in body axes, and their added mass about the reference point."""
+    state = jh.State(jnp.asarray(position, float), jnp.asarray(velocity, float), model.rest().memory)
+    now = model.instant(jnp.zeros(()), state, jh.StillWater() if sea is None else sea)
+    total = model.sum_of_loads(now, state.memory)
+    lever = now.lines.lever
+    return total.force + lever @ total.line_force, total.added_mass + (lever * total.line_mass) @ lever.T
+
+
+def force(model: jh.Model, velocity=(0.0,) * 6, position=(0.0,) * 6, sea=None) -> np.ndarray:
+    return np.asarray(wrench(model, jnp.asarray(position, float), jnp.asarray(velocity, float), sea)[0])
+
+
+@eqx.filter_jit
+def at_rest(model: jh.Model, position=None) -> jax.Array:
+    """Force (N, N m, earth axes) on the motionless platform in still water."""
+    return model.force_at_rest(jnp.zeros(6) if position is None else position)
+
+
+@eqx.filter_jit
+def stiffness(model: jh.Model, position=None) -> jax.Array:
+    """Minus the slope of the force at rest, in earth axes."""
+    position = jnp.zeros(6) if position is None else position
+    return -jax.jacfwd(model.force_at_rest)(position)
+
+
+def sample(seed: int, n: int = 3) -> tuple[jax.Array, jax.Array]:
+    """Positions with 15 degree rotations and lively velocities."""
+    rng = np.random.default_rng(seed)
+    position = rng.uniform(-1, 1, (n, 6)) * [8, 8, 3, 0.25, 0.25, 0.5]
+    return jnp.asarray(position), jnp.asarray(rng.uniform(-1, 1, (n, 6)) * [2, 2, 2, 0.05, 0.05, 0.05])
+
+
+# the contract
+
+SEA = jh.regular_wave(3.0, 9.0, jh.Environment(RHO, 200.0, G), heading=0.4, phase=0.3)
+
+
+def test_the_example_has_every_registered_load() -> None:
+    """Nothing escapes the contract below."""
+    assert {type(load) for load in everything().loads} == set(LOADS.values())
+
+
+@pytest.mark.parametrize("name", LOADS)
+def test_contract(name: str) -> None:
+    """Null is exactly silent in still water, jit = eager, vmap = loop, float64 is kept, parameters are within bounds."""
+    model = only(everything(), LOADS[name])
+    (load,) = model.loads
+    positions, velocities = sample(1)
+    for label, value in load.values.items():
+        about = load.about(label)
+        assert about.unit and about.meaning and about.lower <= about.null <= about.upper
+        assert about.lower <= float(value) <= about.upper
+
+    loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
+    batch = eqx.filter_jit(eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0, None)))(model, positions, velocities, SEA)
+    eager = wrench.__wrapped__(model, positions[0], velocities[0], SEA)
+    for whole, alone, *parts in zip(batch, eager, *loop, strict=True):
+        scale = float(jnp.abs(whole).max()) + 1e-300
+        assert all(part.dtype == jnp.float64 and bool(jnp.isfinite(part).all()) for part in (whole, alone, *parts))
+        assert_allclose(whole / scale, np.stack(parts) / scale, atol=1e-13)
+        assert_allclose(alone / scale, parts[0] / scale, atol=1e-13)
+
+    if load.values:
+        null = model.with_values({label: load.about(label).null for label in load.values})
+        assert all(bool((part == 0).all()) for part in wrench(null, positions[0], velocities[0]))
+
+
+def test_gradients_at_rest_are_finite() -> None:
+    """sqrt(u^2) has no slope at zero by itself: forward = reverse, no nan by the state or by any array of the model."""
+    weights = jnp.tile(jnp.array([1.0, -2.0, 0.5, 3.0, 1.5, -1.0]), 2)
+
+    def scalar(y, model):
+        rate = model.rate(jnp.zeros(()), jh.State(y[:6], y[6:], model.rest().memory), jh.StillWater())
+        return jnp.concatenate([rate.position, rate.velocity]) @ weights
+
+    @eqx.filter_jit
+    def slopes(y, model):
+        reverse = eqx.filter_grad(lambda both: scalar(*both))((y, model))
+        return jax.jacfwd(scalar)(y, model), *reverse
+
+    forward, reverse, by_model = slopes(jnp.zeros(12), everything())
+    assert_allclose(forward, reverse, rtol=1e-10, atol=1e-12 * float(jnp.abs(forward).max()))
+    assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves((forward, by_model)))
+
+
+@pytest.mark.parametrize("kind", [StripDrag, EndDrag, LinearDamping, QuadraticDamping])
+def test_dissipative_loads_take_energy_out(kind: type) -> None:
+    """Power <= 0 for any motion in still water; the damping matrix of the example is positive semidefinite."""
+    model = only(everything(), kind)
+    positions, velocities = sample(2, 64)
+    forces, _ = eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0))(model, positions, velocities)
+    assert float((forces * velocities).sum(axis=1).max()) < 0.0
+
+
+def test_all_loads_together_are_their_sum() -> None:
+    """(M + sum A_k) dv/dt = sum F_k."""
+    positions, velocities = sample(3)
+    parts = [wrench(model_of(everything(), load), positions[0], velocities[0], SEA) for load in everything().loads]
+    total = wrench(everything(), positions[0], velocities[0], SEA)
+    for i, whole in enumerate(total):
+        assert_allclose(sum(part[i] for part in parts), whole, rtol=1e-12, atol=1e-12 * float(jnp.abs(whole).max()))
+
+
+# drag
+
+
+def test_drag_of_a_column_in_surge() -> None:
+    """1/2 rho Cd D T |u| u at mid-draught, by hand: D = 10 m, T = 20 m, u = 1.3 m/s."""
+    found = force(only(build(COLUMN), StripDrag), [1.3, 0, 0, 0, 0, 0])
+    expected = -0.5 * RHO * 1.1 * 10 * 20 * 1.3**2
+    assert_allclose(found, [expected, 0, 0, 0, -10 * expected, 0], rtol=1e-11, atol=1e-4)
+
+
+def test_drag_of_a_column_in_pitch() -> None:
+    """Integral of 1/2 rho Cd D |q z| q z and of z times it, by quad."""
+    q = 0.03
+    found = force(only(build(COLUMN), StripDrag), [0, 0, 0, 0, q, 0])
+    per_length = lambda z: -0.5 * RHO * 1.1 * 10 * abs(q * z) * q * z  # noqa: E731
+    assert_allclose(found[0], quad(per_length, -20, 0)[0], rtol=1e-10)
+    assert_allclose(found[4], quad(lambda z: z * per_length(z), -20, 0)[0], rtol=1e-10)
+
+
+def test_drag_of_an_oblique_flow_on_a_column() -> None:
+    """A circle sees the flow's vector: the force is against it, with the square of its whole speed."""
+    found = force(only(build(COLUMN), StripDrag), [0.6, -0.8, 0, 0, 0, 0])
+    assert_allclose(found[:2], -0.5 * RHO * 1.1 * 200 * np.array([0.6, -0.8]), rtol=1e-11)
+
+
+def test_drag_of_a_pontoon_in_pitch() -> None:
+    """Vertical drag on the plan width, integral of 1/2 rho Cd B |q x| q x and its moment, by quad; w = -q x."""
+    q = -0.02
+    found = force(only(build(PONTOON), StripDrag), [0, 0, 0, 0, q, 0])
+    per_length = lambda x: 0.5 * RHO * 2.3 * 12.5 * abs(q * x) * q * x  # noqa: E731
+    assert_allclose(found[2], quad(per_length, 5, 45)[0], rtol=1e-10)
+    assert_allclose(found[4], quad(lambda x: -x * per_length(x), 5, 45)[0], rtol=1e-10)
+
+
+@pytest.mark.parametrize("speed", ["vector", "component"])
+def test_drag_of_a_rectangle_by_vector_or_component(speed: str) -> None:
+    """Side area 7 x 40 with Cd_t, plan 12.5 x 40 with Cd_z; |.| of the vector (OpenFAST) or of the component."""
+    v, w = 0.7, -0.4
+    found = force(only(build(PONTOON, drag_speed=speed), StripDrag), [0, v, w, 0, 0, 0])
+    of = (math.hypot(v, w),) * 2 if speed == "vector" else (abs(v), abs(w))
+    expected = [0, -0.5 * RHO * 1.1 * 7 * 40 * of[0] * v, -0.5 * RHO * 2.3 * 12.5 * 40 * of[1] * w]
+    assert_allclose(found[:3], expected, rtol=1e-11, atol=1e-4)
+
+
+def test_no_strip_drag_along_a_member() -> None:
+    """A column that heaves and a pontoon that runs along itself have end drag at most."""
+    assert_allclose(force(only(build(COLUMN), StripDrag), [0, 0, 2.0, 0, 0, 0]), 0.0, atol=1e-3)
+    assert_allclose(force(only(build(PONTOON), StripDrag, EndDrag), [2.0, 0, 0, 0, 0, 0]), 0.0, atol=1e-3)
+
+
+def test_drag_turns_with_the_body() -> None:
+    """Pitched by 20 degrees, a surge along earth's x meets a submerged column with its transverse part only."""
+    model = only(build({**COLUMN, "rA": [0, 0, -60], "rB": [0, 0, -30]}), StripDrag)
+    matrix = Rotation.from_euler("y", 20, degrees=True).as_matrix()
+    body = matrix.T @ [1.0, 0, 0]
+    found = force(model, [*body, 0, 0, 0], [0, 0, 0, 0, math.radians(20), 0])
+    across = math.cos(math.radians(20))
+    assert_allclose(found[:3], [-0.5 * RHO * 1.1 * 300 * across**2, 0, 0], rtol=1e-11, atol=1e-3)
+
+
+def test_end_drag() -> None:
+    """1/2 rho Cd pi/4 D^2 |w| w on the bottom that is in the water; the dry top adds nothing; its lever in pitch."""
+    model = only(build({**COLUMN, "rA": [30, 0, -20], "rB": [30, 0, 15]}), EndDrag)
+    area = math.pi * 25
+    found = force(model, [0, 0, -0.9, 0, 0, 0])
+    assert_allclose(found[[2, 4]], np.array([1, -30]) * 0.5 * RHO * 2.3 * area * 0.81, rtol=1e-11)
+    assert_allclose(force(model, [0, 0, 0, 0, 0.02, 0])[2], 0.5 * RHO * 2.3 * area * 0.36, rtol=1e-11)
+    sunk = only(build({**COLUMN, "rA": [30, 0, -60], "rB": [30, 0, -30]}), EndDrag)
+    assert_allclose(force(sunk, [0, 0, -0.9, 0, 0, 0])[2], 2 * found[2], rtol=1e-11)
+
+
+# added mass
+
+
+def added_mass(model: jh.Model) -> np.ndarray:
+    return np.asarray(wrench(model, jnp.zeros(6), jnp.zeros(6))[1])
+
+
+def test_added_mass_of_a_column() -> None:
+    """a = rho Ca pi/4 D^2 per metre: a T, -a T^2/2 in surge-pitch, a T^3/3 about the waterline; both planes alike."""
+    found = added_mass(only(build(COLUMN), StripInertia))
+    a, depth = RHO * 0.9 * math.pi / 4 * 100, 20.0
+    expected = np.zeros((6, 6))
+    expected[0, 0] = expected[1, 1] = a * depth
+    expected[0, 4] = expected[4, 0] = -a * depth**2 / 2
+    expected[1, 3] = expected[3, 1] = a * depth**2 / 2
+    expected[3, 3] = expected[4, 4] = a * depth**3 / 3
+    assert_allclose(found, expected, rtol=1e-11, atol=1e-3)
+
+
+def test_added_mass_of_a_pontoon() -> None:
+    """rho Ca B H per metre: heave with Ca_z, sway with Ca_t, levers x and z = -16.5 m; nothing along itself."""
+    found = added_mass(only(build(PONTOON), StripInertia))
+    vertical, side = RHO * 0.6 * 12.5 * 7 * 40, RHO * 0.9 * 12.5 * 7 * 40
+    square = (45**3 - 5**3) / (3 * 40)
+    assert_allclose(found[2, [2, 4]], [vertical, -vertical * 25], rtol=1e-11)
+    assert_allclose(found[4, 4], vertical * square, rtol=1e-11)
+    assert_allclose(found[1, [1, 3, 5]], [side, side * 16.5, side * 25], rtol=1e-11)
+    assert_allclose(found[[3, 5], [3, 5]], [side * 16.5**2, side * square], rtol=1e-11)
+    assert_allclose(found[0], 0.0, atol=1e-4)
+
+
+def test_added_mass_of_ends() -> None:
+    """rho Ca 2/3 pi r^3 on the wet end, lever 30 m; a square end counts as the circle of its area."""
+    ball = RHO * 0.6 * 2 / 3 * math.pi * 125
+    found = added_mass(only(build({**COLUMN, "rA": [30, 0, -20], "rB": [30, 0, 15]}), EndInertia))
+    assert_allclose([found[2, 2], found[2, 4], found[4, 4]], [ball, -30 * ball, 900 * ball], rtol=1e-11)
+    box = {**COLUMN, "shape": "rect", "d": [8.0, 10.0]}
+    radius = math.sqrt(80 / math.pi)
+    assert_allclose(added_mass(only(build(box), EndInertia))[2, 2], ball * radius**3 / 125, rtol=1e-11)
+
+
+def test_added_mass_of_a_tapered_column() -> None:
+    """Volume of the frustum, pi L/12 (D^2 + D d + d^2), and its first moment by quad."""
+    cone = {**COLUMN, "d": [12.0, 6.0], "stations": [0, 1], "rA": [0, 0, -50], "rB": [0, 0, -20]}
+    found = added_mass(only(build(cone), StripInertia))
+    volume = math.pi * 30 / 12 * (144 + 72 + 36)
+    first = quad(lambda z: z * math.pi / 4 * (12 - 6 * (z + 50) / 30) ** 2, -50, -20)[0]
+    assert_allclose(found[0, [0, 4]], RHO * 0.9 * np.array([volume, first]), rtol=1e-11)
+
+
+def test_strips_follow_the_surface() -> None:
+    """A column lifted by 3 m has 17 m in the water and is loaded there: instantaneous wetting; not so with mean."""
+    for wetting, depth in (("instantaneous", 17.0), ("mean", 20.0)):
+        model = only(build(COLUMN, wetting=wetting), StripDrag)
+        found = force(model, [1.0, 0, 0, 0, 0, 0], [0, 0, 3.0, 0, 0, 0])[0]
+        assert_allclose(found, -0.5 * RHO * 1.1 * 10 * depth, rtol=1e-11)
+    leaning = only(build(COLUMN), StripDrag)
+    found = force(leaning, [0, 1.0, 0, 0, 0, 0], [0, 0, 0, 0, math.radians(15), 0])[1]
+    assert_allclose(found, -0.5 * RHO * 1.1 * 10 * 20, rtol=1e-11)  # along its axis, from -20 m to the surface
+
+
+def test_centripetal_part_of_added_mass() -> None:
+    """A pontoon turning about the vertical: its added mass along y at x feels no a_y, and none along itself."""
+    model = only(build(PONTOON), StripInertia)
+    assert_allclose(force(model, [0, 0, 0, 0, 0, 0.1]), 0.0, atol=1e-4)
+    turned = only(build({**PONTOON, "rA": [20, -20, -16.5], "rB": [20, 20, -16.5]}), StripInertia)
+    found = force(turned, [0, 0, 0, 0, 0, 0.1])  # its x acceleration is -r^2 x
+    assert_allclose(found[0], RHO * 0.9 * 12.5 * 7 * 40 * 0.01 * 20, rtol=1e-10)
+
+
+# lumped terms
+
+
+def test_linear_damping_and_its_labels() -> None:
+    """F_i = -B_ij v_j in body axes, row before column."""
+    model = model_of(build(), LinearDamping({"linear_damping.B15": 3.0, "linear_damping.B22": 2.0}))
+    assert_allclose(force(model, [0, 4, 0, 0, 5, 0], [0, 0, 0, 0.1, 0.2, 0.3]), [-15, -8, 0, 0, 0, 0], rtol=1e-14)
+    assert model.about("linear_damping.B15").unit == "N s"
+
+
+def test_quadratic_damping_and_its_labels() -> None:
+    """F_i = -Q_ii |v_i| v_i."""
+    model = model_of(build(), QuadraticDamping({"quadratic_damping.B33": 2.0, "quadratic_damping.B55": 7.0}))
+    assert_allclose(force(model, [1, 0, -4, 0, 5, 0]), [0, 0, 32, 0, -175, 0], rtol=1e-12)
+    assert model.about("quadratic_damping.B55").unit == "N m s2/rad2"
+
+
+def test_lumped_added_mass_and_its_labels() -> None:
+    """A matrix of its labels, in body axes."""
+    model = model_of(build(), AddedMass({"added_mass.A15": 3.0, "added_mass.A51": 3.0, "added_mass.A66": 8.0}))
+    expected = np.zeros((6, 6))
+    expected[0, 4] = expected[4, 0] = 3.0
+    expected[5, 5] = 8.0
+    assert_allclose(added_mass(model), expected)
+    assert model.about("added_mass.A15").unit == "kg m"
+
+
+def test_lumped_stiffness_acts_along_earth_axes() -> None:
+    """F0 - C q on a platform that is turned: not turned with it."""
+    preload = jnp.array([1.0, 0, -2.0, 0, 0, 4.0])
+    model = model_of(build(), Stiffness({"mooring.C11": jnp.asarray(5.0), "mooring.C15": jnp.asarray(7.0)}, preload))
+    position = jnp.array([2.0, 1.0, 0, 0.1, 0.2, 0.5])
+    assert_allclose(at_rest(model, position), [1 - 10 - 1.4, 0, -2, 0, 0, 4], rtol=1e-13, atol=1e-14)
+
+
+def test_weight() -> None:
+    """-m g at the displaced centre: R c x (0, 0, -m g), with scipy's rotation."""
+    model = only(build(rigid_body=BODY | {"centre_of_mass": [1.0, -2.0, -8.0]}), Weight)
+    position = jnp.array([5.0, 6.0, 1.0, 0.1, -0.3, 0.7])
+    arm = Rotation.from_euler("ZYX", [0.7, -0.3, 0.1]).apply([1.0, -2.0, -8.0])
+    down = np.array([0, 0, -8e6 * G])
+    assert_allclose(at_rest(model, position), [*down, *np.cross(arm, down)], rtol=1e-12, atol=1e-6)
+
+
+# buoyancy
+
+
+def brute_force(position, x: float, y: float, diameter: float, bottom: float) -> np.ndarray:
+    """Buoyancy (N, N m, earth axes about the reference point) of an upright column of a tilted body, by a polar grid over
+    its section: the wet part of every line along its axis, up to the plane of still water."""
+    matrix = Rotation.from_euler("ZYX", position[:2:-1]).as_matrix()
+    node, weight = np.polynomial.legendre.leggauss(12)
+    radius = 0.25 * diameter * (1 + node)
+    angle = np.arange(24) * 2 * np.pi / 24
+    px, py = x + np.outer(radius, np.cos(angle)), y + np.outer(radius, np.sin(angle))
+    area = np.outer(0.25 * diameter * weight * radius, np.full(24, 2 * np.pi / 24))
+    top = -(position[2] + matrix[2, 0] * px + matrix[2, 1] * py) / matrix[2, 2]
+    volume = (area * (top - bottom)).sum()
+    first = [(area * (top - bottom) * p).sum() for p in (px, py)] + [(area * 0.5 * (top**2 - bottom**2)).sum()]
+    up = np.array([0.0, 0.0, RHO * G])
+    return np.concatenate([volume * up, np.cross(matrix @ first, up)])
+
+
+@pytest.mark.parametrize("heave", [-3.0, 0.0, 3.0])
+@pytest.mark.parametrize("roll, pitch, yaw", [(0, 0, 0), (0, 5, 0), (0, 15, 0), (-15, 0, 0), (8, -12, 40)])
+def test_buoyancy_of_an_inclined_column(heave: float, roll: float, pitch: float, yaw: float) -> None:
+    """Force and moment of the displaced cylinder against numerical integration of its wet volume; 12 m off the centre."""
+    position = np.array([4.0, -3.0, heave, *np.radians([roll, pitch, yaw])])
+    model = only(build({**COLUMN, "rA": [12, 5, -20], "rB": [12, 5, 15]}), Buoyancy)
+    expected = brute_force(position, 12.0, 5.0, 10.0, -20.0)
+    found = np.asarray(at_rest(model, jnp.asarray(position)))
+    assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+def test_buoyancy_of_a_submerged_box() -> None:
+    """rho g V at its centroid whatever its attitude."""
+    position = np.array([0, 0, -4.0, 0.1, 0.2, 0.3])
+    found = np.asarray(at_rest(only(build(PONTOON), Buoyancy), jnp.asarray(position)))
+    up = np.array([0, 0, RHO * G * 12.5 * 7 * 40])
+    arm = Rotation.from_euler("ZYX", [0.3, 0.2, 0.1]).apply([25.0, 0, -16.5])
+    assert_allclose(found, [*up, *np.cross(arm, up)], rtol=1e-12, atol=1e-6 * up[2])
+
+
+def test_buoyancy_of_a_frustum() -> None:
+    """pi L/12 (D^2 + D d + d^2); the package cuts a taper into twenty pieces."""
+    cone = {**COLUMN, "d": [12.0, 6.0], "stations": [0, 1], "rA": [0, 0, -50], "rB": [0, 0, -20]}
+    found = at_rest(only(build(cone), Buoyancy))
+    assert float(found[2]) == pytest.approx(RHO * G * math.pi * 30 / 12 * (144 + 72 + 36), rel=1e-3)
+
+
+def test_a_body_turned_upside_down_in_the_file_is_the_same() -> None:
+    """rA above rB is the same column."""
+    position = jnp.array([0, 0, 1.0, 0.1, 0.2, 0.0])
+    one, other = (
+        only(build({**COLUMN, "rA": a, "rB": b}), Buoyancy, StripDrag, EndDrag, StripInertia, EndInertia)
+        for a, b in (([9, 0, -20], [9, 0, 15]), ([9, 0, 15], [9, 0, -20]))
+    )
+    velocity = jnp.array([1.0, 0.5, -0.4, 0.02, -0.03, 0.01])
+    for a, b in zip(wrench(one, position, velocity, SEA), wrench(other, position, velocity, SEA), strict=True):
+        assert_allclose(a, b, rtol=1e-11, atol=1e-11 * float(jnp.abs(a).max()))
+
+
+def test_hydrostatic_stiffness_of_a_column() -> None:
+    """C33 = rho g A, C44 = C55 = rho g (I + A x^2) + rho g V z_B - m g z_G, C35 = -rho g A x."""
+    x, area, depth = 12.0, math.pi * 25, 20.0
+    found = np.asarray(stiffness(only(build({**COLUMN, "rA": [x, 0, -20], "rB": [x, 0, 15]}), Buoyancy, Weight)))
+    second, volume = math.pi / 64 * 1e4, area * depth
+    upright = RHO * G * (second + volume * -10) - 8e6 * G * -8
+    assert_allclose(found[2, 2], RHO * G * area, rtol=1e-11)
+    assert_allclose(found[2, 4], -RHO * G * area * x, rtol=1e-11)
+    assert_allclose(found[4, 4], upright + RHO * G * area * x**2, rtol=1e-11)
+    assert_allclose(found[3, 3], upright, rtol=1e-11)
+
+
+HULL = [
+    {**COLUMN, "rA": [r, 0, -20], "rB": [r, 0, 15], "heading": [60, 180, 300], "name": name}
+    for name, r in (("outer", 40), ("inner", 25))
+]
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        {"C33": 5e6},
+        {"C44": 1.1e9},
+        {"C55": 1.2e9},
+        {"C44_buoyancy": 8e8, "C55_buoyancy": 9e8},
+        {"displaced_volume": 12000.0},
+        {"displaced_volume": 9000.0, "C33": 4e6, "C44": 1e9, "C55_buoyancy": 9e8},
+    ],
+    ids=lambda declared: "-".join(declared),
+)
+@pytest.mark.parametrize("members", [True, False], ids=["members", "bare"])
+def test_declared_hydrostatics_come_out(declared: dict, members: bool) -> None:
+    """What the file declares is the force and stiffness about the upright platform; `_buoyancy` leaves the weight out."""
+    hull = HULL if members else []
+    plain = only(build(*hull), Buoyancy, Weight)
+    model = only(build(*hull, hydrostatics=declared), Buoyancy, Weight)
+    found, own = np.asarray(stiffness(model)), np.asarray(stiffness(plain))
+    lift = float(at_rest(model)[2]) + 8e6 * G
+    own_lift = float(at_rest(plain)[2]) + 8e6 * G
+    volume = declared.get("displaced_volume", own_lift / (RHO * G))
+    assert lift == pytest.approx(RHO * G * volume, rel=1e-12)
+    extra = (lift - own_lift) * (-10.0 if members else 0.0)  # volume without a place: at the members' centroid
+    weight = -8e6 * G * -8
+    for i, key in ((2, "C33"), (3, "C44"), (4, "C55")):
+        expected = own[i, i] + (extra if i > 2 else 0.0)
+        if f"{key}_buoyancy" in declared:
+            expected = declared[f"{key}_buoyancy"] + weight
+        assert found[i, i] == pytest.approx(declared.get(key, expected), rel=1e-10), key
+    off = found - np.diag(np.diag(found))
+    assert np.abs(off).max() < 1e-8 * max(np.abs(own).max(), 1e9)
+
+
+def test_a_bare_platform_floats_in_balance() -> None:
+    """Without members the volume is what balances mass and mooring: no net force at the reference position."""
+    model = build(mooring={"kind": "stiffness_matrix", "stiffness": {"C33": 1e4}, "preload": [0, 0, -5e6, 0, 0, 0]})
+    assert abs(float(at_rest(model)[2])) < 1e-6 * 8e6
+    springs = {**SPRINGS, "lines": [{**line, "anchor": [*line["anchor"][:2], -150.0]} for line in SPRINGS["lines"]]}
+    assert abs(float(at_rest(build(mooring=springs))[2])) < 1e-6 * 8e6
+
+
+# mooring
+
+
+def moored() -> jh.Model:
+    return only(build(mooring=SPRINGS), MooringLines)
+
+
+def test_stiffness_of_pretensioned_springs() -> None:
+    """K11 = sum k c^2 + T/l s^2, K33 = sum T/l; K55 from k u u' + T/l (1 - u u') at the fairleads and the turned pull."""
+    found = np.asarray(stiffness(moored()))
+    length = math.hypot(150.0 - 29.0, 259.80762 - 50.22947)
+    azimuth = np.arctan2([259.80762 - 50.22947, 0.0, -259.80762 + 50.22947], [121.0, -242.0, 121.0])
+    tension = 1.5e6
+    surge = sum(45e3 * np.cos(azimuth) ** 2 + tension / 242.0 * np.sin(azimuth) ** 2)
+    assert length == pytest.approx(242.0, rel=1e-6)
+    assert found[0, 0] == pytest.approx(surge, rel=1e-6)
+    assert found[2, 2] == pytest.approx(3 * tension / 242.0, rel=1e-6)
+    pitch, e = 0.0, np.array([0.0, 1.0, 0.0])
+    for line in SPRINGS["lines"]:
+        fairlead = np.array(line["fairlead"])
+        way = np.array(line["anchor"]) - fairlead
+        unit, span = way / np.linalg.norm(way), np.linalg.norm(way)
+        matrix = 45e3 * np.outer(unit, unit) + tension / span * (np.eye(3) - np.outer(unit, unit))
+        moved = np.cross(e, fairlead)
+        pitch -= e @ (np.cross(moved, tension * unit) - np.cross(fairlead, matrix @ moved))
+    assert found[4, 4] == pytest.approx(pitch, rel=1e-10)
+
+
+def test_springs_at_large_offsets_and_slack() -> None:
+    """Geometric law line by line in NumPy; 50 m towards an anchor its line is slack and pulls nothing."""
+    model = moored()
+    for position in ([-50.0, 0, 0, 0, 0, 0], [30.0, -20.0, 4.0, 0.1, -0.2, 0.3]):
+        matrix = Rotation.from_euler("ZYX", position[:2:-1]).as_matrix()
+        expected, slack = np.zeros(6), 0
+        for line in SPRINGS["lines"]:
+            arm = matrix @ line["fairlead"]
+            way = np.array(line["anchor"]) - position[:3] - arm
+            length = np.linalg.norm(way)
+            tension = max(0.0, 45e3 * (length - (242.0 - 1.5e6 / 45e3)))
+            slack += tension == 0.0
+            pull = tension * way / length
+            expected += [*pull, *np.cross(arm, pull)]
+        assert slack == (position[0] == -50.0)
+        found = np.asarray(at_rest(model, jnp.asarray(position)))
+        assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
+        assert bool(jnp.isfinite(stiffness(model, jnp.asarray(position))).all())
+
+
+def test_spring_by_axial_stiffness() -> None:
+    """EA/l0 (l - l0): the two ways to declare a line agree."""
+    unstretched = 242.0 - 1.5e6 / 45e3
+    other = [
+        {key: line[key] for key in ("anchor", "fairlead")}
+        | {"axial_stiffness": 45e3 * unstretched, "unstretched_length": unstretched}
+        for line in SPRINGS["lines"]
+    ]
+    position = jnp.array([5.0, 3.0, 1.0, 0.05, 0.1, -0.2])
+    model = only(build(mooring={"kind": "linear_springs", "lines": other}), MooringLines)
+    assert_allclose(at_rest(model, position), at_rest(moored(), position), rtol=1e-5, atol=10.0)
