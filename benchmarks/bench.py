@@ -2,8 +2,8 @@
 
     python -m benchmarks.bench [--quick] [--budget SECONDS] [--out FILE]
 
-writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core, contestants in
-turns, medians; so the machine may be busy. `--quick` is a smoke run, and writes nothing unless `--out` is given.
+writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
+contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run; it writes nothing unless told where.
 """
 
 import argparse
@@ -12,6 +12,7 @@ import importlib.metadata
 import os
 import platform
 import subprocess
+from itertools import chain
 from pathlib import Path
 
 from rich.console import Console
@@ -75,15 +76,14 @@ def main() -> None:
     import jax
 
     jax.config.update("jax_enable_x64", True)
-    # what compiles in this process is timed too, so it compiles
+    # what compiles in this process is timed too
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
     from benchmarks import bench_decay, bench_fit
     from jaxhydro.files import write_whole
 
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
-    for part in (lambda: bench_decay.measure(arguments.quick), lambda: bench_fit.measure(budget, arguments.quick)):
-        more, said = part()
+    for more, said in chain(bench_decay.measure(arguments.quick), bench_fit.measure(budget, arguments.quick)):
         rows += more
         notes += said
         for row in more:

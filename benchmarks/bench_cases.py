@@ -1,10 +1,11 @@
 """What the bench measures of the package on one decay: simulations and their derivatives, as functions to be jitted.
 
-The decay is VolturnUS-S of the built-in campaign as declared, released from 6 m of surge, 2 m of heave and 4 deg of pitch
-at once. Every function takes the model's arrays and the coordinates of its eleven free parameters: nothing is a constant.
+The decay is VolturnUS-S of the built-in campaign as declared, released from 6 m of surge, 2 m of heave and 4 deg of
+pitch at once. Every function takes the model's arrays and the coordinates of its eleven free parameters: nothing is a
+constant.
 
-    python -m benchmarks.bench_cases first SECONDS          what a user waits for: platform file to motion by the public API
-    python -m benchmarks.bench_cases NAME,NAME SECONDS      tracing and compilation of these cases
+    python -m benchmarks.bench_cases first SECONDS       what a user waits for: from platform file to motion, public API
+    python -m benchmarks.bench_cases NAME,NAME SECONDS   tracing and compilation of these cases
 
 prints CPU seconds, import apart, as JSON; the bench runs it in new processes, first with an empty compilation cache.
 """
@@ -45,7 +46,7 @@ class Decay:
         self.cases: dict[str, Case] = {}
         for method in STEPS:
             self.cases[method] = self._position(method, "forward")
-        for method, suffix in (("tsit5", ""), ("diffrax", ", diffrax")):
+        for method, suffix in (("tsit5", ""), ("diffrax", " by diffrax")):
             self.cases["jacobian" + suffix] = self._jacobian(method)
             self.cases["gradient" + suffix] = self._gradient(method)
 

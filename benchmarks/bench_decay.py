@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import jax
@@ -90,19 +91,18 @@ def against_numpy(decay: Decay, rounds: int) -> tuple[list[Row], list[str]]:
     ]
     notes = [
         f"A decay is VolturnUS-S of the campaign volturnus-s-decays as declared, {length} ({steps} steps of 0.5 s), "
-        "released from 6 m of surge, 2 m of heave and 4 deg of pitch at once; what is returned is the position at every step.",
+        "released from 6 m of surge, 2 m of heave and 4 deg of pitch at once; the positions at all steps are returned.",
         f"Strips: {own} in this package; {like.strips_count} in NumPy, except where it is said that it has its own "
         f"({fine.strips_count}, its default). Both integrate all six degrees of freedom in float64.",
-        "Errors are the largest differences in surge / heave / pitch over what was released, against the same program at "
-        f"steps of {FINE} s; the last line of them is the two programs' physics apart.",
+        "Errors are the largest differences in surge / heave / pitch over what was released, against the same program "
+        f"at steps of {FINE} s; the last line of them is the two programs' physics apart.",
     ]
     return rows, notes
 
 
-def derivatives(decay: Decay, rounds: int, others: bool) -> tuple[list[Row], list[str]]:
-    """Jacobian and gradient in simulations of the same method and step; `others`: those of diffrax too."""
-    base = ["tsit5", "jacobian", "gradient"]
-    names = [*base, "diffrax", "jacobian, diffrax", "gradient, diffrax"] if others else base
+def derivatives(decay: Decay, rounds: int, quick: bool) -> tuple[list[Row], list[str]]:
+    """Jacobian and gradient in simulations of the same method and step."""
+    names = ["tsit5"] if quick else [name for name in decay.cases if name != "rk4"]
     runs = {name: decay.compiled(name) for name in names}
 
     def call(run):
@@ -123,30 +123,30 @@ def derivatives(decay: Decay, rounds: int, others: bool) -> tuple[list[Row], lis
     rows = [
         Row("Jacobian of 11 parameters in a decay", simulations("jacobian", "tsit5"), "6", "14-20"),
         Row("Reverse gradient of a decay", sized("gradient", "tsit5"), "3, 50 MB (1 h sea)", "3.2, 55 MB (1 h sea)"),
-        Row("Jacobian through diffrax", simulations("jacobian, diffrax", "diffrax")),
-        Row("Reverse gradient through diffrax", sized("gradient, diffrax", "diffrax")),
+        Row("Jacobian through diffrax", simulations("jacobian by diffrax", "diffrax")),
+        Row("Reverse gradient through diffrax", sized("gradient by diffrax", "diffrax")),
     ]
     notes = [
         "A Jacobian is jax.jacfwd of all positions (t, 6) with respect to the eleven coordinates that a calibration of "
-        "this platform frees; finite differences take 12 simulations. A gradient is jax.grad of one number. Both through "
-        "Tsit5 at 1 s, in units of one simulation by the same method; memory is XLA's temporary buffers."
+        "this platform frees; finite differences take 12 simulations. A gradient is jax.grad of one number. Both go "
+        "through Tsit5 at 1 s, in units of one simulation by the same method; memory is XLA's temporary buffers."
     ]
     return rows, notes
 
 
 def waiting(duration: float, quick: bool) -> tuple[list[Row], list[str]]:
     """Compilation and the first result in new processes: with an empty compilation cache, then with what that left."""
-    names = list(COMPILED)
     with tempfile.TemporaryDirectory() as folder:
 
-        def run(what: str, cache: str) -> dict[str, float]:
+        def run(what: str) -> dict[str, float]:
             command = [sys.executable, "-m", "benchmarks.bench_cases", what, str(duration)]
-            environment = os.environ | CACHE | {"JAX_COMPILATION_CACHE_DIR": str(Path(folder) / cache)}
+            cache = {} if quick else {"JAX_COMPILATION_CACHE_DIR": str(Path(folder) / what.partition(",")[0])}
+            environment = os.environ | CACHE | cache
             done = subprocess.run(command, cwd=ROOT, env=environment, check=True, stdout=subprocess.PIPE, text=True)
             return json.loads(done.stdout)
 
         def twice(what: str) -> tuple[dict[str, float], dict[str, float]]:
-            return ({}, {}) if quick else (run(what, what[:5]), run(what, what[:5]))
+            return ({}, {}) if quick else (run(what), run(what))
 
         cold, warm = twice("first")
         rows = [
@@ -156,14 +156,14 @@ def waiting(duration: float, quick: bool) -> tuple[list[Row], list[str]]:
                 ("First result ever, import apart", cold, ""),
             )
         ]
-        cold, warm = (run("tsit5", "quick"), {}) if quick else twice(",".join(names))
+        cold, warm = (run("tsit5"), {}) if quick else twice(",".join(COMPILED))
         for name, prototype in COMPILED.items():
             found = f"{cold[name]:.2g} s" if name in cold else NOT_RUN
             cached = f", {warm[name]:.2g} s from the cache" if name in warm else ""
             rows.append(Row(f"Compilation: {name}", found + cached, "", prototype))
     notes = [
-        "First result: platform file to motion by free_decay in a new process, after the imports. Compilation: tracing, "
-        "lowering and compiling, CPU; from the cache: in another new process, with what the first left in JAX's "
+        "First result: platform file to motion by free_decay in a new process, after the imports. Compilation: CPU "
+        "time of tracing, lowering and compiling; from the cache: in another new process, with what the first left in JAX's "
         "persistent cache."
     ]
     return rows, notes
@@ -175,18 +175,15 @@ COMPILED = {
     "diffrax": "",
     "jacobian": "7-23 s",
     "gradient": "",
-    "jacobian, diffrax": "",
-    "gradient, diffrax": "",
+    "jacobian by diffrax": "",
+    "gradient by diffrax": "",
 }
 
 
-def measure(quick: bool) -> tuple[list[Row], list[str]]:
-    """All of this file."""
+def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
+    """All of this file, part by part."""
     decay = Decay(60.0 if quick else 600.0)
     rounds = 2 if quick else 7
-    parts = [
-        against_numpy(decay, rounds),
-        derivatives(decay, rounds, not quick),
-        waiting(decay.duration, quick),
-    ]
-    return [row for rows, _ in parts for row in rows], [note for _, notes in parts for note in notes]
+    yield against_numpy(decay, rounds)
+    yield derivatives(decay, rounds, quick)
+    yield waiting(decay.duration, quick)

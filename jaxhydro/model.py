@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -30,7 +29,7 @@ class RigidBody(eqx.Module):
         return self.inertia - self.mass * s @ s
 
     def mass_matrix(self) -> Float[Array, "6 6"]:
-        """Mass matrix about the reference point (Fossen 2011, eq. 3.44)."""
+        """Mass matrix about the reference point (Fossen 2011, section 3.3)."""
         lever = self.mass * skew(self.centre)
         upper = jnp.concatenate([self.mass * jnp.eye(3), -lever], axis=1)
         return jnp.concatenate([upper, jnp.concatenate([lever, self.inertia_at_reference()], axis=1)])
@@ -170,7 +169,7 @@ class Model(eqx.Module):
         )
 
     def rate(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> State:
-        """Rate of the state: Newton and Euler about the reference point in body axes (Fossen 2011, eq. 3.42)."""
+        """Rate of the state: Newton and Euler about the reference point in body axes (Fossen 2011, section 3.3)."""
         now = self.instant(time, state, sea)
         total = self.sum_of_loads(now, state.memory)
         spin, linear, body = state.velocity[3:], state.velocity[:3], self.body

@@ -71,7 +71,7 @@ def decay_cycles(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> Cy
     """Decrement and period against amplitude of a decay that oscillates about zero.
 
     From successive extremes A_i, A_i+1 half a period apart: amplitude (A_i + A_i+1)/2, period 2 (t_i+1 - t_i), decrement 2
-    ln(A_i / A_i+1) per cycle (Chakrabarti 1987, Hydrodynamics of Offshore Structures, section 6.5).
+    ln(A_i / A_i+1) per cycle (the logarithmic decrement: Den Hartog 1985, Mechanical Vibrations, chapter 2).
     """
     times, values = extremes(np.asarray(time), np.asarray(motion), noise)
     size = np.abs(values)

@@ -1,7 +1,7 @@
 """Finite rotations of the platform, and small smooth functions that loads share.
 
 Attitude is roll, pitch, yaw with R = Rz(yaw) Ry(pitch) Rx(roll) taking body axes to earth axes (Fossen 2011, Handbook of
-Marine Craft Hydrodynamics and Motion Control, eq. 2.18). It is singular at 90 degrees of pitch.
+Marine Craft Hydrodynamics and Motion Control, section 2.2). It is singular at 90 degrees of pitch.
 """
 
 import jax
@@ -18,7 +18,7 @@ def cosines(attitude: Float[Array, "3"]) -> tuple[Float[Array, "3"], Float[Array
 
 
 def rotation(attitude: Float[Array, "3"]) -> Float[Array, "3 3"]:
-    """Rotation matrix from body to earth axes; attitude is roll, pitch, yaw in rad (Fossen 2011, eq. 2.18)."""
+    """Rotation matrix from body to earth axes; attitude is roll, pitch, yaw in rad (Fossen 2011, section 2.2)."""
     return rotation_of(cosines(attitude))
 
 
@@ -35,7 +35,7 @@ def rotation_of(both: tuple[Float[Array, "3"], Float[Array, "3"]]) -> Float[Arra
 
 
 def attitude_rates(attitude: Float[Array, "3"], angular: Float[Array, "3"]) -> Float[Array, "3"]:
-    """Rates of roll, pitch, yaw (rad/s) of an angular velocity in body axes (Fossen 2011, eq. 2.28)."""
+    """Rates of roll, pitch, yaw (rad/s) of an angular velocity in body axes (Fossen 2011, section 2.2)."""
     return attitude_rates_of(cosines(attitude), angular)
 
 

@@ -47,31 +47,31 @@ def tsit5() -> Scheme:
     return Scheme((0.0, *map(float, tableau.c[:-1])), tuple(map(float, tableau.b_sol[:-1])), rows)
 
 
-def _step(driver, y, time, step, rate: Rate, scheme: Scheme):
-    """One step: the state after it, and the states at its stages."""
+def _step(driver, y, time, step, rate: Rate, scheme: Scheme, keep: bool):
+    """One step: the state after it, and the states at its stages if they are to be kept."""
     size = len(scheme.nodes)
 
     # one traced copy of the equation of motion for all stages: a fraction of the compilation
     def stage(slopes, row):
         index, node, coefficients = row
         at = y + step * (coefficients @ slopes)
-        return slopes.at[index].set(rate(driver, time + node * step, at)), at
+        return slopes.at[index].set(rate(driver, time + node * step, at)), at if keep else None
 
     rows = (jnp.arange(size), jnp.array(scheme.nodes), jnp.asarray(scheme.coefficients()))
     slopes, stages = jax.lax.scan(stage, jnp.zeros((size, y.shape[0])), rows)
     return y + step * (jnp.array(scheme.weights) @ slopes), stages
 
 
-def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: int):
-    """States at the ends of `count` steps and at the stages of each, in arrays for `capacity` steps."""
+def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: int, keep: bool):
+    """States at the ends of `count` steps, and if kept at the stages of each, in arrays for `capacity` steps."""
 
     def advance(index, carry):
         y, path, stages = carry
-        after, at = _step(driver, y, start + step * index, step, rate, scheme)
-        return after, path.at[index].set(y), stages.at[index].set(at)
+        after, at = _step(driver, y, start + step * index, step, rate, scheme, keep)
+        return after, path.at[index].set(y), stages.at[index].set(at) if keep else None
 
-    shape = (capacity + 1, len(scheme.nodes), y.shape[0])
-    carry = (y, jnp.zeros((capacity + 1, y.shape[0])), jnp.zeros(shape))
+    stages = jnp.zeros((capacity + 1, len(scheme.nodes), y.shape[0])) if keep else None
+    carry = (y, jnp.zeros((capacity + 1, y.shape[0])), stages)
     _, path, stages = jax.lax.fori_loop(0, count + 1, advance, carry)
     return path, stages
 
@@ -92,7 +92,7 @@ def forward(
 
     Has forward derivatives with respect to `driver` and `y`, not to times.
     """
-    return _march(driver, y, start, step, count, rate, scheme, capacity)[0]
+    return _march(driver, y, start, step, count, rate, scheme, capacity, False)[0]
 
 
 @forward.def_jvp
@@ -104,7 +104,8 @@ def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int
     """
     driver, y, start, step, count = primals
     d_driver, d_y, *_ = tangents
-    path, stages = _march(driver, y, start, step, count, rate, scheme, capacity)
+    path, stages = _march(driver, y, start, step, count, rate, scheme, capacity, True)
+    assert stages is not None
     nodes, size = jnp.array(scheme.nodes), len(scheme.nodes)
     total = size * (capacity + 1)
     points = -(-total // BATCH) * BATCH
@@ -149,7 +150,7 @@ def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capac
     """The same path, all of it, for a reverse gradient: states at the beginning of blocks are kept, the rest recomputed."""
 
     def advance(y, index):
-        return _step(driver, y, start + step * index, step, rate, scheme)[0], y
+        return _step(driver, y, start + step * index, step, rate, scheme, False)[0], y
 
     blocks = -(-(capacity + 1) // BLOCK)
     index = jnp.arange(blocks * BLOCK, dtype=float).reshape(blocks, BLOCK)

@@ -13,6 +13,7 @@ from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
+from jaxhydro import runge_kutta
 from jaxhydro.integrate import Grid, integrate
 from jaxhydro.response import Response
 from jaxhydro.rotations import angular_velocity, attitude_rates, rotation
@@ -82,46 +83,62 @@ def run(model, position, velocity, step, capacity, method="tsit5", adjoint="forw
     return integrate(model, sea, state, jnp.zeros(()), jnp.asarray(step), capacity, method, adjoint)
 
 
-def final(model, duration, steps, method, start=START) -> np.ndarray:
-    return np.asarray(run(model, start, jnp.zeros(6), duration / steps, steps, method).position[steps])
-
-
 # schemes
 
 
-@pytest.mark.parametrize("method, order, steps", [("rk4", 4, (16, 32, 64)), ("tsit5", 5, (12, 24, 48))])
+@pytest.mark.parametrize("method, order, steps", [("rk4", 4, (48, 96, 192)), ("tsit5", 5, (24, 48, 96))])
 def test_order_of_convergence(method: str, order: int, steps: tuple[int, ...]) -> None:
     """The error of a decay over 24 s falls with the step to the power of the scheme's order."""
-    exact = final(smooth(), 24.0, 600, "tsit5")
-    errors = [np.linalg.norm(final(smooth(), 24.0, n, method) - exact) for n in steps]
-    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
-    assert -slope == pytest.approx(order, abs=0.3)
+
+    @eqx.filter_jit
+    def final(model, count):
+        state = jh.State(START, jnp.zeros(6), model.rest().memory)
+        grid = integrate(model, STILL, state, jnp.zeros(()), 24.0 / count, 600, method, count=count)
+        return grid.position[count]
+
+    exact = final(smooth(), jnp.asarray(600))
+    errors = [float(jnp.linalg.norm(final(smooth(), jnp.asarray(n)) - exact)) for n in steps]
+    slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    # Tsitouras's error of fifth order is so small that a gentle motion shows the sixth as well
+    assert order - 0.3 < slope < order + (0.3 if method == "rk4" else 1.1)
+
+
+@pytest.mark.parametrize("method, order, steps", [("rk4", 4, (40, 80, 160)), ("tsit5", 5, (40, 80, 160))])
+def test_order_of_the_schemes_themselves(method: str, order: int, steps: tuple[int, ...]) -> None:
+    """y' = -2 t y^2, y(0) = 1: exactly 1/(1 + t^2), time in the right-hand side and all."""
+    scheme, errors = runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5(), []
+    options = {"rate": lambda _, t, y: -2 * t * y**2, "scheme": scheme, "capacity": 160}
+    for count in steps:
+        step = jnp.asarray(4.0 / count)
+        path = runge_kutta.forward(None, jnp.ones(1), jnp.zeros(()), step, jnp.asarray(count), **options)
+        times = np.linspace(0.0, 4.0, count + 1)
+        errors.append(np.abs(np.asarray(path)[: count + 1, 0] - 1 / (1 + times**2)).max())
+    slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(order, abs=0.3)
 
 
 def test_own_loop_against_diffrax() -> None:
-    """The same scheme in this package's loop and in diffrax, with drag and added mass: the same numbers."""
-    own, other = (run(hull(), START, jnp.zeros(6), 0.5, 40, method) for method in ("tsit5", "diffrax"))
+    """The same scheme in this package's loop, either adjoint, and in diffrax, with drag and added mass: one motion."""
+    own, checkpointed, other = (
+        run(hull(), START, jnp.zeros(6), 0.5, 40, *options)
+        for options in (("tsit5",), ("tsit5", "reverse"), ("diffrax",))
+    )
     for name in ("position", "rate", "acceleration"):
-        one, two = getattr(own, name)[:41], getattr(other, name)[:41]
-        assert_allclose(one, two, rtol=1e-10, atol=1e-10 * float(jnp.abs(one).max()))
-
-
-def test_forward_and_checkpointed_paths_are_the_same() -> None:
-    """Which adjoint is asked for does not change the motion."""
-    one, two = (run(hull(), START, jnp.zeros(6), 0.5, 40, "tsit5", adjoint) for adjoint in ("forward", "reverse"))
-    assert_allclose(one.position[:41], two.position[:41], rtol=1e-13, atol=1e-13)
+        one = getattr(own, name)[:41]
+        for two in (checkpointed, other):
+            assert_allclose(one, getattr(two, name)[:41], rtol=1e-10, atol=1e-10 * float(jnp.abs(one).max()))
 
 
 def test_output_at_recorded_times() -> None:
     """Irregular output times do not touch the integration, and the inner step shows with the scheme's error only."""
     times = np.sort(np.concatenate([[0.0, 40.0], np.random.default_rng(0).uniform(0, 40, 61)]))
-    responses = [jh.simulate(smooth(), times, position=START, step=step) for step in (0.5, 0.25, 0.05)]
-    for coarse, tolerance in zip(responses[:2], (1e-4, 5e-6), strict=True):
-        for name, factor in (("position", 1), ("rate", 2), ("acceleration", 10)):
-            fine = np.asarray(getattr(responses[2], name))
-            assert np.abs(np.asarray(getattr(coarse, name)) - fine).max() < tolerance * factor * np.abs(fine).max()
-    few = jh.simulate(smooth(), times[[0, 7, 20, -1]], position=START, step=0.25)
-    assert_allclose(few.position, responses[1].position[np.array([0, 7, 20, -1])], rtol=1e-12, atol=1e-12)
+    coarse, fine = (jh.simulate(smooth(), times, position=START, step=step) for step in (0.25, 0.05))
+    for name, tolerance in (("position", 5e-6), ("rate", 2e-5), ("acceleration", 5e-4)):
+        one, other = np.asarray(getattr(coarse, name)), np.asarray(getattr(fine, name))
+        assert np.abs(one - other).max() < tolerance * np.abs(other).max()
+    some = np.array([0, 7, 20, 62])
+    few = jh.simulate(smooth(), times[some], position=START, step=0.25)
+    assert_allclose(few.position, coarse.position[some], rtol=1e-12, atol=1e-12)
 
 
 def test_interpolation_is_of_sixth_order() -> None:
@@ -166,7 +183,7 @@ UNKNOWNS = (jnp.array([1.0, 1.1, 0.9, 1.2, 1.0, 1.0]), START)
 
 @cache
 def central_differences() -> np.ndarray:
-    """Of the whole simulation, step 1e-5, fourth order."""
+    """Of the whole simulation, of fourth order."""
     value = jax.jit(lambda flat: objective((flat[:6], flat[6:]), "forward"))
     at, found = jnp.concatenate(UNKNOWNS), []
     for i in range(12):
@@ -177,27 +194,21 @@ def central_differences() -> np.ndarray:
 
 
 def test_gradients_through_a_simulation() -> None:
-    """Reverse = forward to rounding, and both = central differences of the simulation, for parameters and initial state."""
-    forward = jnp.concatenate(jax.jit(jax.jacfwd(lambda u: objective(u, "forward")))(UNKNOWNS))
-    reverse = jnp.concatenate(jax.jit(jax.grad(lambda u: objective(u, "reverse")))(UNKNOWNS))
-    assert_allclose(forward, reverse, rtol=1e-8, atol=1e-8 * float(jnp.abs(reverse).max()))
-    assert_allclose(forward, central_differences(), rtol=1e-6, atol=1e-6)
+    """Reverse = forward, and both = central differences of the simulation, for parameters and initial state; under vmap
+    the gradients of a batch are those of its members."""
+    batch = [UNKNOWNS, jax.tree.map(lambda x: 1.2 * x, UNKNOWNS)]
+    forward = jax.jit(jax.vmap(jax.jacfwd(lambda u: objective(u, "forward"))))(
+        jax.tree.map(lambda *x: jnp.stack(x), *batch)
+    )
+    forward = jnp.concatenate(forward, axis=1)
+    reverse = jax.jit(jax.grad(lambda u: objective(u, "reverse")))
+    for i, unknowns in enumerate(batch):
+        single = jnp.concatenate(reverse(unknowns))
+        assert_allclose(forward[i], single, rtol=1e-8, atol=1e-8 * float(jnp.abs(single).max()))
+    assert_allclose(forward[0], central_differences(), rtol=1e-6, atol=1e-6)
 
 
-def test_gradients_under_vmap() -> None:
-    """A batch of gradients is the gradients of the batch."""
-    factors = jnp.stack([UNKNOWNS[0], 1.3 * UNKNOWNS[0]])
-
-    def slope(f):
-        return jax.jvp(lambda f: objective((f, START), "forward"), (f,), (jnp.ones(6),))
-
-    single = jax.jit(slope)
-    batch = jax.jit(jax.vmap(slope))(factors)
-    for i in range(2):
-        for one, many in zip(single(factors[i]), batch, strict=True):
-            assert_allclose(one, many[i], rtol=1e-9)
-
-
+@pytest.mark.validate
 def test_gradient_by_diffrax_reverse() -> None:
     """diffrax's own checkpointed adjoint agrees with ours, at output times on the step grid and between."""
 
@@ -244,7 +255,9 @@ def test_linear_oscillator(damping: float) -> None:
     omega = math.sqrt(4e6 / 1e7)
     zeta = damping / (2 * math.sqrt(4e6 * 1e7))
     damped = omega * math.sqrt(1 - zeta**2)
-    exact = 3.0 * np.exp(-zeta * omega * times) * (np.cos(damped * times) + zeta * omega / damped * np.sin(damped * times))
+    exact = (
+        3.0 * np.exp(-zeta * omega * times) * (np.cos(damped * times) + zeta * omega / damped * np.sin(damped * times))
+    )
     assert_allclose(found, exact, atol=3e-8)
 
 
@@ -311,7 +324,8 @@ def test_acceleration_and_its_derivatives() -> None:
     weights = jnp.asarray(rng.normal(size=6)) / jnp.abs(plain(*arguments))
     for differentiate in (jax.grad, jax.jacfwd):
         found, expected = (
-            differentiate(lambda *x, f=f: f(*x) @ weights, argnums=tuple(range(5)))(*arguments) for f in (accelerate, plain)
+            differentiate(lambda *x, f=f: f(*x) @ weights, argnums=tuple(range(5)))(*arguments)
+            for f in (accelerate, plain)
         )
         for one, other in zip(found, expected, strict=True):
             other = 0.5 * (other + other.T) if one.shape == (6, 6) else other
@@ -367,7 +381,12 @@ def test_natural_modes() -> None:
     stiffness = {"C11": 7e4, "C22": 5e4, "C15": 1e6, "C55": 3e8}
     body = {"mass": 8e6, "centre_of_mass": [0, 0, -3], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}
     model = jh.build(
-        platform(rigid_body=body, hydrostatics={"C33": 4e6, "C44": 4e8, "C55": 5e8}, stiffness=stiffness, added_mass={"A33": 2e6})
+        platform(
+            rigid_body=body,
+            hydrostatics={"C33": 4e6, "C44": 4e8, "C55": 5e8},
+            stiffness=stiffness,
+            added_mass={"A33": 2e6},
+        )
     )
     modes = jh.natural_modes(model)
     assert modes.of("heave") == pytest.approx(2 * math.pi * math.sqrt(1e7 / 4e6), rel=1e-9)
@@ -398,9 +417,9 @@ def test_unknown_names() -> None:
         jh.simulate(smooth(), [0.0, 1.0], rate={"Surge": 1.0})
     with pytest.raises(KeyError, match="surge"):
         Response(*(jnp.zeros((2, 6)),) * 4)["hieve"]
-    with pytest.raises(KeyError, match="column.Ca_t"):
+    with pytest.raises(KeyError, match=r"column\.Ca_t"):
         hull().with_values({"column.Ca_x": 1.0})
-    with pytest.raises(KeyError, match="column.Ca_t"):
+    with pytest.raises(KeyError, match=r"column\.Ca_t"):
         hull().about("bogus")
 
 

@@ -139,7 +139,9 @@ def test_contract(name: str) -> None:
         assert about.lower <= float(value) <= about.upper
 
     loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
-    batch = eqx.filter_jit(eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0, None)))(model, positions, velocities, SEA)
+    batch = eqx.filter_jit(eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0, None)))(
+        model, positions, velocities, SEA
+    )
     eager = wrench.__wrapped__(model, positions[0], velocities[0], SEA)
     for whole, alone, *parts in zip(batch, eager, *loop, strict=True):
         scale = float(jnp.abs(whole).max()) + 1e-300
@@ -463,7 +465,7 @@ HULL = [
 )
 @pytest.mark.parametrize("members", [True, False], ids=["members", "bare"])
 def test_declared_hydrostatics_come_out(declared: dict, members: bool) -> None:
-    """What the file declares is the force and stiffness about the upright platform; `_buoyancy` leaves the weight out."""
+    """What the file declares is force and stiffness about the upright platform; `_buoyancy` leaves the weight out."""
     hull = HULL if members else []
     plain = only(build(*hull), Buoyancy, Weight)
     model = only(build(*hull, hydrostatics=declared), Buoyancy, Weight)

@@ -1,4 +1,4 @@
-"""Free decays of the strip-theory hull against OpenFAST v5, an independent program: same coefficients, same mooring matrix."""
+"""Free decays of the strip-theory hull against OpenFAST v5, an independent program with the same coefficients."""
 
 import json
 from pathlib import Path

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from jaxhydro.response import decay_cycles, extremes
+from jaxhydro.response import Cycles, decay_cycles, extremes
 
 OMEGA = 2 * math.pi / 25.0
 
@@ -19,7 +19,7 @@ def decay(zeta: float, times: np.ndarray, amplitude: float = 5.0) -> np.ndarray:
 @pytest.mark.parametrize("zeta", [0.002, 0.02, 0.08])
 @pytest.mark.parametrize("sampling", [0.1, 0.37])
 def test_decrement_and_period_of_a_linear_decay(zeta: float, sampling: float) -> None:
-    """exp(-zeta w t) cos wt: decrement 2 pi zeta per cycle, period 2 pi/w, at every amplitude: w is the damped frequency."""
+    """exp(-zeta w t) cos wt: decrement 2 pi zeta per cycle, period 2 pi/w, at every amplitude, w the damped one."""
     times = np.arange(0.0, 260.0, sampling)
     cycles = decay_cycles(times, decay(zeta, times))
     assert len(cycles.amplitude) >= 17
@@ -40,19 +40,31 @@ def test_decrement_of_a_damped_oscillator() -> None:
     assert_allclose(cycles.period[:8], 25.0 / math.sqrt(1 - zeta**2), rtol=5e-3)
 
 
+def noisy_cycles(until: float, seed: int) -> Cycles:
+    """Cycles of a decay of zeta = 2 % under one per cent of white noise."""
+    times = np.arange(0.0, until, 0.1)
+    noise = np.random.default_rng(seed).normal(0, 0.05, len(times))
+    return decay_cycles(times, decay(0.02, times) + noise, noise=0.05)
+
+
 def test_noise_makes_no_cycles() -> None:
-    """One per cent of noise: the right number of half cycles down to the noise, without bias in decrement and period."""
-    times = np.arange(0.0, 260.0, 0.1)
-    decrements, periods = [], []
+    """One per cent of noise: one half cycle every 12.5 s, without bias in decrement and period."""
+    found = [noisy_cycles(256.0, seed) for seed in range(8)]
+    assert all(18 <= len(cycles.period) <= 20 for cycles in found)
+    assert all(np.abs(cycles.period[1:] / 25 - 1).max() < 0.1 for cycles in found)
+    assert np.mean([cycles.decrement[:12].mean() for cycles in found]) == pytest.approx(2 * math.pi * 0.02, rel=0.03)
+    assert np.mean([cycles.period[:12].mean() for cycles in found]) == pytest.approx(25.0, rel=3e-3)
+
+
+@pytest.mark.xfail(
+    strict=True,
+    reason="`extremes` drops a half cycle that the record's end cuts off only where its tip is the very last sample; noise "
+    "puts the tip a sample earlier, and a false last cycle comes out (period 20 s for 25 s, four times the decrement)",
+)
+def test_a_crest_cut_off_by_the_records_end_is_no_cycle() -> None:
+    """The record ends 2.5 s before a crest, in noise: every cycle found is still 25 s long within a tenth."""
     for seed in range(8):
-        noisy = decay(0.02, times) + np.random.default_rng(seed).normal(0, 0.05, len(times))
-        cycles = decay_cycles(times, noisy, noise=0.05)
-        assert np.all(np.diff(cycles.time) > 9)  # one every 12.5 s
-        assert 14 <= len(cycles.period) <= 20
-        decrements.append(cycles.decrement[:10].mean())
-        periods.append(cycles.period[:10].mean())
-    assert np.mean(decrements) == pytest.approx(2 * math.pi * 0.02, rel=0.03)
-    assert np.mean(periods) == pytest.approx(25.0, rel=3e-3)
+        assert np.abs(noisy_cycles(260.0, seed).period[1:] / 25 - 1).max() < 0.1
 
 
 def test_slope_of_quadratic_damping() -> None:

@@ -4,6 +4,7 @@ import hashlib
 import json
 import multiprocessing as mp
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -98,9 +99,14 @@ def parallel(
         else:
             yield name, result
     if missing:
-        with mp.get_context("spawn").Pool(min(processes, len(missing)), begin) as pool:
+        with mp.get_context("spawn").Pool(min(processes, len(missing)), _worker) as pool:
             for name, result in pool.imap_unordered(_Named(work), missing):
                 yield name, keep(section, key, name, result)
+
+
+def _worker() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the one that waits for them
+    begin()
 
 
 class _Named:

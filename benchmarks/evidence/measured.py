@@ -63,6 +63,13 @@ def run(figures: Path) -> Section:
     return Section(TITLE, "\n".join(texts), tuple(drawn))
 
 
+def third(cycles: np.ndarray, column: int, large: bool) -> float:
+    """Mean of a column over the third of the half cycles with the largest, or smallest, amplitudes."""
+    order = np.argsort(cycles[:, 0])
+    n = max(1, len(order) // 3)
+    return float(cycles[order[-n:] if large else order[:n], column].mean())
+
+
 def words_of(name: str, words: str, found: dict[str, Any]) -> str:
     """One campaign's part of the page."""
     unit = "deg" if found["channel"] in ("roll", "pitch", "yaw") else "m"
@@ -84,5 +91,9 @@ def words_of(name: str, words: str, found: dict[str, Any]) -> str:
         f"This one record does not determine {', '.join(f'`{x}`' for x in lost)}.\n" if lost else "",
         f"Half cycles against amplitude ({unit}): period (s) and logarithmic decrement per cycle, measured and simulated:", "",
         table(("Amplitude", "Period", "simulated", "Decrement", "simulated"), seen),
+        f"From the largest third of the amplitudes to the smallest the period goes from {third(cycles, 1, True):.3f} to "
+        f"{third(cycles, 1, False):.3f} s measured, {third(cycles, 2, True):.3f} to {third(cycles, 2, False):.3f} s simulated; "
+        f"the decrement from {third(cycles, 3, True):.3f} to {third(cycles, 3, False):.3f} measured, "
+        f"{third(cycles, 4, True):.3f} to {third(cycles, 4, False):.3f} simulated.",
     ]  # fmt: skip
     return "\n".join(lines)

@@ -72,17 +72,19 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
     share, need = int(inside_all.sum()), int(np.ceil(GOAL * n))
     every = np.concatenate([z[np.isfinite(z)] for z in scores.values()])
     least = min(int(row[-1].split()[0]) for row in rows)
+    identified = sum(r["parameters"][label][2] for r in results for label in labels)
     objective = np.array([r["objective"] for r in results])
     text = (
-        f"The built-in campaign `volturnus-s-decays` is made by a separate program, a plain NumPy model integrated by SciPy "
-        f"(`benchmarks/reference_model.py`), with the coefficients of the paper's Table 1, white sensor noise and imperfect "
-        f"releases. Here it is made with {n} seeds of noise, and each is calibrated from the platform file's values, which are "
-        f"off by up to a factor of five. *Inside* means within two of its own standard deviations or 2 % of the truth, "
-        f"whichever is larger; *identifiable* ones only.\n\n"
+        "The built-in campaign `volturnus-s-decays` is made by a separate program, a plain NumPy model integrated by SciPy "
+        "(`benchmarks/reference_model.py`), with the coefficients of the paper's Table 1, white sensor noise and imperfect "
+        f"releases. Here it is made with {n} seeds of noise, and each is calibrated from the platform file's values, "
+        "which are off by up to a factor of five. *Inside* means within two of its own standard deviations or 2 % of the "
+        f"truth, whichever is larger; identifiable ones only, which {identified} of the {n * len(labels)} are.\n\n"
         + table(("Coefficient", "True", "Bias", "Scatter", "Stated sd", "rms z", "Inside"), rows)
-        + f"\nBias is the mean over the seeds less the truth; scatter is the standard deviation over the seeds, which the stated "
-        f"one should match (rms z near 1). Over all coefficients and seeds {np.mean(np.abs(every) < 2):.1%} of the z lie within "
-        f"±2 (95.4 % of a normal distribution do), and rms z is {np.sqrt(np.mean(every**2)):.2f}.\n\n"
+        + "\nBias is the mean over the seeds less the truth; scatter is the standard deviation over the seeds, which the "
+        "stated one should match (rms z near 1). Over all coefficients and seeds "
+        f"{np.mean(np.abs(every) < 2):.1%} of the z lie within ±2 (95.4 % of a normal distribution do), and rms z is "
+        f"{np.sqrt(np.mean(every**2)):.2f}.\n\n"
         f"- Coefficient by coefficient: the worst is inside in {least} of {n}; the goal is {need}. "
         f"{'Met.' if least >= need else 'Not met.'}\n"
         f"- All identifiable ones inside at once: {share} of {n} seeds; the goal is {need}. "
@@ -111,7 +113,7 @@ def draw(scores: dict[str, np.ndarray], path: Path) -> Path:
         ax = figure.subplots()
         ax.axvspan(-2, 2, color="#e9ecf0", lw=0, zorder=0)
         ax.axvline(0, color=GREY, lw=0.6)
-        for row, (label, z) in enumerate(scores.items()):
+        for row, (_, z) in enumerate(scores.items()):
             z = np.sort(z[np.isfinite(z)])
             ax.plot(np.clip(z, -4, 4), row + 0.22 * (np.arange(len(z)) % 3 - 1), "o", ms=2.5, color=SIMULATED, mew=0)
         ax.set_yticks(range(len(scores)), list(scores))

@@ -11,11 +11,11 @@ from jaxhydro.loads.matrix import assemble, place, unit
 class AddedMass(AbstractLoad):
     """F = -A a, a the acceleration of the reference point in body axes: added mass that members do not give.
 
-    Labels are `added_mass.A44` and so on. Newman 1977, Marine Hydrodynamics, eq. 4.114, its quadratic terms left out.
+    Labels are `added_mass.A44` and so on. Newman 1977, Marine Hydrodynamics, chapter 4, its quadratic terms left out.
     """
 
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "Newman 1977, eq. 4.114"
+    source: ClassVar[str] = "Newman 1977, chapter 4"
 
     def about(self, label: str) -> Parameter:
         i, j = place(label)

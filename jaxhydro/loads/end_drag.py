@@ -13,7 +13,7 @@ from jaxhydro.loads.strip_drag import REST
 class EndDrag(AbstractLoad):
     """f = 1/2 rho Cd A |w| w, w the water's velocity relative to the end along the member, A the end's area.
 
-    Robertson et al. 2014 (NREL/TP-5000-60601, OC4, table 6-4 and its text); OpenFAST's own input is twice this Cd, since it
+    Robertson et al. 2014 (NREL/TP-5000-60601, the OC4 semisubmersible); OpenFAST's own input is twice this Cd, since it
     halves again.
     """
 

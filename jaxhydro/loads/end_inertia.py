@@ -20,12 +20,12 @@ def spread_ends(ends: Ends, values: dict[str, Float[Array, ""]], symbol: str) ->
 class EndInertia(AbstractLoad):
     """f = rho Ca V (a_water - a_end) + p A, along the member, V = 2/3 pi r^3 half a sphere on the end.
 
-    Added mass of an end as in OpenFAST HydroDyn (Theory manual, Morison's equation, member end loads); p A is the dynamic
+    Added mass of an end as in OpenFAST HydroDyn (Morison module, loads on member ends); p A is the dynamic
     pressure on the end's area, the axial Froude-Krylov force. Only ends under water are loaded.
     """
 
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "OpenFAST HydroDyn theory manual, member end loads"
+    source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, loads on member ends"
 
     def about(self, label: str) -> Parameter:
         group = label.rsplit(".", 1)[0]

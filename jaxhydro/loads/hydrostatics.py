@@ -21,8 +21,8 @@ class Buoyancy(AbstractLoad):
 
     V and its centroid follow the finite displacement and rotation: the wetted length along the axis, and for a column the
     wedge of its inclined waterplane, which moves the volume by I tan across and I tan^2/2 along the axis, I the section's
-    second moment (Newman 1977, Marine Hydrodynamics, section 6.16, without linearisation). A column is taken as cut through
-    its sides, not its ends.
+    second moment (Newman 1977, Marine Hydrodynamics, chapter 6, Hydrostatics, without linearisation). A column is taken
+    as cut through its sides, not its ends.
 
     `extra_force` and `extra_stiffness` are the declared hydrostatics less those of the geometry, about the upright platform
     at its reference position: extra volume acts at the geometry's centre of buoyancy.
@@ -38,7 +38,7 @@ class Buoyancy(AbstractLoad):
     extra_force: Float[Array, ""]  # N
     extra_stiffness: Float[Array, "3"]  # C33, C44, C55 beyond the geometry's
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "Newman 1977, section 6.16"
+    source: ClassVar[str] = "Newman 1977, chapter 6, Hydrostatics"
 
     def about(self, label: str) -> Parameter:
         raise KeyError(label)

@@ -11,11 +11,11 @@ from jaxhydro.loads.matrix import assemble, place, unit
 class LinearDamping(AbstractLoad):
     """F = -B v, v the velocity of the reference point and the angular velocity, along body axes as in OpenFAST.
 
-    Labels are `linear_damping.B11` and so on. Faltinsen 1990, Sea Loads on Ships and Offshore Structures, eq. 3.24.
+    Labels are `linear_damping.B11` and so on. Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 3.
     """
 
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "Faltinsen 1990, eq. 3.24"
+    source: ClassVar[str] = "Faltinsen 1990, chapter 3"
 
     def about(self, label: str) -> Parameter:
         i, j = place(label)

@@ -12,7 +12,7 @@ from jaxhydro.rotations import cross
 class MooringLines(AbstractLoad):
     """T = k max(0, l - l0) along the straight line from the displaced fairlead to the anchor.
 
-    The geometric law of a massless elastic line (Faltinsen 1990, Sea Loads, section 8.2), so that pretension stiffness,
+    The geometric law of a massless elastic line (Faltinsen 1990, Sea Loads, chapter 8), so that pretension stiffness,
     large offsets and slack come out by themselves. Labels are `mooring.line1.stiffness` (N/m) and
     `mooring.line1.unstretched_length` (m).
     """
@@ -20,7 +20,7 @@ class MooringLines(AbstractLoad):
     values: dict[str, Float[Array, ""]]
     anchor: Float[Array, "3 l"]  # m, in earth axes
     fairlead: Float[Array, "3 l"]  # m, in body axes
-    source: ClassVar[str] = "Faltinsen 1990, section 8.2"
+    source: ClassVar[str] = "Faltinsen 1990, chapter 8"
 
     def about(self, label: str) -> Parameter:
         _, line, what = label.split(".")

@@ -13,12 +13,12 @@ from jaxhydro.loads.strip_drag import REST
 class QuadraticDamping(AbstractLoad):
     """F_i = -Q_ii |v_i| v_i along body axes: a body's drag without members, or what its members do not give.
 
-    Labels are `quadratic_damping.B44` and so on, as in the platform file. Himeno 1981, Prediction of Ship Roll Damping, eq. 2.5
+    Labels are `quadratic_damping.B44` and so on, as in the platform file. Himeno 1981, Prediction of Ship Roll Damping
     (University of Michigan, report 239).
     """
 
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "Himeno 1981, eq. 2.5"
+    source: ClassVar[str] = "Himeno 1981, Prediction of Ship Roll Damping"
 
     def about(self, label: str) -> Parameter:
         return Parameter(unit("Q", label), f"quadratic damping in degree of freedom {place(label)[0] + 1}", 0.0)

@@ -13,13 +13,13 @@ class Stiffness(AbstractLoad):
     """F = F0 - C q, q the displacement of the reference point in earth axes and roll, pitch, yaw; F0 the preload (N, N m).
 
     Labels are `mooring.C11` or `stiffness.C11` and so on.
-    Jonkman 2007, NREL/TP-500-41958, eq. 4-27: the linearised mooring system.
+    Jonkman 2007, NREL/TP-500-41958: the linearised mooring system.
     """
 
     values: dict[str, Float[Array, ""]]
     preload: Float[Array, "6"]
     name: str = eqx.field(static=True, default="stiffness")
-    source: ClassVar[str] = "Jonkman 2007, NREL/TP-500-41958, eq. 4-27"
+    source: ClassVar[str] = "Jonkman 2007, NREL/TP-500-41958, the linearised mooring system"
 
     def about(self, label: str) -> Parameter:
         i, j = place(label)

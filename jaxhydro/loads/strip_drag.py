@@ -15,15 +15,16 @@ REST = 1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at 
 class StripDrag(AbstractLoad):
     """f = 1/2 rho Cd A |u| u, u the water's velocity relative to the strip across the member, on its wetted part.
 
-    The drag term of the relative Morison equation (Chakrabarti 1987, Hydrodynamics of Offshore Structures, eq. 6.33). A is the
-    area that faces the direction: diameter or side height times length for t, plan width times length for z. |u| is the
-    length of the transverse vector, which couples the two directions (OpenFAST's law, the default), or with `coupled=False`
-    that of the direction's own component, which only makes sense for rectangular sections.
+    The drag term of the relative Morison equation (Morison et al. 1950; Chakrabarti 1987, Hydrodynamics of Offshore
+    Structures, chapter 6). A is the area that faces the direction: diameter or side height times length for t, plan width
+    times length for z. |u| is the length of the transverse vector, which couples the two directions (OpenFAST's law, the
+    default), or with `coupled=False` that of the direction's own component, which only makes sense for rectangular
+    sections.
     """
 
     values: dict[str, Float[Array, ""]]
     coupled: bool = eqx.field(static=True, default=True)
-    source: ClassVar[str] = "Morison et al. 1950, eq. 7; Chakrabarti 1987, eq. 6.33"
+    source: ClassVar[str] = "Morison et al. 1950, Petroleum Transactions 189; Chakrabarti 1987, chapter 6"
 
     def about(self, label: str) -> Parameter:
         group, symbol = label.rsplit(".", 1)

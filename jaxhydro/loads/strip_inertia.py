@@ -21,14 +21,14 @@ def spread(strips: Strips, values: Mapping[str, Float[Array, ""]], symbol: str) 
 class StripInertia(AbstractLoad):
     """f = rho V (1 + Ca) a_water - rho V Ca a_strip, across the member, on the wetted part of each strip.
 
-    The transverse inertia term of the relative Morison equation: Morison et al. 1950 (Petroleum Transactions 189, eq. 7) in the
-    relative form of Chakrabarti 1987, Hydrodynamics of Offshore Structures, eq. 6.33. The 1 is the Froude-Krylov force. Ca
-    refers to the displaced volume V of the strip, in a circular and in a rectangular section alike. The strip's acceleration
-    includes the centripetal part. Directions turn with the body.
+    The transverse inertia term of the relative Morison equation: Morison et al. 1950 (Petroleum Transactions 189, 149-154)
+    in the relative form of Chakrabarti 1987, Hydrodynamics of Offshore Structures, chapter 6. The 1 is the Froude-Krylov
+    force. Ca refers to the displaced volume V of the strip, in a circular and in a rectangular section alike. The strip's
+    acceleration includes the centripetal part. Directions turn with the body.
     """
 
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "Morison et al. 1950, eq. 7; Chakrabarti 1987, eq. 6.33"
+    source: ClassVar[str] = "Morison et al. 1950, Petroleum Transactions 189; Chakrabarti 1987, chapter 6"
 
     def about(self, label: str) -> Parameter:
         group, symbol = label.rsplit(".", 1)

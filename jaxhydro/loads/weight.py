@@ -13,13 +13,13 @@ class Weight(AbstractLoad):
     """F = -m g along z at the displaced centre of mass.
 
     `mass` (kg) and `centre` (m, body axes) are those of everything that moves with the hull. Newman 1977, Marine
-    Hydrodynamics, section 6.16.
+    Hydrodynamics, chapter 6, Hydrostatics.
     """
 
     mass: Float[Array, ""]
     centre: Float[Array, "3"]
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "Newman 1977, section 6.16"
+    source: ClassVar[str] = "Newman 1977, chapter 6, Hydrostatics"
 
     def about(self, label: str) -> Parameter:
         raise KeyError(label)

@@ -1,4 +1,4 @@
-"""Linear dispersion in finite depth: omega^2 = g k tanh(k h) (Dean and Dalrymple 1991, Water Wave Mechanics, eq. 3.34)."""
+"""Linear dispersion in finite depth: omega^2 = g k tanh(k h) (Dean and Dalrymple 1991, Water Wave Mechanics, chapter 3)."""
 
 import jax
 import jax.numpy as jnp
@@ -11,7 +11,7 @@ def wavenumber(
 ) -> Float[Array, "..."]:
     """Wavenumber k (rad/m) of angular frequency omega >= 0 (rad/s) in water of depth h (m), to rounding.
 
-    Newton's iteration from the explicit formula of Guo (2002), Coastal Engineering 45, 71-74, eq. 6. Derivatives are implicit.
+    Newton's iteration from the explicit formula of Guo (2002), Coastal Engineering 45, 71-74. Derivatives are implicit.
     omega = 0 gives k = 0.
     """
     safe = jnp.where(omega > 0, omega, 1.0)

@@ -37,7 +37,7 @@ class StillWater(AbstractSea):
 class AirySea(AbstractSea):
     """First-order waves: eta = sum a cos(omega t - k (x cos heading + y sin heading) + phase).
 
-    Airy theory in finite depth (Dean and Dalrymple 1991, eq. 3.29 to 3.43), u = a omega cosh k(z+h) / sinh kh, with p/rho = a g
+    Airy theory in finite depth (Dean and Dalrymple 1991, chapters 3 and 4), u = a omega cosh k(z+h) / sinh kh, with p/rho = a g
     cosh k(z+h) / cosh kh. Kinematics are those at the point's own position; above still water they are those of z = 0.
     Waves grow from rest over the first `ramp` seconds by a half cosine (0: at full height from the start).
     """
