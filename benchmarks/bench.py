@@ -3,7 +3,7 @@
     python -m benchmarks.bench [--quick] [--budget SECONDS] [--out FILE]
 
 writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
-contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run; it writes nothing unless told where.
+contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run; it writes only where `--out` says.
 """
 
 import argparse
@@ -66,10 +66,10 @@ def markdown(rows: list[Row], notes: list[str]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a smoke run of a minute, its numbers worth nothing")
-    parser.add_argument("--budget", type=float, help="CPU seconds for each population search (300; quick: 1)")
+    parser.add_argument("--budget", type=float, help="CPU seconds for each population search (300; quick: 0.3)")
     parser.add_argument("--out", type=Path, help="file to write (benchmarks/results.md; quick: none)")
     arguments = parser.parse_args()
-    budget = (1.0 if arguments.quick else 300.0) if arguments.budget is None else arguments.budget
+    budget = (0.3 if arguments.quick else 300.0) if arguments.budget is None else arguments.budget
     out = arguments.out or (None if arguments.quick else RESULTS)
     cores = os.cpu_count() or 1
     pin()

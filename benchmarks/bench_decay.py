@@ -11,7 +11,7 @@ from pathlib import Path
 import jax
 import numpy as np
 
-from benchmarks.bench_cases import PLATFORM, RELEASE, STEPS, Decay
+from benchmarks.bench_cases import PLATFORM, RELEASE, STEPS, Decay, compilations
 from benchmarks.bench_timing import Row, contest, three, times
 from benchmarks.reference_model import ReferenceModel, rk4
 
@@ -140,8 +140,7 @@ def waiting(duration: float, quick: bool) -> tuple[list[Row], list[str]]:
 
         def run(what: str) -> dict[str, float]:
             command = [sys.executable, "-m", "benchmarks.bench_cases", what, str(duration)]
-            cache = {} if quick else {"JAX_COMPILATION_CACHE_DIR": str(Path(folder) / what.partition(",")[0])}
-            environment = os.environ | CACHE | cache
+            environment = os.environ | CACHE | {"JAX_COMPILATION_CACHE_DIR": str(Path(folder) / what.partition(",")[0])}
             done = subprocess.run(command, cwd=ROOT, env=environment, check=True, stdout=subprocess.PIPE, text=True)
             return json.loads(done.stdout)
 
@@ -156,15 +155,15 @@ def waiting(duration: float, quick: bool) -> tuple[list[Row], list[str]]:
                 ("First result ever, import apart", cold, ""),
             )
         ]
-        cold, warm = (run("tsit5"), {}) if quick else twice(",".join(COMPILED))
+        cold, warm = (compilations(["tsit5"], duration), {}) if quick else twice(",".join(COMPILED))
         for name, prototype in COMPILED.items():
             found = f"{cold[name]:.2g} s" if name in cold else NOT_RUN
             cached = f", {warm[name]:.2g} s from the cache" if name in warm else ""
             rows.append(Row(f"Compilation: {name}", found + cached, "", prototype))
     notes = [
         "First result: platform file to motion by free_decay in a new process, after the imports. Compilation: CPU "
-        "time of tracing, lowering and compiling; from the cache: in another new process, with what the first left in JAX's "
-        "persistent cache."
+        "time of tracing, lowering and compiling; from the cache: in another new process, with what the first left in "
+        "JAX's persistent cache."
     ]
     return rows, notes
 

@@ -176,8 +176,8 @@ def measure(budget: float, quick: bool) -> Iterator[tuple[list[Row], list[str]]]
     together = np.tile(x, (BATCH, 1))
     contestants = {"one": lambda: apart(together[:1]), "batch": lambda: (apart if quick else many)(together)}
     turns = contest(contestants, 2 if quick else 5)
-    batched = turns["batch"].over(turns["one"]) / BATCH
-    function = many if batched < 1 and not quick else apart
+    batched = 1.0 if quick else turns["batch"].over(turns["one"]) / BATCH
+    function = many if batched < 1 else apart
     spans = np.array([parameter.transform.span for parameter in space.free])
 
     def search(method: Callable[[Population, int], None]) -> Search:
@@ -227,9 +227,9 @@ def report(
     notes = [
         f"The calibration is of {records} decay records of volturnus-s-decays, {unknowns.shared.shape[0]} coefficients "
         f"from 1/{FACTOR:g} to {FACTOR:g} times what is declared, and {unknowns.own.shape[1]} initial values and "
-        f"offsets per record. An iteration is one Jacobian, refused steps included, counted as 1 + {tangents} simulations "
-        "of every record (finite differences), though it costs less and early ones go over a few cycles only. It is run "
-        "twice, and the second run is timed.",
+        f"offsets per record. An iteration is one Jacobian, refused steps included, counted as 1 + {tangents} "
+        "simulations of every record (finite differences), though it costs less and early ones go over a few cycles "
+        "only. It is run twice, and the second run is timed.",
         f"The searches minimise J itself, from seed {SEED}, over the same coefficients, bounds and logarithmic scale, "
         "with initial values and offsets given as fitted, which is an advantage, until they are within 1 % of the "
         f"least squares' J or their budget of CPU time is spent. Their populations are simulated {how}.",

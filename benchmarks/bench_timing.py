@@ -40,7 +40,7 @@ def pin() -> None:
 
 
 def contest(contestants: Mapping[str, Callable[[], Any]], rounds: int) -> dict[str, Turns]:
-    """All contestants `rounds` times in turns, after one call each that does not count; calls wait for their results."""
+    """All contestants `rounds` times in turns, after one call each that is not counted; calls wait for results."""
     for call in contestants.values():
         call()
     seconds: dict[str, list[float]] = {name: [] for name in contestants}

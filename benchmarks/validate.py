@@ -11,6 +11,7 @@ import argparse
 import re
 import shutil
 import sys
+import textwrap
 import time
 from pathlib import Path
 
@@ -47,13 +48,24 @@ def written(name: str, found: Section, options: argparse.Namespace) -> str:
     lines = [f"## {found.title}", "", f"`{command(name, options)}`", ""]
     if name in common.stale:
         lines += ["*From a run of earlier sources.*", ""]
-    lines += [found.text.strip(), ""]
+    lines += [wrapped(found.text.strip()), ""]
     folder = PAGE.parent / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     for path in found.figures:
         shutil.copyfile(path, folder / path.name)
         lines += [f"![{path.stem.replace('-', ' ')}](figures/{path.name})", ""]
     lines += [f"Falls short: {words}.\n" for words in found.short]
+    return "\n".join(lines)
+
+
+def wrapped(text: str) -> str:
+    """Prose in lines of 120; tables, headings and figures as they are."""
+    keep = ("|", "#", "!")
+    lines = [
+        line if line.startswith(keep) else textwrap.fill(
+            line, 120, subsequent_indent="  " if line.startswith("- ") else "", break_long_words=False, break_on_hyphens=False)
+        for line in text.splitlines()
+    ]  # fmt: skip
     return "\n".join(lines)
 
 

@@ -9,6 +9,8 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 
+EDGE = 0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
+
 
 class Response(eqx.Module):
     """Motion of the reference point over time: position (m, rad), rate and acceleration of surge ... yaw, dof last."""
@@ -54,8 +56,10 @@ def extremes(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[
         span = slice(clear[first], clear[last - 1] + 1)
         t, x = time[span], motion[span]
         tip = int(np.argmax(np.abs(x)))
-        if len(t) < 5 or tip in (0, len(t) - 1):
-            continue  # cut off by the record's end, or too short to be a half cycle
+        clearance = EDGE * (t[-1] - t[0])
+        at_end = t[tip] - time[0] < clearance or time[-1] - t[tip] < clearance
+        if len(t) < 5 or at_end or tip in (0, len(t) - 1):
+            continue  # cut off by an end of the record, or too short to be a half cycle
         near = np.abs(t - t[tip]) <= 0.125 * max(t[-1] - t[0], 1e-300)
         if near.sum() < 4:
             near = np.abs(np.arange(len(t)) - tip) <= 2

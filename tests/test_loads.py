@@ -129,7 +129,7 @@ def test_the_example_has_every_registered_load() -> None:
 
 @pytest.mark.parametrize("name", LOADS)
 def test_contract(name: str) -> None:
-    """Null is exactly silent in still water, jit = eager, vmap = loop, float64 is kept, parameters are within bounds."""
+    """Null is exactly silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
     model = only(everything(), LOADS[name])
     (load,) = model.loads
     positions, velocities = sample(1)
@@ -379,8 +379,8 @@ def test_weight() -> None:
 
 
 def brute_force(position, x: float, y: float, diameter: float, bottom: float) -> np.ndarray:
-    """Buoyancy (N, N m, earth axes about the reference point) of an upright column of a tilted body, by a polar grid over
-    its section: the wet part of every line along its axis, up to the plane of still water."""
+    """Buoyancy (N, N m, earth axes about the reference point) of an upright column of a tilted body, by a polar grid
+    over its section: the wet part of every line along its axis, up to the plane of still water."""
     matrix = Rotation.from_euler("ZYX", position[:2:-1]).as_matrix()
     node, weight = np.polynomial.legendre.leggauss(12)
     radius = 0.25 * diameter * (1 + node)
@@ -397,7 +397,7 @@ def brute_force(position, x: float, y: float, diameter: float, bottom: float) ->
 @pytest.mark.parametrize("heave", [-3.0, 0.0, 3.0])
 @pytest.mark.parametrize("roll, pitch, yaw", [(0, 0, 0), (0, 5, 0), (0, 15, 0), (-15, 0, 0), (8, -12, 40)])
 def test_buoyancy_of_an_inclined_column(heave: float, roll: float, pitch: float, yaw: float) -> None:
-    """Force and moment of the displaced cylinder against numerical integration of its wet volume; 12 m off the centre."""
+    """Force and moment of the displaced cylinder against numerical integration of its wet volume; off the centre."""
     position = np.array([4.0, -3.0, heave, *np.radians([roll, pitch, yaw])])
     model = only(build({**COLUMN, "rA": [12, 5, -20], "rB": [12, 5, 15]}), Buoyancy)
     expected = brute_force(position, 12.0, 5.0, 10.0, -20.0)
@@ -501,7 +501,7 @@ def moored() -> jh.Model:
 
 
 def test_stiffness_of_pretensioned_springs() -> None:
-    """K11 = sum k c^2 + T/l s^2, K33 = sum T/l; K55 from k u u' + T/l (1 - u u') at the fairleads and the turned pull."""
+    """K11 = sum k c^2 + T/l s^2, K33 = sum T/l; K55 from k u u' + T/l (1 - u u') at fairleads and turned pull."""
     found = np.asarray(stiffness(moored()))
     length = math.hypot(150.0 - 29.0, 259.80762 - 50.22947)
     azimuth = np.arctan2([259.80762 - 50.22947, 0.0, -259.80762 + 50.22947], [121.0, -242.0, 121.0])

@@ -56,11 +56,6 @@ def test_noise_makes_no_cycles() -> None:
     assert np.mean([cycles.period[:12].mean() for cycles in found]) == pytest.approx(25.0, rel=3e-3)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="`extremes` drops a half cycle that the record's end cuts off only where its tip is the very last sample; noise "
-    "puts the tip a sample earlier, and a false last cycle comes out (period 20 s for 25 s, four times the decrement)",
-)
 def test_a_crest_cut_off_by_the_records_end_is_no_cycle() -> None:
     """The record ends 2.5 s before a crest, in noise: every cycle found is still 25 s long within a tenth."""
     for seed in range(8):

@@ -90,7 +90,10 @@ def begin() -> None:
 def parallel(
     section: str, key: str, names: Sequence[str], work: Callable[[str], Any], processes: int
 ) -> Iterator[tuple[str, Any]]:
-    """Results of `work(name)` for all names, those in the cache first; the others from processes of their own."""
+    """Results of `work(name)` for all names, those in the cache first; the others from processes of their own.
+
+    Where `accept_stale` is set and there are any, there are no others.
+    """
     missing = []
     for name in names:
         result = cached(section, key, name)
@@ -98,7 +101,7 @@ def parallel(
             missing.append(name)
         else:
             yield name, result
-    if missing:
+    if missing and not (accept_stale and len(missing) < len(names)):
         with mp.get_context("spawn").Pool(min(processes, len(missing)), _worker) as pool:
             for name, result in pool.imap_unordered(_Named(work), missing):
                 yield name, keep(section, key, name, result)

@@ -51,7 +51,7 @@ def run(figures: Path) -> Section:
     if not FOLDER.exists():
         raise Absent("the measured records (../shared/measured) are not on this machine")
     begin()
-    texts, drawn = [], []
+    texts, drawn, short = [], [], []
     for name, words in CASES.items():
         key = fingerprint(FOLDER / name, Path(__file__))
         made = [figures / f"{name}-{kind}.png" for kind in ("record", "cycles")]
@@ -59,8 +59,20 @@ def run(figures: Path) -> Section:
         found = keep("measured", key, name, work(name, figures)) if found is None else found
         say(f"  {name}: relative error {found['relative']:.4f}, {found['iterations']} iterations")
         texts.append(words_of(name, words, found))
+        short.append(lack(name, found))
         drawn += made
-    return Section(TITLE, "\n".join(texts), tuple(drawn))
+    return Section(TITLE, "\n\n".join(texts), tuple(drawn), tuple(short))
+
+
+def lack(name: str, found: dict[str, Any]) -> str:
+    """What the fitted model does not follow."""
+    cycles = np.array(found["cycles"])
+    changes = [100 * (third(cycles, i, True) / third(cycles, i, False) - 1) for i in (1, 2, 3, 4)]
+    return (
+        f"{name}: RMSE is {found['rmse'] / found['noise']:.0f} times the sensor's noise; from small to large amplitudes the "
+        f"period changes by {changes[0]:+.2f} % measured and {changes[1]:+.2f} % simulated, the decrement by "
+        f"{changes[2]:+.0f} % and {changes[3]:+.0f} %"
+    )
 
 
 def third(cycles: np.ndarray, column: int, large: bool) -> float:

@@ -43,7 +43,7 @@ def run(seeds: int, processes: int, figures: Path) -> Section:
         results[name] = result
         say(f"  {name}: J {result['objective']:.5f}, {result['iterations']} iterations, {result['seconds']:.0f} s "
             f"({len(results)} of {seeds})")
-    return conclude([results[f"seed-{i + 1}"] for i in range(seeds)], figures)
+    return conclude([results[name] for name in sorted(results, key=lambda name: int(name.removeprefix("seed-")))], figures)
 
 
 def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
