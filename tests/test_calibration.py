@@ -257,14 +257,15 @@ def test_condensed_residuals_have_the_products_of_the_plain_ones(ship_campaign: 
         return jax.jit(jax.jacfwd(lambda z: (f(z),) * 2, has_aux=True))
 
     z = jnp.concatenate([unknowns.shared, unknowns.own.ravel()])
-    (big, r), (small, s) = with_slope(plain)(z), with_slope(short)(z)
+    both = with_slope(plain)
+    (big, r), (small, s) = both(z), with_slope(short)(z)
     assert float(jnp.linalg.norm(s)) == pytest.approx(float(jnp.linalg.norm(r)), rel=1e-9)
     scale = np.abs(big.T @ big).max()
     np.testing.assert_allclose(small.T @ small, big.T @ big, atol=1e-9 * scale)
     np.testing.assert_allclose(small.T @ s, big.T @ r, atol=1e-9 * np.abs(big.T @ r).max())
-    fast, h = jax.jit(plain), 1e-5
+    h = 1e-5
     for i in range(len(z)):
-        column = (fast(z.at[i].add(h)) - fast(z.at[i].add(-h))) / (2 * h)
+        column = (both(z.at[i].add(h))[1] - both(z.at[i].add(-h))[1]) / (2 * h)
         np.testing.assert_allclose(column, big[:, i], atol=1e-6 * np.abs(big).max())
 
 
