@@ -124,7 +124,7 @@ class Fit:
             self.report(stage, self.iterations, objective, fraction[0] + (fraction[1] - fraction[0]) * min(1.0, i / 15))
             # nothing left to gain, or nowhere to go however short the step
             if idle or refused >= REFUSED:
-                return True
+                return bool(np.isfinite(cost))
         return False
 
     def information(self, until) -> float:
@@ -275,11 +275,13 @@ def run(fit: Fit) -> None:
     period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time[:, 0])
     length = (np.asarray(fit.ends) - start) / period
     even, cycles = np.ones(len(records)), CYCLES
+    windows = max(1, int(np.ceil(np.log(length.max() / CYCLES) / np.log(GROWTH))))
+    done = 0
     while cycles < length.max():
         until = np.minimum(start + cycles * period, np.asarray(fit.ends))
         weight = weights(records, data, fit.scored, fit.spread, even, until)
-        fit.minimise(f"first {cycles:.3g} cycles", weight, until, 1e-2, (0.0, 0.4))
-        cycles *= GROWTH
+        fit.minimise(f"first {cycles:.3g} cycles", weight, until, 1e-2, (0.4 * done / windows, 0.4 * (done + 1) / windows))
+        cycles, done = cycles * GROWTH, done + 1
     weight = weights(records, data, fit.scored, fit.spread, even)
     fit.minimise("whole records", weight, fit.ends, 1e-3, (0.4, 0.6))
     noise = np.array([[r.noise.get(DOFS[dof], np.inf) for dof in data.dofs] for r in records])

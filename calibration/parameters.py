@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -123,8 +124,12 @@ def parameter_space(
         mean, deviation = 0.0, math.inf
         if label in priors:
             value, width = priors[label]
+            if not (lower < value < upper):
+                inside = f"a value between {lower:.4g} and {upper:.4g}"
+                problems.append(Problem(f"calibrate.priors.{label}.value", inside, f"{value:g}"))
+                continue
             mean = transform.inverse(value)
-            deviation = abs(transform.inverse(value + width) - transform.inverse(value - width)) / 2
+            deviation = width / float(jax.grad(transform.forward)(jnp.asarray(mean)))
         free.append(Free(label, start, transform, mean, deviation))
     if problems:
         raise InputError(source, problems)
@@ -133,6 +138,4 @@ def parameter_space(
 
 def slopes(space: ParameterSpace, x: np.ndarray) -> np.ndarray:
     """d value / d x of every free parameter."""
-    import jax
-
     return np.array([float(jax.grad(p.transform.forward)(jnp.asarray(x[i]))) for i, p in enumerate(space.free)])
