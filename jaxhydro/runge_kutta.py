@@ -55,7 +55,8 @@ def _step(driver, y, time, step, rate: Rate, scheme: Scheme, keep: bool):
     def stage(slopes, row):
         index, node, coefficients = row
         at = y + step * (coefficients @ slopes)
-        return slopes.at[index].set(rate(driver, time + node * step, at)), at if keep else None
+        slope = rate(driver, time + node * step, at)
+        return jax.lax.dynamic_update_index_in_dim(slopes, slope, index, 0), at if keep else None
 
     rows = (jnp.arange(size), jnp.array(scheme.nodes), jnp.asarray(scheme.coefficients()))
     slopes, stages = jax.lax.scan(stage, jnp.zeros((size, y.shape[0])), rows)
@@ -68,7 +69,8 @@ def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: 
     def advance(index, carry):
         y, path, stages = carry
         after, at = _step(driver, y, start + step * index, step, rate, scheme, keep)
-        return after, path.at[index].set(y), stages.at[index].set(at) if keep else None
+        path = jax.lax.dynamic_update_index_in_dim(path, y, index, 0)
+        return after, path, jax.lax.dynamic_update_index_in_dim(stages, at, index, 0) if keep else None
 
     stages = jnp.zeros((capacity + 1, len(scheme.nodes), y.shape[0])) if keep else None
     carry = (y, jnp.zeros((capacity + 1, y.shape[0])), stages)
