@@ -242,6 +242,7 @@ def report(
         "only. It is run twice, and the second run is timed.",
         f"The searches minimise J itself, from seed {SEED}, over the same coefficients, bounds and logarithmic scale, "
         "with initial values and offsets given as fitted, which is an advantage, until they are within 1 % of the "
-        "least squares' J (ratios are against what least squares took to that) or their budget of CPU time is spent. Their populations are simulated {how}.",
+        "least squares' J (ratios are against what least squares took to that) or their budget of CPU time is spent. "
+        f"Their populations are simulated {how}.",
     ]
     return rows, notes
