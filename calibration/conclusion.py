@@ -17,11 +17,15 @@ from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Estimate, Series, TestFit
 from jaxhydro.environment import DOFS
+from jaxhydro.model import Model
+from jaxhydro.response import decay_cycles
+from jaxhydro.statics import natural_modes
 
 if TYPE_CHECKING:
     from calibration.fit import Fit
 
 
+LOST = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
 TOGETHER = 0.9  # correlation beyond which two vague parameters are said to be known together only
 
 
@@ -111,6 +115,23 @@ def series_of(
     return tests
 
 
+def strays(tests: Sequence[TestFit], declared: Model) -> list[str]:
+    """What is to be said of fitted tests that the model does not follow: most often a unit, a scale or a mass is wrong."""
+    said, modes = [], None
+    for test in tests:
+        if test.use != "fit" or test.main.relative < LOST:
+            continue
+        modes = natural_modes(declared) if modes is None else modes
+        period = decay_cycles(test.time, test.main.measured - test.main.measured.mean(), test.main.noise).period
+        seen = f"{np.median(period):.3g} s" if len(period) else "none seen"
+        said.append(
+            f"the model does not follow {test.id}: the RMSE is {100 * test.main.relative:.0f} % of the record's standard "
+            f"deviation. Period in {test.main.channel}: measured {seen}, declared model {modes.of(test.main.channel):.3g} s. Check scale, "
+            "units, mass and stiffness"
+        )
+    return said
+
+
 def remarks(
     campaign: Campaign, parameters: dict[str, Estimate], pairs: Sequence[tuple[str, str]] = ()
 ) -> tuple[str, ...]:
@@ -121,6 +142,7 @@ def remarks(
         said.append(f"only decays are fitted; left out: {', '.join(left)}")
     vague = [label for label, p in parameters.items() if not p.identifiable]
     if vague:
-        said.append(f"these records do not determine {', '.join(vague)}: their values are not results")
+        ends = "its value is no result" if len(vague) == 1 else "their values are not results"
+        said.append(f"these records do not determine {', '.join(vague)}: {ends}")
     said += [f"{a} and {b} cannot be told apart: only their joint effect is known" for a, b in pairs]
     return tuple(said)

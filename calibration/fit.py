@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.conclusion import estimates, remarks, series_of
+from calibration.conclusion import estimates, remarks, series_of, strays
 from calibration.descent import ClippedLevenbergMarquardt
 from calibration.identifiability import VAGUE
 from calibration.parameters import ParameterSpace, choose, parameter_space
@@ -201,11 +201,17 @@ def calibrate(
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
         raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", found)])
+    for record in records:
+        for channel in set(record.values) & set(DOFS[3:]):
+            if (largest := float(np.abs(record.values[channel]).max())) > np.pi / 2:
+                where, found = f"tests, {record.id}, channel {channel}", f"{np.degrees(largest):.3g} deg"
+                raise InputError(source, [Wrong(where, "angles below 90 deg", found, "Is the unit right?")])
     wish = campaign.manifest.calibrate
     released = [str(record.degree_of_freedom) for record in records]
     labels = choose(declared, released, wish.free if free is None else free, wish.fixed, source)
     if not labels:
-        raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", "none")])
+        none = f"none: the platform declares nothing that acts on {', '.join(sorted(set(released)))}"
+        raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", none)])
     declared = declared.with_values(start or {})
     priors = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
     space = parameter_space(declared, labels, dict(wish.bounds), priors, source)
@@ -235,6 +241,7 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
     model = space.model(fit.problem.model, x)
     tests = series_of(fit.problem, fit.records, fit.unknowns)
     parameters, pairs = estimates(fit, tests)
+    lost = strays(tests, declared)
     held = [record for record in campaign.used("holdout") if record.kind == "decay"]
     if held:
         # the coefficients stay; a record's release and its sensors' offsets are its own
@@ -250,11 +257,12 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
         model,
         parameters,
         tuple(tests),
-        fit.converged,
+        fit.converged and not lost,
         fit.iterations,
         seconds,
         tuple(fit.history),
-        remarks(campaign, parameters, pairs),
+        (*lost, *remarks(campaign, parameters, pairs)),
+        campaign.platform.name,
     )
 
 

@@ -90,6 +90,7 @@ def document(calibration: Calibration) -> dict[str, Any]:
         }
     return {
         "campaign": calibration.campaign,
+        "platform": calibration.platform,
         "jaxhydro": jaxhydro.__version__,
         "baseline": {
             "parameters": parameters,

@@ -80,6 +80,7 @@ class Calibration:
     seconds: float
     history: tuple[float, ...]
     notes: tuple[str, ...]
+    platform: str = ""
 
     def objective(self, use: str) -> float | None:
         """J over the tests of one use (fit, holdout)."""

@@ -82,6 +82,7 @@ class Saved(_Open):
     campaign: str
     jaxhydro: str
     baseline: Fitted
+    platform: str = ""
     tests: dict[str, About] = Field(default_factory=dict)
     figures: list[Drawn] = Field(default_factory=list)
 

@@ -33,7 +33,7 @@ EPILOG = "\n\n".join((
     "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
     "jaxhydro calibrate my-campaign --out results",
     "[bold]Formats[/bold]",
-    "The README describes every key of platform and campaign files, and of the results. The demo's own files are the "
+    "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
     "example to copy: `jaxhydro demo` prints where they are.",
     "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so.",
 ))  # fmt: skip
@@ -203,11 +203,19 @@ def _model(platform: str, calibration: Path | None) -> "Model":
     model = load_model(platform)
     if calibration is None:
         return model
-    from calibration.saved import read_values
+    from calibration.saved import read_saved
+    from jaxhydro.platform_schema import load_platform
 
-    values, known = read_values(calibration), model.values
+    saved, known = read_saved(calibration), model.values
+    values = {label: one.value for label, one in saved.baseline.parameters.items()}
     if unknown := [label for label in values if label not in known]:
-        expected = f"a parameter of {platform} ({', '.join(sorted(known)) or 'it has none'})"
-        problems = [Problem("baseline.parameters", expected, shown(label), suggest(label, known)) for label in unknown]
-        raise InputError(str(calibration), problems)
+        expected = f"parameters of {platform} ({', '.join(sorted(known)) or 'it has none'})"
+        hint = suggest(unknown[0], known)
+        raise InputError(str(calibration), [Problem("baseline.parameters", expected, ", ".join(map(shown, unknown)), hint)])
+    name = load_platform(platform).name
+    if saved.platform and saved.platform != name:
+        complain(f"warning: {calibration} is a calibration of {saved.platform!r}, and its values are used for {name!r}")
+    say(f"Calibrated values used: {', '.join(values)}")
+    if vague := [label for label, one in saved.baseline.parameters.items() if not one.identifiable]:
+        complain(f"warning: among them the records did not determine {', '.join(vague)}")
     return model.with_values(values)

@@ -89,9 +89,12 @@ def free_decay(
 ) -> Response:
     """Free decay in still water, released at rest from `displacement` (m, rad) off the static equilibrium.
 
-    `options` are those of `simulate`.
+    `options` are those of `simulate`. Raises ValueError for an angle beyond a right one: degrees, most likely.
     """
-    return simulate(model, times, position=equilibrium(model) + by_name(displacement), **options)
+    released = by_name(displacement)
+    if bool((jnp.abs(released[3:]) > math.pi / 2).any()):
+        raise ValueError(f"angles are in rad, at most pi/2 here, found {float(jnp.abs(released[3:]).max()):g}")
+    return simulate(model, times, position=equilibrium(model) + released, **options)
 
 
 def by_name(values: Mapping[str, float] | Float[Array, "6"] | None) -> Float[Array, "6"]:

@@ -180,7 +180,7 @@ def test_bad_calibrations_are_told(tmp_path: Path) -> None:
     for path, words in (
         (tmp_path / "none.json", "found no such file"),
         (broken, "expected valid JSON"),
-        (unknown, "expected a parameter of"),
+        (unknown, "expected parameters of"),
         (unknown, "found 'column.Ca_x'. Did you mean 'column.Ca_"),
     ):
         options = ["--release", "surge=1", "--calibration", path, "--out", tmp_path / "o"]
