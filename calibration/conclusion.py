@@ -126,8 +126,8 @@ def strays(tests: Sequence[TestFit], declared: Model) -> list[str]:
         seen = f"{np.median(period):.3g} s" if len(period) else "none seen"
         said.append(
             f"the model does not follow {test.id}: the RMSE is {100 * test.main.relative:.0f} % of the record's standard "
-            f"deviation. Period in {test.main.channel}: measured {seen}, declared model {modes.of(test.main.channel):.3g} s. Check scale, "
-            "units, mass and stiffness"
+            f"deviation. Period in {test.main.channel}: measured {seen}, declared model {modes.of(test.main.channel):.3g} s. "
+            "Check scale, units, mass and stiffness"
         )
     return said
 
