@@ -104,8 +104,7 @@ class Fit:
         mean, precision = self.prior
         self.ridge = precision / np.sqrt(self.information(until) if samples is None else samples)
         prior = (mean, self.ridge)
-        time, present = np.asarray(self.problem.data.time), np.asarray(self.problem.data.present)
-        self.samples = (present * (time <= np.asarray(until)[:, None])[:, None]).sum(axis=-1)
+        self.samples = samples_until(self.problem.data, until)
         weight, until = jnp.asarray(weight), jnp.asarray(until)
         state = _begin(self.problem, self.unknowns, weight, until, prior)
         last, refused, accepted = np.inf, 0, 0
@@ -161,6 +160,11 @@ def scored(records: Sequence[Record], data: Data) -> tuple[np.ndarray, np.ndarra
     return counts, spread
 
 
+def samples_until(data: Data, until) -> np.ndarray:
+    """How many samples every record and channel has up to `until` (s, by record)."""
+    return (np.asarray(data.present) * (np.asarray(data.time) <= np.asarray(until)[:, None])[:, None]).sum(axis=-1)
+
+
 def weights(
     records: Sequence[Record], data: Data, counts: np.ndarray, spreads: np.ndarray, factor: np.ndarray, until=None
 ) -> np.ndarray:
@@ -169,9 +173,7 @@ def weights(
     The other channels of a record count on the same footing as its scored one, in metres of the hull (an angle times the
     radius of gyration): they say how it was released, and are not judged by their own small spread.
     """
-    time = np.asarray(data.time)
-    until = time[:, -1] if until is None else np.asarray(until)
-    samples = (np.asarray(data.present) * (time <= until[:, None])[:, None]).sum(axis=-1)
+    samples = samples_until(data, data.time[:, -1] if until is None else until)
     scale = np.where(counts, spreads, np.asarray(data.unit))
     return np.where(counts, 1.0, SIDE) * factor[:, None] / (np.maximum(samples, 1) * scale**2)
 

@@ -86,6 +86,10 @@ class Saved(_Open):
     tests: dict[str, About] = Field(default_factory=dict)
     figures: list[Drawn] = Field(default_factory=list)
 
+    def values(self) -> dict[str, float]:
+        """The calibrated values by label."""
+        return {label: one.value for label, one in self.baseline.parameters.items()}
+
     def errors(self, source: str) -> dict[str, dict[str, Error]]:
         """Test -> channel -> error. Raises InputError for what is none."""
         return {
@@ -117,7 +121,7 @@ def read_saved(path: str | PathLike[str]) -> Saved:
 
 def read_values(path: str | PathLike[str]) -> dict[str, float]:
     """The calibrated values in a calibration.json, by label. Raises InputError."""
-    return {label: one.value for label, one in read_saved(path).baseline.parameters.items()}
+    return read_saved(path).values()
 
 
 def _wrong(path: Path, expected: str, found: str, where: str = "") -> InputError:

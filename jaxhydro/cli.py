@@ -207,7 +207,7 @@ def _model(platform: str, calibration: Path | None) -> "Model":
     from jaxhydro.platform_schema import load_platform
 
     saved, known = read_saved(calibration), model.values
-    values = {label: one.value for label, one in saved.baseline.parameters.items()}
+    values = saved.values()
     if unknown := [label for label in values if label not in known]:
         expected = f"parameters of {platform} ({', '.join(sorted(known)) or 'it has none'})"
         hint = suggest(unknown[0], known)
