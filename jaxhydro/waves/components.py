@@ -1,0 +1,87 @@
+"""What a sea is made of: first-order components, and plane waves, free or bound, of any order."""
+
+import math
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Complex, Float
+
+from jaxhydro.environment import Environment
+from jaxhydro.waves.dispersion import wavenumber
+
+
+class Components(eqx.Module):
+    """First-order waves: eta = sum a cos(omega t - k (x cos heading + y sin heading) + phase).
+
+    `first` is set where the frequencies are successive harmonics of a period, omega = (first, first + 1 ...) 2 pi / period, a
+    component of no amplitude included: what Fourier transforms and sums over pairs ask for. None: any frequencies.
+    """
+
+    amplitude: Float[Array, " w"]  # m
+    omega: Float[Array, " w"]  # rad/s
+    wavenumber: Float[Array, " w"]  # rad/m
+    heading: Float[Array, " w"]  # rad, where the waves travel to, from x towards y
+    phase: Float[Array, " w"]  # rad
+    first: int | None = eqx.field(static=True, default=None)
+
+    @property
+    def period(self) -> Float[Array, ""]:
+        """Time (s) after which the sea repeats itself. Raises ValueError where the frequencies are no harmonics."""
+        if self.first is None:
+            raise ValueError("the components are no successive harmonics of a period")
+        return self.first * 2 * math.pi / self.omega[0]
+
+    def vector(self) -> Float[Array, "2 w"]:
+        """Wavenumber vectors (rad/m)."""
+        return self.wavenumber * jnp.stack([jnp.cos(self.heading), jnp.sin(self.heading)])
+
+    def complex_amplitude(self) -> Complex[Array, " w"]:
+        """a exp(i phase) (m)."""
+        return self.amplitude * jnp.exp(1j * self.phase)
+
+
+def components(
+    amplitude: Float[Array, " w"],
+    omega: Float[Array, " w"],
+    environment: Environment,
+    *,
+    heading: Float[Array, " w"] | float = 0.0,
+    phase: Float[Array, " w"] | float = 0.0,
+    first: int | None = None,
+) -> Components:
+    """Components of amplitudes (m) and angular frequencies (rad/s); headings and phases (rad) for each or for all."""
+    amplitude, omega = jnp.asarray(amplitude, float), jnp.asarray(omega, float)
+    k = wavenumber(omega, jnp.asarray(environment.depth), jnp.asarray(environment.gravity))
+    one = jnp.ones_like(omega)
+    return Components(amplitude, omega, k, heading * one, phase * one, first)
+
+
+class PlaneWaves(eqx.Module):
+    """Plane waves, free or bound: with theta = omega t - k . x, a surface elevation and a velocity potential
+
+        eta = Re sum E exp(i theta),    phi = Re sum i Phi cosh |k|(z + h) / cosh |k|h exp(i theta).
+
+    So the velocity is Re k Phi C exp(i theta) along, Re i |k| Phi S exp(i theta) up (C as above, S with sinh above), the
+    dynamic pressure over density, -d phi/dt, Re omega Phi C exp(i theta), and the acceleration i omega times the velocity. A
+    free wave has Phi = g E / omega; of a bound one omega, k, E and Phi are each their own.
+    """
+
+    omega: Float[Array, " w"]  # rad/s, not negative
+    vector: Float[Array, "2 w"]  # rad/m
+    elevation: Complex[Array, " w"]  # m
+    potential: Complex[Array, " w"]  # m2/s
+
+    @classmethod
+    def free(cls, waves: Components, environment: Environment) -> "PlaneWaves":
+        """The first-order field of components."""
+        elevation = waves.complex_amplitude()
+        return cls(waves.omega, waves.vector(), elevation, environment.gravity * elevation / waves.omega)
+
+    def __add__(self, other: "PlaneWaves") -> "PlaneWaves":
+        """Both together."""
+        return PlaneWaves(
+            jnp.concatenate([self.omega, other.omega]),
+            jnp.concatenate([self.vector, other.vector], axis=1),
+            jnp.concatenate([self.elevation, other.elevation]),
+            jnp.concatenate([self.potential, other.potential]),
+        )
