@@ -8,10 +8,11 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
+from jaxhydro.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripShape
 from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew
 from jaxhydro.solve6 import accelerate
-from jaxhydro.strips import Hull, end_wetted
+from jaxhydro.strips import end_wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
@@ -48,12 +49,11 @@ class State(eqx.Module):
 
 
 class Total(NamedTuple):
-    """The sum of all loads in body axes: force (N, N m), added mass (kg, kg m, kg m2), force (N) and mass (kg) on lines."""
+    """The sum of all loads in body axes: force (N, N m), added mass (kg, kg m, kg m2) of the body, `Hull.masses`."""
 
     force: Float[Array, "6"]
     added_mass: Float[Array, "6 6"]
-    line_force: Float[Array, " l"]
-    line_mass: Float[Array, " l"]
+    masses: Float[Array, " k"]
     memory_rate: tuple[Any, ...]
 
 
@@ -118,11 +118,10 @@ class Model(eqx.Module):
             depth = -(place[2] + vertical @ roots)
             surface = sea.elevation(time, place[:2, None] + matrix[:2] @ hull.waterline())
             depth = depth if surface is None else depth + surface
-        wet, reach = hull.wetted(vertical, depth[: roots.shape[1] - m])
+        wetted = hull.wetted(vertical, depth[: roots.shape[1] - m])
         of = jnp.array(strips.element, dtype=int)
-        covered, reach = wet[of] * strips.weight, reach[of] * strips.fraction
+        covered, reach = wetted.length[of] * strips.weight, wetted.reach[of] * strips.fraction
         away = hull.join(jnp.stack([reach, reach]), jnp.zeros(m))
-        lever = hull.lever(away)
         still, turning = (state.velocity @ hull.motion).reshape(2, -1)
         own, own_end = hull.split(-(still + turning * away))
         extent = strips.size + strips.taper * reach
@@ -130,7 +129,7 @@ class Model(eqx.Module):
         square = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r])
         inward, outgoing = (square @ hull.inward).reshape(2, -1)
         inward = inward + away * outgoing
-        lines = Lines(lever, inward)
+        lines = Lines(away, inward)
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
         end_wet = end_wetted(depth[roots.shape[1] - m :])
         points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
@@ -144,7 +143,7 @@ class Model(eqx.Module):
             past = StripFlow(own + water[0], water[1])
             past_end = EndFlow(own_end + end_water[0], end_water[1], flow.pressure[n:], end_wet)
         return Instant(
-            time, state.position, matrix, state.velocity, self.environment, strips, ends, shape, past, past_end, lines
+            time, state.position, matrix, state.velocity, self.environment, hull, wetted, shape, past, past_end, lines
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":
@@ -158,13 +157,14 @@ class Model(eqx.Module):
         force, earth = total("body_force", jnp.zeros(6)), total("force", jnp.zeros(0))
         if earth.size:
             force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
-        on_strips, on_ends = jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
-        line_mass = self.hull.join(total("strip_mass", on_strips), total("end_mass", on_ends))
+        hull, on_strips, on_ends = self.hull, jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
+        per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
+        line_mass = hull.join(now.over_strips(per_volume) * now.strip_shape.volume, end_mass)
+        on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
         return Total(
-            force,
+            force + hull.wrench(on_lines, now.lines.away),
             total("added_mass", jnp.zeros((6, 6))),
-            self.hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward,
-            line_mass,
+            hull.masses(per_volume, end_mass, now.wetted),
             tuple(action.memory_rate for action in actions),
         )
 
@@ -179,9 +179,8 @@ class Model(eqx.Module):
         acceleration = accelerate(
             body.mass_matrix() + total.added_mass,
             total.force - gyroscopic,
-            total.line_mass,
-            total.line_force,
-            now.lines.lever,
+            total.masses,
+            self.hull.moments,
         )
         turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
         return State(self.position_rate(state.position, state.velocity), acceleration - turning, total.memory_rate)
@@ -203,5 +202,4 @@ class Model(eqx.Module):
         state = State(position, jnp.zeros(6), self.rest().memory)
         now = self.instant(jnp.zeros(()), state, StillWater() if sea is None else sea)
         total = self.sum_of_loads(now, state.memory)
-        force = total.force + now.lines.lever @ total.line_force
-        return jnp.concatenate([now.rotation @ force[:3], now.rotation @ force[3:]])
+        return jnp.concatenate([now.rotation @ total.force[:3], now.rotation @ total.force[3:]])

@@ -10,6 +10,7 @@ import numpy as np
 
 from jaxhydro import platform_schema as schema
 from jaxhydro.environment import Environment
+from jaxhydro.hull import Hull
 from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
@@ -26,7 +27,7 @@ from jaxhydro.loads import (
 )
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.model import Model, RigidBody
-from jaxhydro.strips import Hull, Member
+from jaxhydro.strips import Member
 
 
 def load_model(path_or_name: str | PathLike[str]) -> Model:
@@ -65,7 +66,7 @@ def build(platform: schema.Platform) -> Model:
             for group, row in platform.coefficients.items()
             for name, value in row.model_dump().items()
         }
-        of_strips = {kind: {f"{g}.{kind}_{t}" for g, t in hull.strips.labels} for kind in ("Ca", "Cd")}
+        of_strips = {kind: {f"{g}.{kind}_{t}" for g, t in hull.elements.labels} for kind in ("Ca", "Cd")}
         of_ends = {kind: {f"{g}.{kind}_z" for g in hull.ends.labels} for kind in ("Ca", "Cd")}
 
         def pick(labels: set[str]) -> dict:

@@ -44,36 +44,25 @@ def solve6(matrix: Float[Array, "6 6"], vector: Float[Array, "6"]) -> Float[Arra
     return jnp.concatenate([first, second])
 
 
-def gram(lever: Float[Array, "6 l"], mass: Float[Array, " l"]) -> Float[Array, "6 6"]:
-    """sum m_l h_l h_l^T, row by row: half the time of XLA's product of two such matrices."""
-    weighted = lever * mass
-    return jnp.stack([lever @ weighted[i] for i in range(6)])
-
-
 @jax.custom_jvp
 def accelerate(
     mass: Float[Array, "6 6"],
     force: Float[Array, "6"],
-    line_mass: Float[Array, " l"],
-    line_force: Float[Array, " l"],
-    lever: Float[Array, "6 l"],
+    masses: Float[Array, " k"],
+    moments: Float[Array, "6 6 k"],
 ) -> Float[Array, "6"]:
-    """x of (M + sum m_l h_l h_l^T) x = f + sum h_l f_l: acceleration from masses and forces on the body and on its lines.
+    """x of (M + sum m_k J_k) x = f: acceleration from mass and force of the body and masses of its elements and ends.
 
-    `lever` holds the h_l. Derivatives reuse the inverse, dx = M^-1 (df - dM x), and never form that of the matrix: a
-    Jacobian of many parameters costs a product of a vector with `lever` for each.
+    `moments` holds the constant J_k. Derivatives reuse the inverse, dx = M^-1 (df - dM x), and never form that of the matrix.
     """
-    total = jax.lax.optimization_barrier((mass + gram(lever, line_mass), force + lever @ line_force))
-    return solve6(*total)
+    return solve6(*jax.lax.optimization_barrier((mass + moments @ masses, force)))
 
 
 @accelerate.defjvp
 def _accelerate_jvp(primals, tangents):
-    mass, force, line_mass, line_force, lever = primals
-    d_mass, d_force, d_line_mass, d_line_force, d_lever = tangents
-    inverse = jax.lax.optimization_barrier(inverse6(mass + gram(lever, line_mass)))
-    solution = inverse @ (force + lever @ line_force)
-    along = jax.lax.optimization_barrier(solution @ lever)
-    net = line_force - line_mass * along
-    d_net = d_line_force - d_line_mass * along - line_mass * (solution @ d_lever)
-    return solution, inverse @ (d_force - d_mass @ solution + lever @ d_net + d_lever @ net)
+    mass, force, masses, moments = primals
+    d_mass, d_force, d_masses, _ = tangents
+    inverse = jax.lax.optimization_barrier(inverse6(mass + moments @ masses))
+    solution = inverse @ force
+    along = jax.lax.optimization_barrier(jnp.einsum("ijk,j->ik", moments, solution))
+    return solution, inverse @ (d_force - d_mass @ solution - along @ d_masses)

@@ -12,7 +12,6 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model, State
-from jaxhydro.solve6 import gram
 from jaxhydro.waves.sea import StillWater
 
 
@@ -84,8 +83,7 @@ def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, 
     def mass_of(q: Float[Array, "6"]) -> Float[Array, "6 6"]:
         now = model.instant(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater())
         total = model.sum_of_loads(now, rest.memory)
-        lever = now.lines.lever
-        return model.body.mass_matrix() + total.added_mass + gram(lever, total.line_mass)
+        return model.body.mass_matrix() + total.added_mass + model.hull.moments @ total.masses
 
     mass = mass_of(position)
     return mass, -mass @ jax.jacfwd(acceleration)(position)

@@ -8,9 +8,6 @@ near-vertical one z, and its ends take none.
 A load element is integrated by Gauss quadrature over the length that is under water (Abramowitz and Stegun 1964, eq.
 25.4.30). So the strips of a column that pierces the surface move along it with the surface: the wetted length is
 exact, forces are smooth in the motion, and no strip is spent on what is dry.
-
-A *line* is a strip's direction or an end's axis. Its velocity is `lever . (u, v, w, p, q, r)`, so the velocities of all lines
-are one matrix product and the load on the platform is its transpose.
 """
 
 import math
@@ -23,7 +20,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.rotations import ramp, step
+from jaxhydro.rotations import step
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
 SPACING = 2.5  # m, of the strips of a column under still water, where the platform file does not say
@@ -112,8 +109,6 @@ class Strips(eqx.Module):
     size: Float[Array, "2 n"]  # m, extent along either direction at the element's start
     taper: Float[Array, "2 n"]  # its change per metre
     shape: Float[Array, " n"]  # area over the product of extents: pi/4 for a circle
-    label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and strip
-    labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
     element: tuple[int, ...] = eqx.field(static=True)
 
 
@@ -124,6 +119,8 @@ class Elements(eqx.Module):
     axis: Float[Array, "3 e"]  # upward for a column
     length: Float[Array, " e"]  # m
     thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: a column
+    label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and element
+    labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
 
 
 class Ends(eqx.Module):
@@ -136,85 +133,6 @@ class Ends(eqx.Module):
     radius: Float[Array, " m"]  # m, of the circle of equal area
     label: tuple[int, ...] = eqx.field(static=True)
     labels: tuple[str, ...] = eqx.field(static=True)
-
-
-class Hull(eqx.Module):
-    """Elements, strips and ends, and the constant matrices between the platform's motion and that of their lines.
-
-    Lines are the strips' first directions, their second ones, then the ends. What belongs to a line is linear in the distance
-    s of its strip from the element's start, and stored as the part for s = 0 and the part that goes with s: `motion` is the
-    lever, `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity the centripetal acceleration.
-    """
-
-    elements: Elements
-    strips: Strips
-    ends: Ends
-    motion: Float[Array, "6 2*l"]
-    inward: Float[Array, "6 2*l"]
-
-    @classmethod
-    def of(cls, members: Sequence[Member]) -> "Hull":
-        """The hull that members make."""
-        elements, strips = cut(members)
-        tips = ends(members)
-        point = np.concatenate([strips.start, strips.start, tips.position], axis=1)
-        first, second = np.asarray(strips.directions[:, 0]), np.asarray(strips.directions[:, 1])
-        direction = np.concatenate([first, second, tips.axis], axis=1)
-        along = np.concatenate([strips.axis, strips.axis, np.zeros_like(tips.axis)], axis=1)
-        lever = np.concatenate([direction, np.cross(point, direction, axis=0)])
-        twist = np.concatenate([np.zeros_like(direction), np.cross(along, direction, axis=0)])
-        motion = np.concatenate([lever, twist], axis=1)
-        inward = np.concatenate([_centripetal(direction, point), _centripetal(direction, along)], axis=1)
-        lines: dict[str, Any] = dict(zip(("motion", "inward"), map(jnp.asarray, (motion, inward)), strict=True))
-        return cls(elements, strips, tips, **lines)
-
-    def lever(self, away: Float[Array, " l"]) -> Float[Array, "6 l"]:
-        """d and r x d of every line, its strip `away` (m) from the element's start."""
-        lever, twist = jnp.split(self.motion, 2, axis=1)
-        return lever + twist * away
-
-    def split(self, lines: Float[Array, " l"]) -> tuple[Float[Array, "2 n"], Float[Array, " m"]]:
-        """What belongs to the strips, by direction, and what to the ends."""
-        n = len(self.strips.element)
-        return lines[: 2 * n].reshape(2, n), lines[2 * n :]
-
-    def join(self, strips: Float[Array, "2 n"], ends: Float[Array, " m"]) -> Float[Array, " l"]:
-        """The inverse of `split`."""
-        return jnp.concatenate([strips.reshape(-1), ends])
-
-    def waterline(self) -> Float[Array, "3 e+m"]:
-        """Points (m) where the surface elevation is looked up for elements and ends: a column's axis at still water, a
-        pontoon's middle."""
-        elements = self.elements
-        column = elements.thickness == 0
-        at = jnp.where(column, -elements.start[2] / jnp.where(column, elements.axis[2], 1.0), 0.5 * elements.length)
-        ends = self.ends.position - self.ends.axis * (self.ends.position[2] / self.ends.axis[2])
-        return jnp.concatenate([elements.start + elements.axis * at, ends], axis=1)
-
-    def wetted(
-        self, vertical: Float[Array, "3"], depth: Float[Array, " e"]
-    ) -> tuple[Float[Array, " e"], Float[Array, " e"]]:
-        """Length (m) of every element that is under water, and over which its strips are distributed.
-
-        `vertical` is the vertical in body axes, `depth` (m) that of the elements' lower ends under the surface. Exact, but for
-        a quarter of a metre about the element's ends. A pontoon loses volume evenly as its height leaves the water.
-        """
-        elements = self.elements
-        column, slope = elements.thickness == 0, vertical @ elements.axis
-        steep = jnp.where(column, jnp.maximum(slope, 1e-3), 1.0)
-        rise = jnp.where(column, steep * elements.length, jnp.abs(slope) * elements.length + elements.thickness)
-        low = depth + jnp.where(column, 0.0, 0.5 * elements.thickness + jnp.maximum(-slope, 0.0) * elements.length)
-        under = SMOOTH * (ramp(low / SMOOTH) - ramp((low - rise) / SMOOTH))
-        wet = under / rise * elements.length
-        return wet, jnp.where(column, wet, elements.length)
-
-
-def _centripetal(direction: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """omega (omega . r) - omega^2 r along d, by product of angular velocities."""
-    (dx, dy, dz), (x, y, z) = direction, point
-    return np.stack(
-        [-dy * y - dz * z, -dx * x - dz * z, -dx * x - dy * y, dx * y + dy * x, dx * z + dz * x, dy * z + dz * y]
-    )
 
 
 _STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")
@@ -252,24 +170,23 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
                         first,
                         (last - first) / length,
                         math.pi / 4 if member.circular else 1.0,
-                        label,
                         len(elements),
                     )
                 )
-            elements.append((start, member.axis, length, thickness))
+            elements.append((start, member.axis, length, thickness, label))
     triple, pair, flat = np.zeros((3, 0)), np.zeros((2, 0)), np.zeros(0)
     whole = [triple, triple, flat, flat]
     parts = [triple, triple, np.zeros((3, 2, 0)), flat, flat, pair, pair, flat]
     label_of: tuple[tuple[int, ...], ...] = ((), ())
     element_of: tuple[int, ...] = ()
     if rows:
-        whole = [np.stack(column, axis=-1) for column in zip(*elements, strict=True)]
-        *parts, which, home = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
+        *whole, which = (np.stack(column, axis=-1) for column in zip(*elements, strict=True))
+        *parts, home = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
         label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
     of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
-    strips = Strips(**of_strips, label=label_of, labels=tuple(labels), element=element_of)
+    strips = Strips(**of_strips, element=element_of)
     of_elements: dict[str, Any] = dict(zip(("start", "axis", "length", "thickness"), map(jnp.asarray, whole), strict=True))
-    return Elements(**of_elements), strips
+    return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
 
 
 def ends(members: Sequence[Member]) -> Ends:

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.environment", "jaxhydro.rotations"),
     ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.runge_kutta"),
-    ("jaxhydro.waves.sea",),
+    ("jaxhydro.hull", "jaxhydro.waves.sea"),
     ("jaxhydro.waves",),
     ("jaxhydro.loads.base",),
     ("jaxhydro.loads.*",),

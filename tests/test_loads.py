@@ -89,8 +89,7 @@ def wrench(model: jh.Model, position, velocity, sea=None) -> tuple[jax.Array, ja
     state = jh.State(jnp.asarray(position, float), jnp.asarray(velocity, float), model.rest().memory)
     now = model.instant(jnp.zeros(()), state, jh.StillWater() if sea is None else sea)
     total = model.sum_of_loads(now, state.memory)
-    lever = now.lines.lever
-    return total.force + lever @ total.line_force, total.added_mass + (lever * total.line_mass) @ lever.T
+    return total.force, total.added_mass + model.hull.moments @ total.masses
 
 
 def force(model: jh.Model, velocity=(0.0,) * 6, position=(0.0,) * 6, sea=None) -> np.ndarray:

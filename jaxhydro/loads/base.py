@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
-from jaxhydro.strips import Ends, Strips
+from jaxhydro.hull import Hull, Wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
 
 
@@ -31,9 +31,9 @@ class StripShape(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """Lines of strips and ends: d and r x d, and the centripetal acceleration along d (m/s2)."""
+    """Lines of strips and ends: distance (m) from the element's start, and the centripetal acceleration along them (m/s2)."""
 
-    lever: Float[Array, "6 l"]
+    away: Float[Array, " l"]
     inward: Float[Array, " l"]
 
 
@@ -42,8 +42,8 @@ class Instant(eqx.Module):
 
     `position` is surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point; `rotation` takes body to earth axes;
     `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
-    same along earth axes. `strip_shape` says what of the strips is under water, `strip_flow` and `end_flow` how the water
-    moves past strips and ends.
+    same along earth axes. `wetted` and `strip_shape` say what of elements and strips is under water, `strip_flow` and
+    `end_flow` how the water moves past strips and ends.
     """
 
     time: Float[Array, ""]
@@ -51,8 +51,8 @@ class Instant(eqx.Module):
     rotation: Float[Array, "3 3"]
     velocity: Float[Array, "6"]
     environment: Environment
-    strips: Strips
-    ends: Ends
+    hull: Hull
+    wetted: Wetted
     strip_shape: StripShape
     strip_flow: StripFlow
     end_flow: EndFlow
@@ -62,21 +62,26 @@ class Instant(eqx.Module):
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""
         return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
 
+    def over_strips(self, elements: Float[Array, "2 e"]) -> Float[Array, "2 n"]:
+        """What is given by direction and element, by direction and strip."""
+        return elements[:, jnp.array(self.hull.strips.element, dtype=int)]
+
 
 class Action(NamedTuple):
     """What a load does at an instant; leave out what it does not.
 
     `force` (N, N m) acts on the reference point along earth axes, `body_force` along body axes; `strip_force` and `end_force`
     (N) act on strips along their two directions and on ends along their axes. Added mass multiplies acceleration: `added_mass`
-    (kg, kg m, kg m2) that of the reference point in body axes, `strip_mass` and `end_mass` (kg) that of the strips and ends,
-    the centripetal part included. `memory_rate` is the rate of the load's own state.
+    (kg, kg m, kg m2) that of the reference point in body axes, `element_mass` (kg/m3, per displaced volume, by direction and
+    element) and `end_mass` (kg) that of strips and ends, the centripetal part included. `memory_rate` is the rate of the load's
+    own state.
     """
 
     force: Float[Array, "6"] | None = None
     body_force: Float[Array, "6"] | None = None
     added_mass: Float[Array, "6 6"] | None = None
     strip_force: Float[Array, "2 n"] | None = None
-    strip_mass: Float[Array, "2 n"] | None = None
+    element_mass: Float[Array, "2 e"] | None = None
     end_force: Float[Array, " m"] | None = None
     end_mass: Float[Array, " m"] | None = None
     memory_rate: Any = None

@@ -25,7 +25,7 @@ class EndDrag(AbstractLoad):
         return Parameter("-", f"axial drag coefficient of the ends of {group}, on the end's area", 0.0, 30.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        flow, ends = now.end_flow, now.ends
+        flow, ends = now.end_flow, now.hull.ends
         area = spread_ends(ends, self.values, "Cd") * ends.area * flow.wet
         force = 0.5 * now.environment.density * area * jnp.sqrt(flow.relative**2 + REST) * flow.relative
         return Action(end_force=force)

@@ -32,7 +32,7 @@ class EndInertia(AbstractLoad):
         return Parameter("-", f"axial added-mass coefficient of the ends of {group}, on half a sphere", 0.0, 10.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        flow, ends, density = now.end_flow, now.ends, now.environment.density
+        flow, ends, density = now.end_flow, now.hull.ends, now.environment.density
         volume = 2 / 3 * math.pi * ends.radius**3
         mass = density * spread_ends(ends, self.values, "Ca") * volume * flow.wet
         if flow.acceleration is None:

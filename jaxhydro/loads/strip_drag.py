@@ -33,7 +33,7 @@ class StripDrag(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow = now.strip_flow
-        area = spread(now.strips, self.values, "Cd") * now.strip_shape.facing
+        area = now.over_strips(spread(now.hull.elements, self.values, "Cd")) * now.strip_shape.facing
         square = flow.relative**2
         if self.coupled:
             square = square.sum(axis=0)

@@ -7,15 +7,15 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.strips import Strips
+from jaxhydro.strips import Elements
 
 
-def spread(strips: Strips, values: Mapping[str, Float[Array, ""]], symbol: str) -> Float[Array, "2 n"]:
-    """Coefficients `group.symbol_t`, `group.symbol_z` by direction and strip."""
-    if not strips.labels:
+def spread(elements: Elements, values: Mapping[str, Float[Array, ""]], symbol: str) -> Float[Array, "2 e"]:
+    """Coefficients `group.symbol_t`, `group.symbol_z` by direction and element."""
+    if not elements.labels:
         return jnp.zeros((2, 0))
-    stacked = jnp.stack([jnp.asarray(values[f"{group}.{symbol}_{kind}"]) for group, kind in strips.labels])
-    return stacked[jnp.asarray(strips.label)]
+    stacked = jnp.stack([jnp.asarray(values[f"{group}.{symbol}_{kind}"]) for group, kind in elements.labels])
+    return stacked[jnp.asarray(elements.label)]
 
 
 class StripInertia(AbstractLoad):
@@ -37,7 +37,8 @@ class StripInertia(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow = now.strip_flow
-        water = now.environment.density * now.strip_shape.volume
-        mass = spread(now.strips, self.values, "Ca") * water
-        force = None if flow.acceleration is None else (water + mass) * flow.acceleration
-        return Action(strip_force=force, strip_mass=mass)
+        mass = now.environment.density * spread(now.hull.elements, self.values, "Ca")
+        if flow.acceleration is None:
+            return Action(element_mass=mass)
+        with_froude_krylov = now.over_strips(now.environment.density + mass) * now.strip_shape.volume
+        return Action(strip_force=with_froude_krylov * flow.acceleration, element_mass=mass)
