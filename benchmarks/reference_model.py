@@ -14,7 +14,7 @@ Laws (reference sizes as in the campaign format): each strip below still water c
 body-fixed directions e the forces -rho Ca V (e . a) and -1/2 rho Cd D dl |u| (e . u), |u| the length of the transverse
 velocity; each free wet end of a column carries the like along its axis on 2/3 pi r^3 and pi r^2. Buoyancy is exact for
 straight members cut by still water (a column's slanted waterplane included). Moorings are straight springs or a linear
-matrix. A strip cut by still water counts with its wet part, at that part's centre.
+matrix. A strip cut by still water counts with its wet part, at that part's centre. Waves: reference_waves.py.
 """
 
 from pathlib import Path
@@ -52,8 +52,8 @@ class ReferenceModel:
         """Cuts the members; arrays over strips have the strip last, and those over directions [e1 | e2 | end axes]."""
         members = [turned for member in platform["members"] for turned in headings(member)]
         every_end = np.array([end for member in members for end in member["ends"]]).reshape(-1, 3)
-        strips, ends, columns = [np.zeros((0, 18))], [np.zeros((0, 8))], [np.zeros((0, 18))]
-        for member in members:
+        strips, ends, columns = [np.zeros((0, 19))], [np.zeros((0, 10))], [np.zeros((0, 18))]
+        for number, member in enumerate(members):
             a, b, e1, e2, axis = member["vectors"]
             w, h = member["sides"]
             area = w * h * (np.pi / 4 if member["circular"] else 1.0)
@@ -65,16 +65,19 @@ class ReferenceModel:
             dl = length / n
             rho, volume = self.density, area * dl
             common = [*axis, *e1, *e2, dl, volume, rho * c["Ca_t"] * volume, rho * c["Ca_" + second] * volume,
-                      0.5 * rho * c["Cd_t"] * h * dl, 0.5 * rho * c["Cd_" + second] * w * dl]
+                      0.5 * rho * c["Cd_t"] * h * dl, 0.5 * rho * c["Cd_" + second] * w * dl, number]
             strips.append(np.hstack([a + (np.arange(n)[:, None] + 0.5) * dl * axis, np.tile(common, (n, 1))]))
             if column:
                 second_moments = [np.pi / 64 * w**4] * 2 if member["circular"] else [h * w**3 / 12, w * h**3 / 12]
                 columns.append([[*a, *b, *e1, *e2, *axis, area, *second_moments]])
                 loads = [rho * c["Ca_z"] * 2 / 3 * np.pi * (area / np.pi)**1.5, 0.5 * rho * c["Cd_z"] * area]
-                ends += [[[*end, *axis, *loads]] for end in (a, b)       # free: joined to no other member's end
+                ends += [[[*end, *axis, *loads, push, number]]           # free: joined to no other member's end
+                         for end, push in ((a, area), (b, -area))        # push: force along the axis per unit pressure
                          if (np.linalg.norm(every_end - end, axis=1) < 1e-6).sum() == 1]
 
         table, end_table, column_table = (np.vstack(rows).T.copy() for rows in (strips, ends, columns))
+        self.members, self.strip_member, self.end_member = members, table[18].astype(int), end_table[9].astype(int)
+        self.end_push = end_table[8]
         self.node, self.axis, self.length, self.volume = table[:3], table[3:6], table[12], table[13]
         self.end_node = end_table[:3]
         self.directions = np.hstack([table[6:9], table[9:12], end_table[3:6]])
@@ -114,11 +117,12 @@ class ReferenceModel:
             elif key in declared:
                 self.extra_tilt[k] = declared[key] + weight - own[key + "_buoyancy"] - lift
 
-    def wetted(self, position, turn):
-        """Displaced strips: offsets (3, n) of the wet parts' centres from the reference point, and wet shares (n,)."""
+    def wetted(self, position, turn, level=0.0):
+        """Displaced strips: offsets (3, n) of the wet parts' centres from the reference point, and wet shares (n,), with
+        the water's surface at `level` (), (n,)."""
         middle, axis = turn @ self.node, turn @ self.axis
         rise = self.length * axis[2]
-        share = np.clip(0.5 - (position[2] + middle[2]) / np.maximum(np.abs(rise), 1e-9), 0.0, 1.0)
+        share = np.clip(0.5 - (position[2] + middle[2] - level) / np.maximum(np.abs(rise), 1e-9), 0.0, 1.0)
         return middle - axis * (0.5 * (1.0 - share) * self.length * np.sign(rise)), share
 
     def geometry_hydrostatics(self) -> dict:
@@ -170,18 +174,22 @@ class ReferenceModel:
             load += self.preload - self.spring_matrix @ np.concatenate([position, angles])
         return load
 
-    def rate(self, t, y):
-        """dy/dt (13,); still water, so `t` (s) does not matter."""
+    def fluid(self, t, position, turn, offset, share):
+        """For every direction: where its load acts (3, k) from the reference point, its unit vector (3, k), its wet
+        share (k,), and the water's velocity along it and the force by the water's acceleration and pressure (none)."""
+        ends = turn @ self.end_node
+        wet = np.concatenate([share, share, position[2] + ends[2] < 0])
+        return np.hstack([offset, offset, ends]), turn @ self.directions, wet, 0.0, 0.0
+
+    def balance(self, t, y):
+        """Mass matrix (6, 6) about the displaced reference point, earth axes, and load (6,)."""
         position, speed, spin = y[:3], y[7:], y[10:]
         turn = matrix_of(y[3:7])
         offset, share = self.wetted(position, turn)
-        ends = turn @ self.end_node
-        wet = np.concatenate([share, share, position[2] + ends[2] < 0])
-        at = np.hstack([offset, offset, ends])
-        along = turn @ self.directions
+        at, along, wet, flow, push = self.fluid(t, position, turn, offset, share)
         reach = np.vstack([along, cross(at, along)])                     # (6, k): unit generalised forces
         centripetal = (spin @ along) * (spin @ at) - (spin @ spin) * (along * at).sum(axis=0)
-        through = speed @ reach                                          # velocity along each direction
+        through = speed @ reach - flow                                   # velocity along each direction, relative
         n = self.strips_count
         total = np.abs(through)
         total[:n] = total[n:2 * n] = np.sqrt(through[:n]**2 + through[n:2 * n]**2)
@@ -189,7 +197,7 @@ class ReferenceModel:
         damped = self.damping @ np.concatenate([speed[:3] @ turn, spin @ turn])          # along body axes
         load = self.static_load(position, turn, offset, share)
         load -= np.concatenate([turn @ damped[:3], turn @ damped[3:]])
-        load -= reach @ (added * centripetal + self.direction_drag * wet * total * through)
+        load -= reach @ (added * centripetal + self.direction_drag * wet * total * through - push)
 
         arm = turn @ self.centre_of_mass
         inertia = turn @ self.inertia @ turn.T + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
@@ -200,10 +208,13 @@ class ReferenceModel:
         matrix[3:, 3:] += inertia
         load[:3] -= self.mass * (spin * (spin @ arm) - arm * (spin @ spin))
         load[3:] -= skew(spin) @ (inertia @ spin)
+        return matrix, load
 
-        x, scalar = y[3:6], y[6]
+    def rate(self, t, y):
+        """dy/dt (13,); in still water `t` (s) does not matter."""
+        x, scalar, spin = y[3:6], y[6], y[10:]
         turning = 0.5 * np.array([*(scalar * spin + skew(spin) @ x), -(spin @ x)])
-        return np.concatenate([y[7:10], turning, np.linalg.solve(matrix, load)])
+        return np.concatenate([y[7:10], turning, np.linalg.solve(*self.balance(t, y))])
 
     def equilibrium(self) -> np.ndarray:
         """Motions q (6,) at rest; directions without stiffness stay at zero."""
@@ -248,12 +259,15 @@ def rk4(model: ReferenceModel, q0, v0, step: float, duration: float):
     states = np.empty((count + 1, 13))
     states[0] = y = state_of(q0, v0)
     for j in range(count):
-        k1 = model.rate(0.0, y)
-        k2 = model.rate(0.0, y + 0.5 * step * k1)
-        k3 = model.rate(0.0, y + 0.5 * step * k2)
-        k4 = model.rate(0.0, y + step * k3)
-        states[j + 1] = y = y + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        states[j + 1] = y = rk4_step(model, j * step, y, step, model.rate(j * step, y))
     return np.arange(count + 1) * step, motions_of(states)
+
+
+def rk4_step(model, t, y, step, k1):
+    k2 = model.rate(t + 0.5 * step, y + 0.5 * step * k1)
+    k3 = model.rate(t + 0.5 * step, y + 0.5 * step * k2)
+    k4 = model.rate(t + step, y + step * k3)
+    return y + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
 
 
 def state_of(q, velocity=np.zeros(6)):
@@ -306,4 +320,5 @@ def headings(member):
         level = np.cross([0.0, 0.0, 1.0], axis)                          # vertical: width along the heading
         e1 = level / np.linalg.norm(level) if np.linalg.norm(level) > 1e-6 else turn @ np.array([1.0, 0.0, 0.0])
         yield {"group": member["group"], "circular": circular, "sides": sides, "ends": [turn @ a, turn @ b],
-               "vectors": (turn @ a, turn @ b, e1, np.cross(axis, e1), axis)}
+               "vectors": (turn @ a, turn @ b, e1, np.cross(axis, e1), axis),
+               "maccamy_fuchs": member.get("maccamy_fuchs", True)}

@@ -9,7 +9,17 @@ from jaxhydro.problems import InputError
 from jaxhydro.response import Response
 from jaxhydro.simulate import free_decay, simulate
 from jaxhydro.statics import EquilibriumError, equilibrium, natural_modes
-from jaxhydro.waves import AbstractSea, AirySea, StillWater, regular_wave
+from jaxhydro.waves import (
+    AbstractSea,
+    Components,
+    IrregularSea,
+    StillWater,
+    WaveSea,
+    jonswap,
+    record_components,
+    regular_wave,
+    spectrum_components,
+)
 
 __version__ = "0.1.0"
 
@@ -19,11 +29,12 @@ __all__ = [
     "AbstractLoad",
     "AbstractSea",
     "Action",
-    "AirySea",
+    "Components",
     "Environment",
     "EquilibriumError",
     "InputError",
     "Instant",
+    "IrregularSea",
     "Model",
     "Parameter",
     "Platform",
@@ -31,13 +42,17 @@ __all__ = [
     "RigidBody",
     "State",
     "StillWater",
+    "WaveSea",
     "build",
     "builtin_platforms",
     "equilibrium",
     "free_decay",
+    "jonswap",
     "load_model",
     "load_platform",
     "natural_modes",
+    "record_components",
     "regular_wave",
     "simulate",
+    "spectrum_components",
 ]

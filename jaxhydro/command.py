@@ -19,7 +19,7 @@ from jaxhydro.plot import for_people, unit_of
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.simulate import default_step, free_decay
 from jaxhydro.statics import equilibrium, natural_modes
-from jaxhydro.waves.sea import AirySea, regular_wave
+from jaxhydro.waves.sea import WaveSea, regular_wave
 
 GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
@@ -57,7 +57,7 @@ def run(
     return True
 
 
-def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float) -> AirySea:
+def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float) -> WaveSea:
     try:
         return regular_wave(*wave, model.environment, heading=math.radians(heading), ramp=ramp)
     except ValueError as error:

@@ -5,7 +5,7 @@ are one matrix product and the load on the platform is its transpose.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -14,6 +14,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.rotations import ramp
 from jaxhydro.strips import SMOOTH, Elements, Ends, Member, Strips, cut, ends
+from jaxhydro.waves.flow import Cylinders
 
 
 class Wetted(NamedTuple):
@@ -35,6 +36,9 @@ class Hull(eqx.Module):
     elements: Elements
     strips: Strips
     ends: Ends
+    cylinders: Cylinders  # of strips, then ends
+    gauges: Float[Array, "3 g"]  # m, where the surface elevation is looked up
+    gauge_of: tuple[int, ...] = eqx.field(static=True)  # the gauge of every element, then end
     motion: Float[Array, "6 2*l"]
     inward: Float[Array, "6 2*l"]
     moments: Float[Array, "6 6 k"]
@@ -44,18 +48,22 @@ class Hull(eqx.Module):
         """The hull that members make."""
         elements, strips = cut(members)
         tips = ends(members)
-        point = np.concatenate([strips.start, strips.start, tips.position], axis=1)
-        first, second = np.asarray(strips.directions[:, 0]), np.asarray(strips.directions[:, 1])
-        direction = np.concatenate([first, second, tips.axis], axis=1)
-        along = np.concatenate([strips.axis, strips.axis, np.zeros_like(tips.axis)], axis=1)
-        lever = np.concatenate([direction, np.cross(point, direction, axis=0)])
-        twist = np.concatenate([np.zeros_like(direction), np.cross(along, direction, axis=0)])
-        motion = np.concatenate([lever, twist], axis=1)
-        inward = np.concatenate([_centripetal(direction, point), _centripetal(direction, along)], axis=1)
-        moments = _moments(elements, strips, lever, twist)
-        matrices = (motion, inward, moments)
-        lines: dict[str, Any] = dict(zip(("motion", "inward", "moments"), map(jnp.asarray, matrices), strict=True))
-        return cls(elements, strips, tips, **lines)
+        powers = 5 if np.asarray(strips.taper).any() else 3
+        radii = sorted({r for r in strips.diffracts if r > 0})
+        index = tuple(radii.index(r) if r > 0 else -1 for r in strips.diffracts)
+        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * len(tips.area)))
+        place, which = np.unique(_waterline(elements, tips).round(9), axis=1, return_inverse=True)
+        gauge_of = tuple(map(int, which.reshape(-1)))
+        matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
+        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices)
+
+    def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
+        """With the directions of strips and ends turned about their points, which stay."""
+        strips = eqx.tree_at(lambda x: x.directions, self.strips, jnp.einsum("ij,jdn->idn", rotation, self.strips.directions))
+        tips = eqx.tree_at(lambda x: x.axis, self.ends, rotation @ self.ends.axis)
+        powers = (self.moments.shape[2] - tips.area.size) // max(2 * len(self.elements.length), 1)
+        matrices = _matrices(self.elements, strips, tips, powers)
+        return Hull(self.elements, strips, tips, self.cylinders, self.gauges, self.gauge_of, *matrices)
 
     def wrench(self, force: Float[Array, " l"], away: Float[Array, " l"]) -> Float[Array, "6"]:
         """Force and moment (N, N m) on the platform, in body axes, of forces (N) along lines whose strips are `away` (m) from
@@ -87,14 +95,10 @@ class Hull(eqx.Module):
         rows += [rows[0] * reach**power for power in range(1, powers)]
         return jnp.concatenate([*[row.reshape(-1) for row in rows[:powers]], ends])
 
-    def waterline(self) -> Float[Array, "3 e+m"]:
-        """Points (m) where the surface elevation is looked up for elements and ends: a column's axis at still water, a
-        pontoon's middle."""
-        elements = self.elements
-        column = elements.thickness == 0
-        at = jnp.where(column, -elements.start[2] / jnp.where(column, elements.axis[2], 1.0), 0.5 * elements.length)
-        ends = self.ends.position - self.ends.axis * (self.ends.position[2] / self.ends.axis[2])
-        return jnp.concatenate([elements.start + elements.axis * at, ends], axis=1)
+    def extremities(self) -> np.ndarray:
+        """Ends of all elements and of all columns (m)."""
+        start, axis = np.asarray(self.elements.start), np.asarray(self.elements.axis)
+        return np.concatenate([start, start + axis * np.asarray(self.elements.length), np.asarray(self.ends.position)], axis=1)
 
     def wetted(self, vertical: Float[Array, "3"], depth: Float[Array, " e"]) -> Wetted:
         """What of every element is under water.
@@ -112,29 +116,60 @@ class Hull(eqx.Module):
         return Wetted(wet, jnp.where(column, wet, elements.length))
 
 
-def _centripetal(direction: np.ndarray, point: np.ndarray) -> np.ndarray:
+def _waterline(elements: Elements, ends: Ends) -> np.ndarray:
+    """Where (m) the surface is looked up for elements and ends: a column's axis at still water, a pontoon's middle or end."""
+    found = []
+    of_elements = (elements.start.T, elements.axis.T, elements.length, elements.thickness)
+    for start, axis, length, thickness in zip(*map(np.asarray, of_elements), strict=True):
+        found.append(start + axis * (-start[2] / axis[2] if thickness == 0 else 0.5 * length))
+    for position, axis, radius in zip(*map(np.asarray, (ends.position.T, ends.axis.T, ends.radius)), strict=True):
+        found.append(position - axis * (position[2] / axis[2]) if radius > 0 else position)
+    return np.array(found, float).reshape(-1, 3).T
+
+
+def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tuple[Array, Array, Array]:
+    """`motion`, `inward` and `moments` of a hull."""
+    first, second = strips.directions[:, 0], strips.directions[:, 1]
+    direction = jnp.concatenate([first, second, ends.axis], axis=1)
+    point = jnp.concatenate([strips.start, strips.start, ends.position], axis=1)
+    along = jnp.concatenate([strips.axis, strips.axis, jnp.zeros_like(ends.axis)], axis=1)
+    lever = jnp.concatenate([direction, jnp.cross(point, direction, axis=0)])
+    twist = jnp.concatenate([jnp.zeros_like(direction), jnp.cross(along, direction, axis=0)])
+    motion = jnp.concatenate([lever, twist], axis=1)
+    inward = jnp.concatenate([_centripetal(direction, point), _centripetal(direction, along)], axis=1)
+    return motion, inward, _moments(elements, strips, lever, twist, powers)
+
+
+def _centripetal(direction: Float[Array, "3 l"], point: Float[Array, "3 l"]) -> Float[Array, "6 l"]:
     """omega (omega . r) - omega^2 r along d, by product of angular velocities."""
     (dx, dy, dz), (x, y, z) = direction, point
-    return np.stack(
+    return jnp.stack(
         [-dy * y - dz * z, -dx * x - dz * z, -dx * x - dy * y, dx * y + dy * x, dx * z + dz * x, dy * z + dz * y]
     )
 
 
-def _moments(elements: Elements, strips: Strips, lever: np.ndarray, twist: np.ndarray) -> np.ndarray:
+def _moments(
+    elements: Elements, strips: Strips, lever: Float[Array, "6 l"], twist: Float[Array, "6 l"], powers: int
+) -> Float[Array, "6 6 k"]:
     """Sum over an element's strips of share, sectional area and h h^T as coefficients of a polynomial in its wetted length,
     by power, direction and element; then h h^T of the ends."""
     n, e = len(strips.element), len(elements.length)
-    fraction, taper = np.asarray(strips.fraction), np.asarray(strips.taper)
-    powers = 5 if taper.any() else 3
-    found = np.zeros((6, 6, powers, 2, e))
-    for i in range(n):
-        sizes = [(float(strips.size[d, i]), taper[d, i] * fraction[i]) for d in range(2)]
-        area = np.polynomial.polynomial.polymul(*sizes) * float(strips.shape[i] * strips.weight[i])
-        for d in range(2):
-            h = np.stack([lever[:, d * n + i], twist[:, d * n + i] * fraction[i]])
-            square = [np.outer(h[0], h[0]), np.outer(h[0], h[1]) + np.outer(h[1], h[0]), np.outer(h[1], h[1])]
-            for p, share in enumerate(area[: powers - 2]):
-                for q, matrix in enumerate(square):
-                    found[:, :, p + q, d, strips.element[i]] += share * matrix
+    fraction = jnp.concatenate([strips.fraction, strips.fraction])
+    h, twisted = lever[:, : 2 * n], twist[:, : 2 * n] * fraction
+
+    def outer(a, b):
+        return a[:, None] * b[None]
+
+    (size, other), (taper, change) = strips.size, strips.taper * strips.fraction
+    area = [size * other, size * change + other * taper, taper * change][: powers - 2]
+    square = [outer(h, h), outer(h, twisted) + outer(twisted, h), outer(twisted, twisted)]
+    of_strips = [jnp.zeros((6, 6, 2 * n)) for _ in range(powers)]
+    for p, coefficient in enumerate(area):
+        share = jnp.tile(coefficient * strips.shape * strips.weight, 2)
+        for q, matrix in enumerate(square):
+            of_strips[p + q] = of_strips[p + q] + share * matrix
+    home = jnp.array(strips.element, dtype=int)
+    index = jnp.concatenate([home, home + e])  # by direction and element
+    found = jnp.stack([jnp.zeros((6, 6, 2 * e)).at[:, :, index].add(part) for part in of_strips], axis=2)
     tips = lever[:, 2 * n :]
-    return np.concatenate([found.reshape(6, 6, -1), tips[:, None] * tips[None]], axis=2)
+    return jnp.concatenate([found.reshape(6, 6, -1), outer(tips, tips)], axis=2)

@@ -1,7 +1,7 @@
 """Fixed-step time integration, and output at any times."""
 
 from functools import partial
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import equinox as eqx
 import jax
@@ -9,12 +9,14 @@ import jax.numpy as jnp
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float, Int
 
-from jaxhydro import runge_kutta
+from jaxhydro import adams_bashforth, runge_kutta
 from jaxhydro.model import Model, State
+from jaxhydro.waves.irregular_sea import Clock
 from jaxhydro.waves.sea import AbstractSea
 
-Method = Literal["tsit5", "rk4", "diffrax"]
+Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]
+MORE = 2  # steps, so that differences at the last one are central
 Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
@@ -54,17 +56,19 @@ class Grid(eqx.Module):
         return x, v, a
 
 
-def _by_scan(
-    scheme: runge_kutta.Scheme, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
+def _by_loop(
+    method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
 ) -> Motion:
-    """An explicit Runge-Kutta scheme as this package's own loop: positions and body velocities at the ends of the steps."""
+    """A scheme as one of this package's own loops: positions and body velocities at the ends of the steps."""
     y, unravel = ravel_pytree(state)
-    run = runge_kutta.forward if adjoint == "forward" else runge_kutta.backward
+    loop = adams_bashforth if method == "ab4" else runge_kutta
+    run: Any = loop.forward if adjoint == "forward" else loop.backward
+    options = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
 
     def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> Float[Array, " s"]:
         return ravel_pytree(driver[0].rate(time, unravel(y), driver[1]))[0]
 
-    path = run((model, sea), y, start, step, count, rate=rate, scheme=scheme, capacity=capacity)
+    path = run((model, sea), y, start, step, count, rate=rate, capacity=capacity, **options)
     states = jax.vmap(unravel)(path)
     return states.position, states.velocity
 
@@ -110,12 +114,23 @@ def integrate(
     taken (with adjoint "forward", and not by diffrax: there all are).
     """
     count = jnp.asarray(capacity) if count is None else count
-    # two steps more, so that the differences at the last one are central
-    scheme = runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()
-    run = _by_diffrax if method == "diffrax" else partial(_by_scan, scheme)
-    position, velocity = run(model, sea, state, start, step, count + 2, capacity + 2, adjoint)
+    run = _by_diffrax if method == "diffrax" else partial(_by_loop, method)
+    position, velocity = run(model, sea, state, start, step, count + MORE, capacity + MORE, adjoint)
     rate = jax.vmap(model.position_rate)(position, velocity)
     return Grid(start, step, count, position, rate, differences(rate, step))
+
+
+def clock(method: Method, start: float, step: float, count: int) -> Clock:
+    """When an integration over `count` steps asks for the sea."""
+    if method == "ab4":
+        return Clock(start, step, count + MORE, (0.0,), adams_bashforth.START)
+    if method == "diffrax":
+        import diffrax
+
+        nodes = (0.0, *map(float, diffrax.Tsit5.tableau.c))
+    else:
+        nodes = (runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()).nodes
+    return Clock(start, step, count + MORE + 1, tuple(sorted({node for node in nodes if node < 1.0})))
 
 
 def differences(values: Float[Array, "n 6"], step: Float[Array, ""]) -> Float[Array, "n 6"]:

@@ -1,5 +1,6 @@
 """The platform as a rigid body and a tuple of loads: (M + sum A_k) dv/dt = sum F_k."""
 
+import dataclasses
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -13,7 +14,7 @@ from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripSh
 from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew
 from jaxhydro.solve6 import accelerate
 from jaxhydro.strips import end_wetted
-from jaxhydro.waves.flow import EndFlow, StripFlow
+from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
 
@@ -49,11 +50,13 @@ class State(eqx.Module):
 
 
 class Total(NamedTuple):
-    """The sum of all loads in body axes: force (N, N m), added mass (kg, kg m, kg m2) of the body, `Hull.masses`."""
+    """The sum of all loads in body axes: force (N, N m), added mass (kg, kg m, kg m2) of the body, `Hull.masses` and
+    what they multiply."""
 
     force: Float[Array, "6"]
     added_mass: Float[Array, "6 6"]
     masses: Float[Array, " k"]
+    moments: Float[Array, "6 6 k"]
     memory_rate: tuple[Any, ...]
 
 
@@ -61,7 +64,13 @@ class Model(eqx.Module):
     """A platform: a rigid body, its strips, and the loads on it.
 
     `wetting` says which part of the members is loaded: "instantaneous" up to the water surface at the displaced strip, "mean"
-    what is under still water when the platform is upright at its reference position.
+    what is under still water when the platform is upright at its reference position, in the flow at that depth. `diffraction`
+    of waves by the members that do: "maccamy_fuchs", "ramp", the same with coefficients tuned away from Ca = 1 kept in
+    long waves (`diffraction.long_waves`), "none". `directions` of strips and ends: "body", those of the displaced member, or
+    "earth", those of the undisplaced one, as in OpenFAST. `lag` and `bound` are those of `Cylinders`.
+
+    The default replaces Ca in the excitation altogether: that is the theory, for a Ca that was tuned to the added mass, and
+    the step from 1 + Ca to 2 which it makes is part of what a calibration in still water cannot know.
     """
 
     environment: Environment
@@ -69,6 +78,18 @@ class Model(eqx.Module):
     hull: Hull
     loads: tuple[AbstractLoad, ...]
     wetting: str = eqx.field(static=True, default="instantaneous")
+    diffraction: str = eqx.field(static=True, default="maccamy_fuchs")
+    directions: str = eqx.field(static=True, default="body")
+    lag: bool = eqx.field(static=True, default=True)
+    bound: bool = eqx.field(static=True, default=True)
+
+    @property
+    def cylinders(self) -> Cylinders | None:
+        """The strips, then ends, that diffract the waves; None: none do."""
+        if self.diffraction == "none" or not self.hull.cylinders.radius.size:
+            return None
+        ramp = self.diffraction == "ramp"
+        return dataclasses.replace(self.hull.cylinders, lag=self.lag, bound=self.bound, ramp=ramp)
 
     @property
     def values(self) -> dict[str, Float[Array, ""]]:
@@ -108,7 +129,8 @@ class Model(eqx.Module):
     def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
         """What the loads read: the motion, and how the water moves past strips and ends."""
         matrix = rotation(state.position[3:])
-        hull, strips, ends, place = self.hull, self.hull.strips, self.hull.ends, state.position[:3]
+        hull = self.hull if self.directions == "body" else self.hull.turned(matrix.T)
+        strips, ends, place = hull.strips, hull.ends, state.position[:3]
         n, m = len(strips.element), ends.area.shape[0]
         roots = jnp.concatenate([hull.elements.start, ends.position], axis=1)
         if self.wetting == "mean":
@@ -116,8 +138,8 @@ class Model(eqx.Module):
         else:
             vertical = matrix[2]
             depth = -(place[2] + vertical @ roots)
-            surface = sea.elevation(time, place[:2, None] + matrix[:2] @ hull.waterline())
-            depth = depth if surface is None else depth + surface
+            surface = sea.surface(time, place[:2, None] + matrix[:2] @ hull.gauges)
+            depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
         wetted = hull.wetted(vertical, depth[: roots.shape[1] - m])
         of = jnp.array(strips.element, dtype=int)
         covered, reach = wetted.length[of] * strips.weight, wetted.reach[of] * strips.fraction
@@ -133,15 +155,21 @@ class Model(eqx.Module):
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
         end_wet = end_wetted(depth[roots.shape[1] - m :])
         points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
-        flow = sea.flow(time, place[:, None] + matrix @ points)
+        where = place[:, None] + matrix @ points
+        where = where if self.wetting == "instantaneous" else jnp.concatenate([where[:2], points[2:]])
+        flow = sea.flow(time, where, self.cylinders)
         if flow is None:
             past, past_end = StripFlow(own, None), EndFlow(own_end, None, None, end_wet)
         else:
             velocity, acceleration = matrix.T @ flow.velocity, matrix.T @ flow.acceleration
-            water = [(strips.directions * field[:, None, :n]).sum(axis=0) for field in (velocity, acceleration)]
-            end_water = [(ends.axis * field[:, n:]).sum(axis=0) for field in (velocity, acceleration)]
-            past = StripFlow(own + water[0], water[1])
-            past_end = EndFlow(own_end + end_water[0], end_water[1], flow.pressure[n:], end_wet)
+
+            def across(field: Float[Array, "3 n+m"]) -> Float[Array, "2 n"]:
+                return (strips.directions * field[:, None, :n]).sum(axis=0)
+
+            extra = [None if field is None else across(matrix.T @ field) for field in (flow.diffracted, flow.tuned)]
+            past = StripFlow(own + across(velocity), across(acceleration), *extra)
+            at_ends = [(ends.axis * field[:, n:]).sum(axis=0) for field in (velocity, acceleration)]
+            past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[n:], end_wet)
         return Instant(
             time, state.position, matrix, state.velocity, self.environment, hull, wetted, shape, past, past_end, lines
         )
@@ -157,7 +185,7 @@ class Model(eqx.Module):
         force, earth = total("body_force", jnp.zeros(6)), total("force", jnp.zeros(0))
         if earth.size:
             force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
-        hull, on_strips, on_ends = self.hull, jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
+        hull, on_strips, on_ends = now.hull, jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
         per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
         line_mass = hull.join(now.over_strips(per_volume) * now.strip_shape.volume, end_mass)
         on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
@@ -165,6 +193,7 @@ class Model(eqx.Module):
             force + hull.wrench(on_lines, now.lines.away),
             total("added_mass", jnp.zeros((6, 6))),
             hull.masses(per_volume, end_mass, now.wetted),
+            hull.moments,
             tuple(action.memory_rate for action in actions),
         )
 
@@ -180,7 +209,7 @@ class Model(eqx.Module):
             body.mass_matrix() + total.added_mass,
             total.force - gyroscopic,
             total.masses,
-            self.hull.moments,
+            total.moments,
         )
         turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
         return State(self.position_rate(state.position, state.velocity), acceleration - turning, total.memory_rate)

@@ -78,7 +78,7 @@ def build(platform: schema.Platform) -> Model:
             EndInertia(pick(of_ends["Ca"])),
             EndDrag(pick(of_ends["Cd"])),
         ]
-    return Model(environment, body, hull, tuple(loads), platform.wetting)
+    return Model(environment, body, hull, tuple(loads), platform.wetting, platform.diffraction, platform.directions)
 
 
 def members_of(platform: schema.Platform) -> list[Member]:
@@ -101,7 +101,7 @@ def members_of(platform: schema.Platform) -> list[Member]:
                     # the width of an upright box lies along its heading
                     twist=math.radians(member.gamma) + (math.radians(heading) if member.rA[:2] == member.rB[:2] else 0.0),
                     elements=member.elements,
-                    maccamy_fuchs=bool(member.maccamy_fuchs),
+                    maccamy_fuchs=member.maccamy_fuchs,
                 )
             )
     return members

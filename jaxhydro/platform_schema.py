@@ -181,7 +181,8 @@ class Hydrostatics(Schema):
 
 
 class Platform(Schema):
-    """A platform file. `wetting` and `drag_speed` choose between forms of the strip loads (see the loads)."""
+    """A platform file. `wetting`, `drag_speed`, `diffraction` and `directions` choose between
+    forms of the strip loads (see the loads and `Model`)."""
 
     name: Text
     water: Water
@@ -199,6 +200,8 @@ class Platform(Schema):
     )
     hydrostatics: Hydrostatics = Hydrostatics()
     wetting: Literal["mean", "instantaneous"] = "instantaneous"
+    diffraction: Literal["maccamy_fuchs", "ramp", "none"] = "maccamy_fuchs"
+    directions: Literal["body", "earth"] = "body"
     drag_speed: Literal["vector", "component"] = "vector"
 
     @model_validator(mode="after")

@@ -110,29 +110,10 @@ def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int
     path, stages = _march(driver, y, start, step, count, rate, scheme, capacity, True)
     assert stages is not None
     nodes, size = jnp.array(scheme.nodes), len(scheme.nodes)
-    total = size * (capacity + 1)
-    points = -(-total // BATCH) * BATCH
-    times = jnp.pad((start + step * (jnp.arange(capacity + 1.0)[:, None] + nodes)).reshape(-1), (0, points - total))
-    states = jnp.pad(stages.reshape(total, -1), ((0, points - total), (0, 0)))
-    blocks = (size * (count + 1) + BATCH - 1) // BATCH
-
-    def over(function):
-        """`function` of time and state at every stage that was taken."""
-
-        def block(index, out):
-            at = index * BATCH
-            part = (jax.lax.dynamic_slice_in_dim(times, at, BATCH), jax.lax.dynamic_slice_in_dim(states, at, BATCH))
-            return jax.lax.dynamic_update_slice_in_dim(out, jax.vmap(function)(*part), at, 0)
-
-        shape = jax.eval_shape(function, times[0], states[0]).shape
-        out = jax.lax.fori_loop(0, blocks, block, jnp.zeros((points, *shape)))
-        return out[:total].reshape(capacity + 1, size, *shape)
-
-    slope = over(lambda time, at: jax.jacfwd(lambda at: rate(driver, time, at))(at))
-    if jax.tree.leaves(d_driver):
-        push = over(lambda time, at: eqx.filter_jvp(lambda d: rate(d, time, at), (driver,), (d_driver,))[1])
-    else:
-        push = jnp.zeros(stages.shape)
+    times = (start + step * (jnp.arange(capacity + 1.0)[:, None] + nodes)).reshape(-1)
+    states = stages.reshape(times.shape[0], -1)
+    slope, push = linearised(rate, driver, d_driver, times, states, size * (count + 1), BATCH)
+    slope, push = (x.reshape(capacity + 1, size, *x.shape[1:]) for x in (slope, push))
     # the scheme applied to the linearised equation: d_y after a step = transfer d_y + drive
     eye, table = jnp.eye(y.shape[0]), scheme.coefficients()
     matrices: list[Array] = []
@@ -147,6 +128,39 @@ def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int
     d_y = jnp.zeros_like(y) if d_y is None else d_y
     _, d_path = jax.lax.scan(lambda d, now: (now[0] @ d + now[1], d), d_y, (transfer, drive))
     return path, d_path
+
+
+def linearised(
+    rate: Rate,
+    driver: Any,
+    d_driver: Any,
+    times: Float[Array, " n"],
+    states: Float[Array, "n s"],
+    count: Int[Array, ""],
+    batch: int,
+) -> tuple[Float[Array, "n s s"], Float[Array, "n s"]]:
+    """Derivatives of the rate by the state, and along `d_driver`, at the first `count` of some times and states (zero beyond,
+    but for the last batch's rest)."""
+    total, size = states.shape
+    points = -(-total // batch) * batch
+    times, states = jnp.pad(times, (0, points - total)), jnp.pad(states, ((0, points - total), (0, 0)))
+    moving = bool(jax.tree.leaves(d_driver))
+
+    def at(time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Float[Array, "s s"], Float[Array, " s"]]:
+        slope = jax.jacfwd(lambda y: rate(driver, time, y))(state)
+        if not moving:
+            return slope, jnp.zeros(size)
+        return slope, eqx.filter_jvp(lambda d: rate(d, time, state), (driver,), (d_driver,))[1]
+
+    def block(index, out):
+        here = index * batch
+        part = (jax.lax.dynamic_slice_in_dim(times, here, batch), jax.lax.dynamic_slice_in_dim(states, here, batch))
+        found = jax.vmap(at)(*part)
+        return tuple(jax.lax.dynamic_update_slice_in_dim(o, f, here, 0) for o, f in zip(out, found, strict=True))
+
+    out = (jnp.zeros((points, size, size)), jnp.zeros((points, size)))
+    slope, push = jax.lax.fori_loop(0, (count + batch - 1) // batch, block, out)
+    return slope[:total], push[:total]
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int) -> Float[Array, "n s"]:

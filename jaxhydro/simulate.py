@@ -4,17 +4,22 @@ import math
 from collections.abc import Mapping
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro import adams_bashforth
 from jaxhydro.environment import DOFS
-from jaxhydro.integrate import Adjoint, Method, integrate
+from jaxhydro.integrate import Adjoint, Method, clock, integrate
 from jaxhydro.model import Model, State
 from jaxhydro.response import Response
+from jaxhydro.rotations import rotation
 from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
+SEA_STEP = 0.25  # s, in irregular seas where no step is asked for
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
 
 
@@ -50,7 +55,7 @@ def simulate(
     position: Mapping[str, float] | Float[Array, "6"] | None = None,
     rate: Mapping[str, float] | Float[Array, "6"] | None = None,
     step: float | None = None,
-    method: Method = "tsit5",
+    method: Method | None = None,
     adjoint: Adjoint = "forward",
 ) -> Response:
     """Motion of the platform at `times` (s, increasing, as recorded: any spacing).
@@ -58,6 +63,9 @@ def simulate(
     It starts at `times[0]` from the static equilibrium with the given `position` (m, rad: added to the equilibrium where given
     by name, absolute where an array) and `rate` (m/s, rad/s of surge ... yaw). `step` (s) is the largest internal step; the
     one taken divides the duration. Positions are those of the reference point, equilibrium included.
+
+    In an `IrregularSea` the default is "ab4", four-step Adams-Bashforth at 0.25 s (see `adams_bashforth`), and the sea is
+    prepared for the hull first (see `supports`). Else it is "tsit5".
 
     `method` "tsit5" is Tsitouras 5(4) with diffrax's tableau in a loop of this package, "rk4" the classical scheme
     in the same loop, "diffrax" diffrax's own solver; steps are fixed. On a decay Tsit5 at 1 s costs less than RK4 at 0.5 s and
@@ -71,15 +79,53 @@ def simulate(
     times = jnp.asarray(times, float)
     if times.ndim != 1 or times.shape[0] < 2 or not bool((jnp.diff(times) > 0).all()):
         raise ValueError("times must be at least two increasing numbers")
-    limit = default_step(model) if step is None else step
+    sea = StillWater() if sea is None else sea
+    irregular = isinstance(sea, IrregularSea)
+    method = ("ab4" if irregular else "tsit5") if method is None else method
+    limit = step if step is not None else SEA_STEP if irregular else default_step(model)
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / limit - 1e-9))
     start = model.rest()
     rest = equilibrium(model) if position is None or isinstance(position, Mapping) else jnp.zeros(6)
     q = rest + by_name(position)
     start = State(q, model.body_velocity(q, by_name(rate)), start.memory)
-    sea = StillWater() if sea is None else sea
+    if isinstance(sea, IrregularSea):
+        return _in_irregular(model, sea, start, times, limit, method, adjoint)
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
+
+
+def _in_irregular(
+    model: Model, sea: IrregularSea, start: State, times: Float[Array, " t"], limit: float, method: Method, adjoint: Adjoint
+) -> Response:
+    """In steps that divide the sea's period; prepared anew for a larger box where the platform has left the first one."""
+    begin, duration = float(times[0]), float(times[-1] - times[0])
+    step = float(sea.components.period) / even(float(sea.components.period) / limit)
+    steps = max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
+    points, excursion = model.hull.extremities(), EXCURSION
+    while True:
+        prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion)
+        found = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
+        reached = float(_reached(found.position, jnp.asarray(points), prepared.along, prepared.middle))
+        if not reached > prepared.half:
+            return found
+        if reached > prepared.half + 10 * EXCURSION:
+            raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
+        excursion += reached - prepared.half + 0.5 * EXCURSION
+
+
+@eqx.filter_jit
+def _reached(position, points, along, middle):
+    """Farthest distance (m) of any point of the hull from the middle of the sea's box, along the waves."""
+    place = jax.vmap(lambda q: along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - middle)(position)
+    return jnp.abs(place).max()
+
+
+def even(steps: float) -> int:
+    """The least whole number, not below `steps`, with no prime factor above 5: a good length of Fourier transforms."""
+    count = max(1, math.ceil(steps - 1e-9))
+    while (60 ** count.bit_length()) % count:
+        count += 1
+    return count
 
 
 def free_decay(

@@ -83,7 +83,7 @@ def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, 
     def mass_of(q: Float[Array, "6"]) -> Float[Array, "6 6"]:
         now = model.instant(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater())
         total = model.sum_of_loads(now, rest.memory)
-        return model.body.mass_matrix() + total.added_mass + model.hull.moments @ total.masses
+        return model.body.mass_matrix() + total.added_mass + total.moments @ total.masses
 
     mass = mass_of(position)
     return mass, -mass @ jax.jacfwd(acceleration)(position)

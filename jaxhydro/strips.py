@@ -3,7 +3,7 @@
 Everything is in body axes about the reference point; the strip is the last axis. A strip is loaded in the two directions
 across its member's axis, an end along it. A member steeper than 45 degrees is a column: both directions take the transverse
 coefficients (t) and its ends the axial ones (z). A flatter one is a pontoon: its horizontal direction takes t, the other,
-near-vertical one z, and its ends take none.
+near-vertical one z, and its ends take none but the pressure.
 
 A load element is integrated by Gauss quadrature over the length that is under water (Abramowitz and Stegun 1964, eq.
 25.4.30). So the strips of a column that pierces the surface move along it with the surface: the wetted length is
@@ -23,6 +23,7 @@ from jaxtyping import Array, Float
 from jaxhydro.rotations import step
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
+UPRIGHT = math.cos(math.radians(10.0))  # of an axis that counts as vertical
 SPACING = 2.5  # m, of the strips of a column under still water, where the platform file does not say
 PONTOON_SPACING = 5.0  # m, of a pontoon
 SMOOTH = 0.25  # m over which an end of an element enters or leaves the water
@@ -44,7 +45,7 @@ class Member(NamedTuple):
     sizes: np.ndarray
     twist: float = 0.0
     elements: int | None = None
-    maccamy_fuchs: bool = False
+    maccamy_fuchs: bool | None = None  # None: where it is vertical, circular and pierces the surface
 
     @property
     def axis(self) -> np.ndarray:
@@ -72,6 +73,14 @@ class Member(NamedTuple):
     def size(self, fraction: np.ndarray) -> np.ndarray:
         """Extents (n, 2) at fractions of the length."""
         return np.stack([np.interp(fraction, self.stations, self.sizes[:, i]) for i in range(2)], axis=-1)
+
+    @property
+    def diffracts(self) -> bool:
+        """Whether it diffracts waves as MacCamy and Fuchs have it."""
+        if self.maccamy_fuchs is not None:
+            return self.maccamy_fuchs
+        low, high = sorted((self.a[2], self.b[2]))
+        return self.circular and self.axis[2] > UPRIGHT and low < 0 <= high
 
     def area(self, size: np.ndarray) -> np.ndarray:
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
@@ -110,6 +119,7 @@ class Strips(eqx.Module):
     taper: Float[Array, "2 n"]  # its change per metre
     shape: Float[Array, " n"]  # area over the product of extents: pi/4 for a circle
     element: tuple[int, ...] = eqx.field(static=True)
+    diffracts: tuple[float, ...] = eqx.field(static=True)  # radius (m) of a strip that diffracts waves, 0 of others
 
 
 class Elements(eqx.Module):
@@ -124,13 +134,13 @@ class Elements(eqx.Module):
 
 
 class Ends(eqx.Module):
-    """Free ends of columns."""
+    """Ends of members."""
 
     position: Float[Array, "3 m"]
-    axis: Float[Array, "3 m"]  # unit vector, upward
+    axis: Float[Array, "3 m"]  # unit vector, upward for a column
     outward: Float[Array, " m"]  # +1 where the face looks along the axis (a top), -1 where against it (a bottom)
     area: Float[Array, " m"]
-    radius: Float[Array, " m"]  # m, of the circle of equal area
+    radius: Float[Array, " m"]  # m, of the circle of equal area that carries added mass and drag; 0: none, a pontoon's end
     label: tuple[int, ...] = eqx.field(static=True)
     labels: tuple[str, ...] = eqx.field(static=True)
 
@@ -171,6 +181,7 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
                         (last - first) / length,
                         math.pi / 4 if member.circular else 1.0,
                         len(elements),
+                        0.25 * float(first[0] + last[0]) if member.diffracts else 0.0,
                     )
                 )
             elements.append((start, member.axis, length, thickness, label))
@@ -179,32 +190,37 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
     parts = [triple, triple, np.zeros((3, 2, 0)), flat, flat, pair, pair, flat]
     label_of: tuple[tuple[int, ...], ...] = ((), ())
     element_of: tuple[int, ...] = ()
+    radius_of: tuple[float, ...] = ()
     if rows:
         *whole, which = (np.stack(column, axis=-1) for column in zip(*elements, strict=True))
-        *parts, home = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
+        *parts, home, radius = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
+        radius_of = tuple(map(float, radius))
         label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
     of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
-    strips = Strips(**of_strips, element=element_of)
+    strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
     of_elements: dict[str, Any] = dict(zip(("start", "axis", "length", "thickness"), map(jnp.asarray, whole), strict=True))
     return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
 
 
 def ends(members: Sequence[Member]) -> Ends:
-    """The two ends of every column; what is not in the water is left out by its wetting."""
-    columns = [m for m in members if m.column]
-    labels = tuple(dict.fromkeys(m.group for m in columns))
-    position, axis, outward, area, label = [], [], [], [], []
-    for member in columns:
-        upright = member.b[2] > member.a[2]
-        for point, fraction, top in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
+    """The two ends of every member; what is not in the water is left out by its wetting.
+
+    Pressure acts on all of them: where members meet, it cancels that on the other's side, which its strips count as exposed.
+    Added mass and drag have the free ends of columns only.
+    """
+    labels = tuple(dict.fromkeys(m.group for m in members if m.column))
+    position, axis, outward, area, radius, label = [], [], [], [], [], []
+    for member in members:
+        upright = bool(member.axis @ (member.b - member.a) > 0)
+        for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
             position.append(point)
             axis.append(member.axis)
-            outward.append(1.0 if top else -1.0)
+            outward.append(1.0 if far else -1.0)
             area.append(float(member.area(member.size(np.array([fraction])))[0]))
-            label.append(labels.index(member.group))
+            radius.append(math.sqrt(area[-1] / math.pi) if member.column else 0.0)
+            label.append(labels.index(member.group) if member.column else 0)
     points, along = np.array(position).reshape(-1, 3).T, np.array(axis).reshape(-1, 3).T
-    areas = np.array(area)
-    arrays = (points, along, np.array(outward), areas, np.sqrt(areas / math.pi))
+    arrays = (points, along, np.array(outward), np.array(area), np.array(radius))
     fields: dict[str, Any] = dict(zip(("position", "axis", "outward", "area", "radius"), map(jnp.asarray, arrays), strict=True))
     return Ends(**fields, label=tuple(label), labels=labels)
 

@@ -14,9 +14,12 @@ from jaxhydro.loads import LOADS
 ROOT = Path(__file__).resolve().parents[1]
 
 LAYERS = (  # a module imports from layers below its own
-    ("jaxhydro.environment", "jaxhydro.rotations"),
-    ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.runge_kutta"),
-    ("jaxhydro.hull", "jaxhydro.waves.sea"),
+    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel"),
+    ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta"),
+    ("jaxhydro.adams_bashforth", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
+    ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
+    ("jaxhydro.waves.sea", "jaxhydro.waves.second_order"),
+    ("jaxhydro.waves.irregular", "jaxhydro.waves.irregular_sea"),
     ("jaxhydro.waves",),
     ("jaxhydro.loads.base",),
     ("jaxhydro.loads.*",),
@@ -25,7 +28,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response"),
     ("jaxhydro.simulate",),
     # files in, files out: the edge
-    ("jaxhydro.declared",),
+    ("jaxhydro.declared", "jaxhydro.analysis"),
     ("jaxhydro.problems",),
     ("jaxhydro.body_schema", "jaxhydro.files"),
     ("jaxhydro.platform_schema",),
@@ -41,7 +44,7 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "end_inertia": {"spread_ends"},
     "strip_drag": {"REST"},
 }
-NUMERICS = [name for layer in LAYERS[:10] for name in layer]
+NUMERICS = [name for layer in LAYERS[:13] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
     "matplotlib": {"jaxhydro.plot", "calibration.plot"},
     "PIL": {"jaxhydro.plot"},

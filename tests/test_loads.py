@@ -1,5 +1,6 @@
 """Every load under one contract, and each against closed forms, quadrature or brute force done here in NumPy."""
 
+import dataclasses
 import math
 from functools import cache
 
@@ -80,7 +81,7 @@ def only(model: jh.Model, *kinds: type) -> jh.Model:
 
 
 def model_of(model: jh.Model, *loads: AbstractLoad) -> jh.Model:
-    return jh.Model(model.environment, model.body, model.hull, loads, model.wetting)
+    return dataclasses.replace(model, loads=loads)
 
 
 @eqx.filter_jit

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull, Wetted
@@ -61,6 +61,10 @@ class Instant(eqx.Module):
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""
         return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
+
+    def diffracting(self) -> Bool[Array, " n"]:
+        """Which strips diffract the waves."""
+        return jnp.array(self.hull.strips.diffracts) > 0
 
     def over_strips(self, elements: Float[Array, "2 e"]) -> Float[Array, "2 n"]:
         """What is given by direction and element, by direction and strip."""

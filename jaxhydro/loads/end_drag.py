@@ -1,5 +1,6 @@
 """Quadratic drag on the ends of columns."""
 
+import math
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -26,6 +27,6 @@ class EndDrag(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow, ends = now.end_flow, now.hull.ends
-        area = spread_ends(ends, self.values, "Cd") * ends.area * flow.wet
+        area = spread_ends(ends, self.values, "Cd") * (math.pi * ends.radius**2) * flow.wet
         force = 0.5 * now.environment.density * area * jnp.sqrt(flow.relative**2 + REST) * flow.relative
         return Action(end_force=force)

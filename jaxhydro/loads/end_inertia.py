@@ -13,15 +13,15 @@ from jaxhydro.strips import Ends
 def spread_ends(ends: Ends, values: dict[str, Float[Array, ""]], symbol: str) -> Float[Array, " m"]:
     """Coefficients `group.symbol_z` by end."""
     if not ends.labels:
-        return jnp.zeros(0)
+        return jnp.zeros(len(ends.label))
     return jnp.stack([jnp.asarray(values[f"{group}.{symbol}_z"]) for group in ends.labels])[jnp.asarray(ends.label)]
 
 
 class EndInertia(AbstractLoad):
     """f = rho Ca V (a_water - a_end) + p A, along the member, V = 2/3 pi r^3 half a sphere on the end.
 
-    Added mass of an end as in OpenFAST HydroDyn (Morison module, loads on member ends); p A is the dynamic
-    pressure on the end's area, the axial Froude-Krylov force. Only ends under water are loaded.
+    Added mass of an end as in OpenFAST HydroDyn (Morison module, loads on member ends); p A is the dynamic pressure on the
+    end's area, the axial Froude-Krylov force, which the ends of pontoons carry too. Only ends under water are loaded.
     """
 
     values: dict[str, Float[Array, ""]]

@@ -25,6 +25,10 @@ class StripInertia(AbstractLoad):
     in the relative form of Chakrabarti 1987, Hydrodynamics of Offshore Structures, chapter 6. The 1 is the Froude-Krylov
     force. Ca refers to the displaced volume V of the strip, in a circular and in a rectangular section alike. The strip's
     acceleration includes the centripetal part. Directions turn with the body.
+
+    On members that diffract the waves rho V times `Flow.diffracted` takes the place of rho V (1 + Ca) a_water: the
+    coefficient of MacCamy and Fuchs for every component, bound ones by their own wavenumber (2 for long ones, whatever Ca,
+    unless `Model.diffraction` is "ramp").
     """
 
     values: dict[str, Float[Array, ""]]
@@ -40,5 +44,10 @@ class StripInertia(AbstractLoad):
         mass = now.environment.density * spread(now.hull.elements, self.values, "Ca")
         if flow.acceleration is None:
             return Action(element_mass=mass)
-        with_froude_krylov = now.over_strips(now.environment.density + mass) * now.strip_shape.volume
-        return Action(strip_force=with_froude_krylov * flow.acceleration, element_mass=mass)
+        density, volume = now.environment.density, now.strip_shape.volume
+        if flow.diffracted is None:
+            return Action(strip_force=now.over_strips(density + mass) * volume * flow.acceleration, element_mass=mass)
+        force = jnp.where(now.diffracting(), density * flow.diffracted, now.over_strips(density + mass) * flow.acceleration)
+        if flow.tuned is not None:
+            force = force + now.over_strips(mass - density) * flow.tuned
+        return Action(strip_force=force * volume, element_mass=mass)

@@ -1,7 +1,40 @@
 """Seas and the flow that they make."""
 
+from jaxhydro.waves.components import Components, PlaneWaves, components
+from jaxhydro.waves.diffraction import maccamy_fuchs
 from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.flow import EndFlow, Flow, StripFlow
-from jaxhydro.waves.sea import AbstractSea, AirySea, StillWater, regular_wave
+from jaxhydro.waves.flow import Cylinders, EndFlow, Flow, StripFlow
+from jaxhydro.waves.irregular import record_components, separated_record, spectrum_components
+from jaxhydro.waves.irregular_sea import Clock, IrregularSea, SupportSea
+from jaxhydro.waves.sea import AbstractSea, StillWater, Stretching, WaveSea, regular_wave
+from jaxhydro.waves.second_order import bound_waves, elevation_spectrum
+from jaxhydro.waves.spectra import jonswap, pierson_moskowitz, tabulated, white_noise
 
-__all__ = ["AbstractSea", "AirySea", "EndFlow", "Flow", "StillWater", "StripFlow", "regular_wave", "wavenumber"]
+__all__ = [
+    "AbstractSea",
+    "Clock",
+    "Components",
+    "Cylinders",
+    "EndFlow",
+    "Flow",
+    "IrregularSea",
+    "PlaneWaves",
+    "StillWater",
+    "Stretching",
+    "StripFlow",
+    "SupportSea",
+    "WaveSea",
+    "bound_waves",
+    "components",
+    "elevation_spectrum",
+    "jonswap",
+    "maccamy_fuchs",
+    "pierson_moskowitz",
+    "record_components",
+    "regular_wave",
+    "separated_record",
+    "spectrum_components",
+    "tabulated",
+    "wavenumber",
+    "white_noise",
+]

@@ -4,22 +4,46 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 
+class Cylinders(eqx.Module):
+    """Which points are on vertical circular cylinders that diffract waves: radii (m), and by point an index into them or -1.
+
+    `lag` False drops the phase of the force, `bound` False the acceleration of bound waves, both as OpenFAST does. `ramp`
+    asks for `Flow.tuned`.
+    """
+
+    radius: Float[Array, " c"]
+    of: tuple[int, ...] = eqx.field(static=True)
+    lag: bool = eqx.field(static=True, default=True)
+    bound: bool = eqx.field(static=True, default=True)
+    ramp: bool = eqx.field(static=True, default=False)
+
+
 class Flow(eqx.Module):
-    """Water at points, along earth axes: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2)."""
+    """Water at points, along earth axes: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2).
+
+    `diffracted` (m/s2) is what the displaced mass of a cylinder is to be multiplied by for its excitation, the inertia
+    coefficient of MacCamy and Fuchs included: zero at points that are on none, None where there are none. `tuned` (m/s2) is
+    the acceleration in waves that are long for the cylinder, where it was asked for: see `diffraction.long_waves`.
+    """
 
     velocity: Float[Array, "3 n"]
     acceleration: Float[Array, "3 n"]
     pressure: Float[Array, " n"]
+    diffracted: Float[Array, "3 n"] | None = None
+    tuned: Float[Array, "3 n"] | None = None
 
 
 class StripFlow(eqx.Module):
     """Flow past strips along their two directions.
 
-    `relative` is the water's velocity less the strip's (m/s), `acceleration` the water's (m/s2; None in still water).
+    `relative` is the water's velocity less the strip's (m/s), `acceleration` the water's (m/s2; None in still water),
+    `diffracted` and `tuned` are those of `Flow`.
     """
 
     relative: Float[Array, "2 n"]
     acceleration: Float[Array, "2 n"] | None
+    diffracted: Float[Array, "2 n"] | None = None
+    tuned: Float[Array, "2 n"] | None = None
 
 
 class EndFlow(eqx.Module):

@@ -1,83 +1,146 @@
-"""Seas: what gives the flow at any time and place. `AbstractSea.flow` is all that the simulator asks for."""
+"""Seas: what gives the flow at any time and place. `AbstractSea.flow` and `surface` are all that the simulator asks for."""
 
 import abc
 import math
+from typing import Literal
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
-from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.flow import Flow
+from jaxhydro.waves.components import PlaneWaves, components
+from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
+from jaxhydro.waves.flow import Cylinders, Flow
+
+Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
 
 
 class AbstractSea(eqx.Module):
     """A sea. Points are in earth axes, the origin at still water level under or above the platform's rest position."""
 
     @abc.abstractmethod
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"]) -> Flow | None:
-        """Water at `points` (m) and `time` (s); None means still water everywhere, which costs nothing."""
+    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow | None:
+        """Water at `points` (m) and `time` (s); None means still water everywhere, which costs nothing.
+
+        `cylinders` says which of the points diffract the waves.
+        """
 
     @abc.abstractmethod
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         """Surface elevation (m) at horizontal `points` (m) and `time` (s), None in still water."""
 
+    def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
+        """The elevation up to which the platform is wetted; None: still water level."""
+        return self.elevation(time, points)
+
 
 class StillWater(AbstractSea):
     """No waves and no current."""
 
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"]) -> None:
+    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> None:
         return None
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> None:
         return None
 
 
-class AirySea(AbstractSea):
-    """First-order waves: eta = sum a cos(omega t - k (x cos heading + y sin heading) + phase).
+class WaveSea(AbstractSea):
+    """Plane waves of any order by direct summation: the reference for what is faster, and the sea of a few components.
 
-    Airy theory in finite depth (Dean and Dalrymple 1991, chapters 3 and 4), u = a omega cosh k(z+h) / sinh kh, with p/rho = a g
-    cosh k(z+h) / cosh kh. Kinematics are those at the point's own position; above still water they are those of z = 0.
-    Waves grow from rest over the first `ramp` seconds by a half cosine (0: at full height from the start).
+    Kinematics are those at the point's own position. Above still water they follow `stretching`: "vertical", those of z = 0;
+    "extrapolation", those of z = 0 and their slope (Rodenbusch and Forristall 1986 for first order); "wheeler", the profile
+    moved with the surface, that of z' = h (z - eta) / (h + eta) (Wheeler 1970, Journal of Petroleum Technology 22, 359-367);
+    "none": as vertical, and the platform is wetted to still water level. Waves grow from rest over the first `ramp` seconds
+    by a half cosine (0: at full height from the start). `bound` is what the waves bind at second order.
     """
 
-    amplitude: Float[Array, " w"]  # m
-    omega: Float[Array, " w"]  # rad/s
-    wavenumber: Float[Array, " w"]  # rad/m
-    heading: Float[Array, " w"]  # rad, where the waves travel to, from x towards y
-    phase: Float[Array, " w"]  # rad
+    waves: PlaneWaves
     environment: Environment
     ramp: Float[Array, ""] | float = 0.0
+    stretching: Stretching = eqx.field(static=True, default="vertical")
+    bound: PlaneWaves | None = None
 
-    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"]) -> Flow:
-        depth = self.environment.depth
-        k, omega = self.wavenumber[:, None], self.omega[:, None]
-        along = jnp.stack([jnp.cos(self.heading), jnp.sin(self.heading)], axis=1)
-        z = jnp.clip(points[2], -depth, 0.0)
-        angle = omega * time - self.wavenumber[:, None] * (along @ points[:2]) + self.phase[:, None]
-        amplitude = (self.amplitude * self.growth(time))[:, None]
-        cos, sin = amplitude * jnp.cos(angle), amplitude * jnp.sin(angle)
-        # cosh k(z+h) / cosh kh and sinh k(z+h) / cosh kh without overflow
-        down, up = jnp.exp(k * z), jnp.exp(-k * (z + 2 * depth))
-        scale = 1 / (1 + jnp.exp(-2 * k * depth))
-        c, s = (down + up) * scale, (down - up) * scale
-        gk = self.environment.gravity * k / omega  # = omega / tanh kh
-        u, w = gk * c * cos, -gk * s * sin
-        au, aw = -omega * gk * c * sin, -omega * gk * s * cos
-        velocity = jnp.concatenate([along.T @ u, w.sum(axis=0)[None]])
-        acceleration = jnp.concatenate([along.T @ au, aw.sum(axis=0)[None]])
-        return Flow(velocity, acceleration, self.environment.gravity * (c * cos).sum(axis=0))
+    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
+        level, above = stretched(self, self.stretching, time, points, self.environment.depth)
+        found = self._of(self.waves, time, points, level, above, cylinders)
+        if self.bound is None:
+            return found
+        other = self._of(self.bound, time, points, level, above, cylinders)
+        if cylinders is not None and not cylinders.bound:
+            other = Flow(other.velocity, other.acceleration, other.pressure, *(
+                None if x is None else jnp.zeros_like(x) for x in (other.diffracted, other.tuned)
+            ))
+        return jax.tree.map(jnp.add, found, other)
+
+    def _of(self, waves: PlaneWaves, time, points, level, above, cylinders: Cylinders | None) -> Flow:
+        square = (waves.vector**2).sum(axis=0)
+        k = jnp.where(square > 0, jnp.sqrt(jnp.where(square > 0, square, 1.0)), 0.0)
+        c, s = profiles(k[:, None], level, self.environment.depth)
+        if above is not None:
+            c, s = c + above * k[:, None] * s, s + above * k[:, None] * c
+        turn = self.growth(time) * jnp.exp(1j * (waves.omega[:, None] * time - waves.vector.T @ points[:2]))
+        along, upward = c * turn, s * turn
+        horizontal, rate = waves.vector * waves.potential, 1j * waves.omega
+        up = 1j * k * waves.potential
+        velocity = jnp.concatenate([(horizontal @ along).real, (up @ upward).real[None]])
+        acceleration = jnp.concatenate([((rate * horizontal) @ along).real, ((rate * up) @ upward).real[None]])
+        pressure = ((waves.omega * waves.potential) @ along).real
+        if cylinders is None or not cylinders.radius.size:
+            return Flow(velocity, acceleration, pressure)
+        of, ka = jnp.array(cylinders.of), k * cylinders.radius[:, None]
+
+        def excited(factors):
+            each = [((rate * factor * horizontal) @ along).real * (of == i) for i, factor in enumerate(factors)]
+            return jnp.concatenate([sum(each), jnp.zeros((1, of.size))])
+
+        factors = maccamy_fuchs(ka)
+        diffracted = excited(factors if cylinders.lag else jnp.abs(factors))
+        return Flow(velocity, acceleration, pressure, diffracted, excited(long_waves(ka)) if cylinders.ramp else None)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
-        along = jnp.stack([jnp.cos(self.heading), jnp.sin(self.heading)], axis=1)
-        angle = self.omega[:, None] * time - self.wavenumber[:, None] * (along @ points) + self.phase[:, None]
-        return self.growth(time) * (self.amplitude @ jnp.cos(angle))
+        every = self.waves if self.bound is None else self.waves + self.bound
+        angle = every.omega[:, None] * time - every.vector.T @ points
+        return self.growth(time) * (every.elevation @ jnp.exp(1j * angle)).real
+
+    def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
+        return None if self.stretching == "none" else self.elevation(time, points)
 
     def growth(self, time: Float[Array, "..."]) -> Float[Array, "..."]:
-        duration = jnp.asarray(self.ramp)
-        progress = jnp.clip(time / jnp.where(duration > 0, duration, 1.0), 0.0, 1.0)
-        return jnp.where(duration > 0, 0.5 - 0.5 * jnp.cos(math.pi * progress), 1.0)
+        """Share of their full height (-) that the waves have at a time (s)."""
+        return growth(time, self.ramp)
+
+
+def growth(time: Float[Array, "..."], ramp: Float[Array, ""] | float) -> Float[Array, "..."]:
+    """A half cosine from 0 to 1 over `ramp` (s)."""
+    duration = jnp.asarray(ramp)
+    progress = jnp.clip(time / jnp.where(duration > 0, duration, 1.0), 0.0, 1.0)
+    return jnp.where(duration > 0, 0.5 - 0.5 * jnp.cos(math.pi * progress), 1.0)
+
+
+def stretched(
+    sea: AbstractSea,
+    stretching: Stretching,
+    time: Float[Array, ""],
+    points: Float[Array, "3 n"],
+    depth: Float[Array, ""] | float,
+) -> tuple[Float[Array, " n"], Float[Array, " n"] | None]:
+    """Where the profiles are read (m, at most 0), and how far above it they are extrapolated (m; None: not)."""
+    z = points[2]
+    if stretching == "wheeler" and (eta := sea.elevation(time, points[:2])) is not None:
+        z = depth * (z - eta) / (depth + eta)
+    above = jnp.maximum(z, 0.0) if stretching == "extrapolation" else None
+    return jnp.clip(z, -depth, 0.0), above
+
+
+def profiles(
+    k: Float[Array, "w 1"], z: Float[Array, " n"], depth: Float[Array, ""] | float
+) -> tuple[Float[Array, "w n"], Float[Array, "w n"]]:
+    """cosh k(z+h) / cosh kh and sinh k(z+h) / cosh kh, without overflow."""
+    down, up = jnp.exp(k * z), jnp.exp(-k * (z + 2 * depth))
+    scale = 1 / (1 + jnp.exp(-2 * k * depth))
+    return (down + up) * scale, (down - up) * scale
 
 
 def regular_wave(
@@ -88,7 +151,8 @@ def regular_wave(
     heading: float = 0.0,
     phase: float = 0.0,
     ramp: float = 0.0,
-) -> AirySea:
+    stretching: Stretching = "vertical",
+) -> WaveSea:
     """A regular wave of first order: height (m, crest to trough), period (s), heading and phase (rad), ramp (s).
 
     Raises ValueError for a period or height out of range, or a wave steeper than breaking (Miche 1944: H k / (2 tanh kh) <=
@@ -96,10 +160,11 @@ def regular_wave(
     """
     if not (period > 0 and height >= 0):
         raise ValueError(f"a regular wave needs period > 0 s and height >= 0 m, found {period} s and {height} m")
-    omega = jnp.asarray([2 * math.pi / period])
-    k = wavenumber(omega, jnp.asarray(environment.depth), jnp.asarray(environment.gravity))
-    limit = 0.142 * 2 * math.pi / float(k[0]) * math.tanh(float(k[0]) * float(environment.depth))
+    one = components(
+        jnp.array([0.5 * height]), jnp.array([2 * math.pi / period]), environment, heading=heading, phase=phase
+    )
+    k = float(one.wavenumber[0])
+    limit = 0.142 * 2 * math.pi / k * math.tanh(k * float(environment.depth))
     if height > limit:
         raise ValueError(f"a wave of period {period:g} s breaks above a height of {limit:.3g} m, found {height:g} m")
-    one = jnp.ones(1)
-    return AirySea(0.5 * height * one, omega, k, heading * one, phase * one, environment, ramp)
+    return WaveSea(PlaneWaves.free(one, environment), environment, ramp, stretching)

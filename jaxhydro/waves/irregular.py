@@ -1,0 +1,236 @@
+"""Irregular seas: components drawn from a spectrum or taken from a measured elevation, on successive harmonics of a period.
+
+Builders run at the edge, once per sea and in NumPy; what they return goes into jitted code.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import Environment
+from jaxhydro.waves.components import Components, components
+from jaxhydro.waves.dispersion import wavenumber
+from jaxhydro.waves.second_order import elevation_spectrum
+
+JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
+TOLERANCE = 1e-4  # of the record in the band, by root mean square, that first and second order together may miss
+ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
+
+_second_order = eqx.filter_jit(elevation_spectrum)  # once per band and record length, not once per round
+
+
+def repeat_period(duration: float) -> float:
+    """The least number of whole seconds, not below `duration` (s), with no prime factor above 5: steps of 1, 0.5, 0.25, 0.2 or
+    0.1 s then make Fourier transforms of good lengths, and the sea does not repeat itself within `duration`."""
+    seconds = max(math.ceil(duration - 1e-9), 1)
+    while (60 ** seconds.bit_length()) % seconds:  # 60 = 2^2 3 5: divides a high power of it only if 2, 3 and 5 are all it has
+        seconds += 1
+    return float(seconds)
+
+
+def spectrum_components(
+    spectrum: Callable[[Float[Array, " w"]], Float[Array, " w"]],
+    duration: float,
+    environment: Environment,
+    *,
+    low: float,
+    cutoff: float,
+    seed: int,
+    amplitudes: str = "deterministic",
+    heading: float = 0.0,
+    spreading: float | None = None,
+) -> Components:
+    """A sea of spectrum S (rad/s -> m2 s/rad) that does not repeat itself within `duration` (s).
+
+    Harmonics of `repeat_period(duration)` from `low` to `cutoff` (Hz): what S has outside is cut, and nothing is scaled to make
+    up for it. Amplitudes sqrt(2 S d_omega), "deterministic", or "rayleigh", where a exp(i phase) is complex normal of that mean
+    square, as in nature: only then is the energy of a sea random (Tucker, Challenor and Carter 1984). Phases are uniform. With
+    `spreading`, the exponent s of `spectra.spreading`, each component has one heading drawn about `heading` (rad): with one
+    direction per frequency a mean over time is the same everywhere (Jefferys 1987).
+
+    Draws go by harmonic, phases, heights and headings each from their own stream of `seed`: another band or another option
+    leaves the others' draws as they are. Raises ValueError for a band, duration, option or spectrum out of range, and where
+    the sea's significant wave, of height 4 sqrt(m0) and zero-crossing period, would break (Miche 1944, as in `regular_wave`).
+    """
+    if not (duration > 0 and math.isfinite(duration)):
+        raise ValueError(f"duration is above 0 s, found {duration}")
+    if amplitudes not in ("deterministic", "rayleigh"):
+        raise ValueError(f"amplitudes are 'deterministic' or 'rayleigh', found {amplitudes!r}")
+    if spreading is not None and not (spreading >= 0 and math.isfinite(spreading)):
+        raise ValueError(f"the exponent of a spreading is not negative, found {spreading}")
+    period = repeat_period(duration)
+    first, last = _harmonics(low, cutoff, period)
+    step = 2 * math.pi / period
+    omega = step * np.arange(first, last + 1)
+    density = np.broadcast_to(np.asarray(spectrum(jnp.asarray(omega)), float), omega.shape)
+    if not (np.all(np.isfinite(density)) and np.all(density >= 0)):
+        raise ValueError("a spectrum is finite and not negative, found values that are not")
+    if not density.any():
+        raise ValueError(f"the spectrum has no energy from {low:g} to {cutoff:g} Hz; is its frequency in rad/s?")
+    _below_breaking(omega, density * step, environment)
+    phases, heights, directions = np.random.default_rng(seed).spawn(3)
+    drawn = slice(first - 1, last)  # of the harmonics 1, 2 ... last
+    square = 2 * density * step
+    if amplitudes == "rayleigh":
+        square = square * heights.exponential(size=last)[drawn]
+    headings = np.full(omega.shape, float(heading))
+    if spreading is not None:  # sin^2 of half the angle is beta distributed; which side is a matter of chance
+        sine = np.sqrt(directions.beta(0.5, spreading + 0.5, size=last))
+        headings = headings + (2 * np.arcsin(sine) * np.sign(directions.random(size=last) - 0.5))[drawn]
+    phase = phases.uniform(-math.pi, math.pi, size=last)[drawn]
+    return _components(np.sqrt(square), omega, environment, headings, phase, first)
+
+
+class Separation(NamedTuple):
+    """First-order waves of a record; root mean square by which the record, in the band, is missed by the orders asked for, as a
+    share of the record's; and rounds of the iteration."""
+
+    waves: Components
+    mismatch: float
+    rounds: int
+
+
+def record_components(
+    times: Float[np.ndarray, " t"],
+    elevation: Float[np.ndarray, " t"],
+    environment: Environment,
+    *,
+    position: tuple[float, float] = (0.0, 0.0),
+    heading: float = 0.0,
+    low: float,
+    cutoff: float,
+    order: int = 2,
+    tolerance: float = TOLERANCE,
+) -> Components:
+    """`separated_record`'s waves. Raises ValueError, too, where they miss the record by more than `tolerance`."""
+    found = separated_record(
+        times,
+        elevation,
+        environment,
+        position=position,
+        heading=heading,
+        low=low,
+        cutoff=cutoff,
+        order=order,
+        tolerance=tolerance,
+    )
+    if found.mismatch > tolerance:
+        raise ValueError(
+            f"first and second order miss {found.mismatch:.2%} of the record after {found.rounds} rounds, expected below "
+            f"{tolerance:.2%}: take a cutoff below {cutoff:g} Hz, a larger tolerance, or order 1"
+        )
+    return found.waves
+
+
+def separated_record(
+    times: Float[np.ndarray, " t"],
+    elevation: Float[np.ndarray, " t"],
+    environment: Environment,
+    *,
+    position: tuple[float, float] = (0.0, 0.0),
+    heading: float = 0.0,
+    low: float,
+    cutoff: float,
+    order: int = 2,
+    tolerance: float = TOLERANCE,
+) -> Separation:
+    """Long-crested first-order waves of an elevation (m) recorded at even `times` (s) by a gauge at `position` (m, earth axes).
+
+    Fourier components over the record's own length, n steps, less its mean, from `low` to `cutoff` (Hz); phases are those at
+    the origin, on the clock of `times`. No taper: at the gauge the components are the band-passed record at every sample, where
+    a taper would lower the waves near the ends. A step from the record's end to its start then rings, within about 1 / `low`
+    of the ends, and adds some (step / pi)^2 / (2 `low` length) of variance.
+
+    order 1: the record is taken for linear. order 2: eta1 = eta - eta2(eta1) within the band, iterated, by half steps where it
+    does not come nearer; the best found is returned, with its mismatch. The bound low-frequency set-down and the sums above
+    `cutoff` are not asked to match: they follow. Raises ValueError for uneven times, gaps, or a band out of range.
+    """
+    times, elevation = np.asarray(times, float), np.asarray(elevation, float)
+    step = sampling_interval(times)
+    if elevation.shape != times.shape:
+        raise ValueError(f"an elevation for each of {len(times)} times expected, found shape {elevation.shape}")
+    if not np.all(np.isfinite(elevation)):
+        raise ValueError(f"elevations are numbers, found {np.sum(~np.isfinite(elevation))} of {len(elevation)} that are not")
+    if order not in (1, 2):
+        raise ValueError(f"order is 1 or 2, found {order}")
+    if cutoff > 0.5 / step:
+        raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
+    count = len(times)
+    period = count * step
+    first, last = _harmonics(low, cutoff, period)
+    last = min(last, (count - 1) // 2)  # at half the sampling rate a phase is not seen
+    band = slice(first, last + 1)
+    omega = 2 * math.pi / period * np.arange(first, last + 1)
+    measured = 2 / count * np.fft.rfft(elevation - elevation.mean())[band] * np.exp(-1j * omega * times[0])
+    if not measured.any():
+        raise ValueError(f"the record has no waves from {low:g} to {cutoff:g} Hz")
+    k = np.asarray(wavenumber(jnp.asarray(omega), jnp.asarray(environment.depth), jnp.asarray(environment.gravity)))
+    to_origin = np.exp(1j * k * (position[0] * math.cos(heading) + position[1] * math.sin(heading)))
+
+    def waves(at_gauge: np.ndarray) -> Components:
+        a = at_gauge * to_origin
+        return _components(np.abs(a), omega, environment, np.full(omega.shape, float(heading)), np.angle(a), first)
+
+    if order == 1:
+        return Separation(waves(measured), 0.0, 0)
+    size = np.linalg.norm(measured)
+    best, trial, share, rounds = measured, measured, 1.0, 0
+    left, least = measured, np.inf  # what the best trial misses, and its norm over the record's
+    while rounds < ROUNDS and least > 0.1 * tolerance and share > 1e-3:
+        rounds += 1
+        second = np.asarray(_second_order(waves(trial), environment, position))[band]
+        missed = measured - trial - second
+        mismatch = float(np.linalg.norm(missed) / size)
+        if mismatch < least:
+            best, left, least = trial, missed, mismatch
+        else:
+            share *= 0.5  # gone too far: a shorter step from the best
+        trial = best + share * left
+    return Separation(waves(best), least, rounds)
+
+
+def sampling_interval(times: Float[np.ndarray, " t"]) -> float:
+    """The step (s) of evenly sampled, ascending times. Raises ValueError where they are not (to 1 % of a step)."""
+    times = np.asarray(times, float)
+    if times.ndim != 1 or len(times) < 4 or not np.all(np.isfinite(times)):
+        raise ValueError(f"four or more times (s) expected, found an array of shape {times.shape} or with gaps")
+    step = (times[-1] - times[0]) / (len(times) - 1)
+    worst = int(np.argmax(np.abs(times - times[0] - step * np.arange(len(times)))))
+    off = abs(times[worst] - times[0] - step * worst)
+    if not (step > 0 and off <= JITTER * step):
+        raise ValueError(f"evenly sampled times expected, found {times[worst]:g} s {off:g} s off an even step of {step:g} s")
+    return float(step)
+
+
+def _components(
+    amplitude: np.ndarray, omega: np.ndarray, environment: Environment, heading: np.ndarray, phase: np.ndarray, first: int
+) -> Components:
+    a, w, towards, angle = (jnp.asarray(x) for x in (amplitude, omega, heading, phase))
+    return components(a, w, environment, heading=towards, phase=angle, first=first)
+
+
+def _harmonics(low: float, cutoff: float, period: float) -> tuple[int, int]:
+    """First and last harmonic of a period (s) from `low` to `cutoff` (Hz), both included."""
+    if not (0 <= low < cutoff and math.isfinite(cutoff)):
+        raise ValueError(f"a band has 0 <= low < cutoff, found {low} and {cutoff} Hz")
+    first, last = max(math.ceil(low * period - 1e-6), 1), math.floor(cutoff * period + 1e-6)
+    if last < first:
+        raise ValueError(f"a band wider than one over the period, {period:g} s, expected, found {low:g} to {cutoff:g} Hz")
+    return first, last
+
+
+def _below_breaking(omega: np.ndarray, energy: np.ndarray, environment: Environment) -> None:
+    """Raises ValueError where a wave as high as the significant one, of the sea's zero-crossing period, breaks."""
+    m0 = energy.sum()
+    crossing = math.sqrt((omega**2 * energy).sum() / m0)
+    k = float(wavenumber(jnp.asarray(crossing), jnp.asarray(environment.depth), jnp.asarray(environment.gravity)))
+    limit = 0.142 * 2 * math.pi / k * math.tanh(k * float(environment.depth))
+    height, period = 4 * math.sqrt(m0), 2 * math.pi / crossing
+    if height > limit:
+        found = f"found a significant height of {height:.3g} m"
+        raise ValueError(f"waves of zero-crossing period {period:.3g} s break above {limit:.3g} m, {found}")

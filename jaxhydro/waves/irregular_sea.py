@@ -1,0 +1,287 @@
+"""Irregular seas of first and second order, evaluated fast at displaced positions."""
+
+import math
+from typing import Literal, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Complex, Float
+
+from jaxhydro.environment import Environment
+from jaxhydro.waves.components import Components, PlaneWaves
+from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
+from jaxhydro.waves.flow import Cylinders, Flow
+from jaxhydro.waves.sea import AbstractSea, Stretching, WaveSea, growth, stretched
+from jaxhydro.waves.second_order import bound_waves, elevation_spectrum, fold
+from jaxhydro.waves.supports import Box, field, supports, weights
+
+DIRECT = 64  # components up to which pairs are written out where a sea is evaluated directly
+EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
+
+
+class Clock(NamedTuple):
+    """When a time integration asks for the sea: at `nodes` (shares) of `steps` steps of `step` (s) from `start` (s).
+
+    The first `fine` steps are also asked for at their middle.
+    """
+
+    start: float
+    step: float
+    steps: int
+    nodes: tuple[float, ...]
+    fine: int = 0
+
+
+class IrregularSea(AbstractSea):
+    """Components on successive harmonics of a period, with what they bind at second order where `order` is 2.
+
+    Stretching and `ramp` (s) are those of `WaveSea`. `flow` and `elevation` are by direct summation, for few points and
+    components; simulations call `prepared`.
+    """
+
+    components: Components
+    environment: Environment
+    order: Literal[1, 2] = eqx.field(static=True, default=1)
+    stretching: Stretching = eqx.field(static=True, default="vertical")
+    ramp: float = 0.0
+
+    def direct(self) -> WaveSea:
+        """The same sea by direct summation: exact, N components and at second order N^2 pairs at every point."""
+        waves = PlaneWaves.free(self.components, self.environment)
+        bound = bound_waves(self.components, self.environment) if self.order == 2 else None
+        return WaveSea(waves, self.environment, self.ramp, self.stretching, bound)
+
+    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
+        return self.direct().flow(time, points, cylinders)
+
+    def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
+        return self.direct().elevation(time, points)
+
+    def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
+        return None if self.stretching == "none" else self.elevation(time, points)
+
+    def gauge(
+        self, times: Float[np.ndarray, " t"], position: tuple[float, float] = (0.0, 0.0), order: int | None = None
+    ) -> Float[np.ndarray, " t"]:
+        """Elevation (m) at `times` (s) at a fixed horizontal `position` (m), of all orders or of the `order` asked for."""
+        waves, times = self.components, np.asarray(times, float)
+        spectrum = np.zeros(2 * _last(waves) + 1, complex)
+        if order != 2:
+            first = _first(waves)
+            there = waves.complex_amplitude() * jnp.exp(-1j * (jnp.asarray(position) @ waves.vector()))
+            spectrum[first : first + waves.omega.size] = np.asarray(there)
+        if order != 1 and self.order == 2:
+            spectrum += np.asarray(_elevation(waves, self.environment, jnp.asarray(position, float)))
+        omega = 2 * math.pi / float(waves.period) * np.arange(spectrum.size)
+        parts = np.array_split(times, max(1, times.size * omega.size // 2_000_000))
+        found = np.concatenate([(np.exp(1j * np.outer(part, omega)) @ spectrum).real for part in parts])
+        return found * np.asarray(growth(jnp.asarray(times), self.ramp))
+
+    def prepared(
+        self, points: Float[np.ndarray, "3 p"], cylinders: Cylinders | None, clock: Clock, excursion: float = EXCURSION
+    ) -> "SupportSea":
+        """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock.
+
+        Raises ValueError for components of several headings, that are no harmonics, or where the clock's steps do not divide
+        the period or are too long for the highest frequency.
+        """
+        waves, depth = self.components, float(self.environment.depth)
+        heading = float(waves.heading[0])
+        if np.ptp(np.asarray(waves.heading)) > 1e-12:
+            raise ValueError("a short-crested sea is evaluated directly: it has no support wavenumbers of one heading")
+        along = np.array([math.cos(heading), math.sin(heading)])
+        place = along @ points[:2]
+        middle, half = 0.5 * (place.max() + place.min()), 0.5 * np.ptp(place) + excursion
+        low = max(-depth, float(points[2].min()) - 0.3 * excursion)
+        free = float(waves.wavenumber[-1])
+        box = Box(0.0, 5.0 * math.ceil(half / 5.0), 2.0 * math.floor(low / 2.0), depth)
+        found = supports(box, free, 2 * free if self.order == 2 else 0.0)
+        size = round(float(waves.period) / clock.step)
+        highest = _last(waves) * self.order
+        if abs(size * clock.step - float(waves.period)) > 1e-6 * clock.step:
+            raise ValueError(f"steps of {clock.step:g} s do not divide the sea's period of {float(waves.period):g} s")
+        if highest >= size:
+            raise ValueError(
+                f"a step of {clock.step:g} s is too long for waves of {highest / float(waves.period):.3g} Hz: "
+                f"below {float(waves.period) / highest:.3g} s expected"
+            )
+        radius = jnp.zeros(0) if cylinders is None else cylinders.radius
+        options = (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp)
+        arrays = (jnp.asarray(found.table), found.spacing, jnp.asarray(middle), jnp.asarray(along), radius)
+        spectrum = _spectrum(waves, self.environment, self.order, options, *arrays)
+        series, fine = _series(spectrum, 2 * math.pi / float(waves.period), clock.start, clock.step, size, clock)
+        return SupportSea(
+            self.environment,
+            series,
+            fine,
+            jnp.asarray(found.wavenumber),
+            jnp.asarray(middle),
+            jnp.asarray(along),
+            jnp.asarray(clock.start),
+            jnp.asarray(clock.step),
+            jnp.asarray(self.ramp, float),
+            clock.nodes,
+            self.stretching,
+            box.half,
+        )
+
+
+_elevation = eqx.filter_jit(elevation_spectrum)
+
+
+def _first(waves: Components) -> int:
+    if waves.first is None:
+        raise ValueError("the components are no successive harmonics of a period")
+    return waves.first
+
+
+def _last(waves: Components) -> int:
+    return _first(waves) + waves.omega.size - 1
+
+
+@eqx.filter_jit
+def _spectrum(
+    waves: Components,
+    environment: Environment,
+    order: int,
+    options: tuple[bool, bool, bool],
+    table: Float[Array, "g r"],
+    spacing: float,
+    middle: Float[Array, ""],
+    along: Float[Array, "2"],
+    radius: Float[Array, " c"],
+) -> Complex[Array, "b f r"]:
+    """Fourier amplitudes of the supports' quantities, by harmonic: see `SupportSea.series`."""
+    lag, diffract_bound, ramp = options
+    depth = environment.depth
+    # seen from the middle of the box
+    phase = waves.phase - waves.wavenumber * middle
+    waves = Components(waves.amplitude, waves.omega, waves.wavenumber, waves.heading, phase, waves.first)
+
+    def families(omega, vector, elevation, potential, diffracting):
+        k = along @ vector
+        rate = 1j * omega
+        speed = k * potential
+        upward = 1j * k * jnp.tanh(k * depth) * potential
+        factor = maccamy_fuchs(jnp.abs(k) * radius[:, None])
+        factor = factor if lag else jnp.abs(factor).astype(complex)
+        factor = jnp.concatenate([factor, long_waves(jnp.abs(k) * radius[:, None])]) if ramp else factor
+        excitation = factor * (rate * speed if diffracting else jnp.zeros_like(speed))
+        return jnp.concatenate(
+            [jnp.stack([speed, rate * speed, omega * potential]), excitation, jnp.stack([upward, rate * upward, elevation])]
+        ), jnp.abs(k)
+
+    def sums(omega, vector, elevation, potential):
+        rows, k = families(omega, vector, elevation, potential, diffract_bound)
+        w = weights(table, spacing, k)
+        both = jnp.concatenate([rows.real, rows.imag]) @ w
+        return both
+
+    first = _first(waves)
+    free = PlaneWaves.free(waves, environment)
+    rows, k = families(free.omega, free.vector, free.elevation, free.potential, True)
+    found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
+    if order == 1:
+        return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
+    real, imaginary = jnp.split(fold(waves, environment, sums), 2, axis=1)
+    return (real + 1j * imaginary).at[first : first + waves.omega.size].add(found)
+
+
+@eqx.filter_jit
+def _series(
+    spectrum: Complex[Array, "b f r"], fundamental: float, start: float, step: float, size: int, clock: Clock
+) -> tuple[Float[Array, "t s f 2*r"], Float[Array, "h f 2*r"] | None]:
+    """Real and imaginary parts on the clock, by inverse Fourier transforms, one for each node of the steps."""
+    omega = fundamental * jnp.arange(spectrum.shape[0])
+    kept = clock.steps + 1
+
+    def at(node: Float[Array, ""]) -> Float[Array, "t f 2*r"]:
+        shifted = spectrum * jnp.exp(1j * omega * (start + node * step))[:, None, None]
+
+        def one(rows):  # (b, r)
+            values = jnp.fft.ifft(rows, n=size, axis=0) * size
+            values = jnp.concatenate([values] * math.ceil(kept / size))[:kept] if kept > size else values[:kept]
+            return jnp.concatenate([values.real, values.imag], axis=1)
+
+        return jnp.swapaxes(jax.lax.map(one, jnp.swapaxes(shifted, 0, 1)), 0, 1)
+
+    series = jnp.stack([at(jnp.asarray(node)) for node in clock.nodes], axis=1)
+    if not clock.fine:
+        return series, None
+    times = start + step * (0.5 + jnp.arange(clock.fine))
+    halves = jnp.einsum("tb,bfr->tfr", jnp.exp(1j * omega * times[:, None]), spectrum)
+    return series, jnp.concatenate([halves.real, halves.imag], axis=2)
+
+
+class SupportSea(AbstractSea):
+    """An irregular sea of one heading for one hull and one clock: see `supports` for how it works.
+
+    `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: horizontal velocity and
+    acceleration, pressure over density, what cylinders of each radius are excited by (and `Flow.tuned` for each), vertical
+    velocity and acceleration, and elevation. Only times of the clock may be asked for.
+    """
+
+    environment: Environment
+    series: Float[Array, "t s f 2*r"]
+    fine: Float[Array, "h f 2*r"] | None
+    wavenumber: Float[Array, " r"]
+    middle: Float[Array, ""]  # m, of the box along the waves
+    along: Float[Array, "2"]
+    start: Float[Array, ""]
+    step: Float[Array, ""]
+    ramp: Float[Array, ""]
+    nodes: tuple[float, ...] = eqx.field(static=True)
+    stretching: Stretching = eqx.field(static=True)
+    half: float = eqx.field(static=True)  # m, of the box
+
+    def rows(self, time: Float[Array, ""]) -> Float[Array, "f 2*r"]:
+        """Amplitudes of the supports at a time of the clock."""
+        place = (time - self.start) / self.step
+        whole = jnp.floor(place + 1e-6)
+        share = place - whole
+        node = jnp.argmin(jnp.abs(share - jnp.array(self.nodes)))
+        index = jnp.clip(whole.astype(int), 0, self.series.shape[0] - 1)
+        found = self.series[index, node]
+        if self.fine is not None:
+            between = jnp.abs(share - 0.5) < 0.25
+            found = jnp.where(between, self.fine[jnp.minimum(index, self.fine.shape[0] - 1)], found)
+        return found * growth(time, self.ramp)
+
+    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
+        rows, k, depth = self.rows(time), self.wavenumber, jnp.asarray(self.environment.depth)
+        families = rows.shape[0] - 6
+        even, odd = rows[: 3 + families], rows[3 + families : 5 + families]
+        place = self.along @ points[:2] - self.middle
+        level, above = stretched(self, self.stretching, time, points, depth)
+        if above is None:
+            along, up = field(even, odd, k, place, level, depth)
+        else:
+            tanh = jnp.tanh(jnp.concatenate([k, k]) * depth)
+            slope = jnp.concatenate([k, k]) * tanh
+            along, up = field(
+                jnp.concatenate([even, odd * slope / tanh**2]), jnp.concatenate([odd, even * slope]), k, place, level, depth
+            )
+            along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
+        direction = self.along[:, None]
+        excited: list[Array] = []
+        if cylinders is not None and families:
+            of, radii = jnp.array(cylinders.of), cylinders.radius.size
+            for first in range(3, 3 + families, radii):
+                each = sum(jnp.where(of == i, along[first + i], 0.0) for i in range(radii))
+                excited.append(jnp.concatenate([direction * each, jnp.zeros((1, of.size))]))
+        return Flow(
+            jnp.concatenate([direction * along[0], up[:1]]),
+            jnp.concatenate([direction * along[1], up[1:2]]),
+            along[2],
+            *excited,
+        )
+
+    def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
+        place = self.along @ points - self.middle
+        rows, still = self.rows(time)[-1:], jnp.zeros_like(place)
+        return field(rows, rows[:0], self.wavenumber, place, still, jnp.asarray(self.environment.depth))[0][0]
+
+    def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
+        return None if self.stretching == "none" else self.elevation(time, points)

@@ -1,0 +1,176 @@
+"""A few support wavenumbers in place of all components: what makes a sea cheap at displaced positions.
+
+Over the box that a platform can occupy, exp(-ikx) with its profile over depth is a function of k of low numerical rank. So
+the field of every wavenumber is a combination, with weights w_r(k), of the fields of R of them, and N components collapse, once
+per sea, to R whose amplitudes are functions of time: sum over n of w_r(k_n) a_n exp(i omega_n t).
+"""
+
+import functools
+import math
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+POWER = 0.75  # supports are Chebyshev points in k^POWER: denser where profiles change most
+TOLERANCE = 1e-5  # of a free wave's largest value, that its field may be missed by in the box
+BOUND = 30.0  # times as much for bound waves shorter than all free ones
+RIDGE = 1e-10  # of the largest singular value: keeps weights small without losing accuracy
+MOST = 96
+
+
+class Box(NamedTuple):
+    """Where a field is wanted: along the waves from `middle` - `half` to `middle` + `half`, and from z = `low` to 0 (m)."""
+
+    middle: float
+    half: float
+    low: float
+    depth: float
+
+
+class Supports(NamedTuple):
+    """Support wavenumbers (rad/m), weights w_r(k) on an even grid of wavenumbers from 0, and the largest error (-)."""
+
+    wavenumber: np.ndarray  # (r,)
+    table: np.ndarray  # (g, r)
+    spacing: float
+    error: float
+
+
+@functools.lru_cache(maxsize=64)
+def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLERANCE) -> Supports:
+    """The fewest supports in a box for free waves of up to `free` (rad/m) and bound ones of up to `bound`.
+
+    Weights are the least-squares solution for cosh k(z+h) / cosh kh and sinh k(z+h) / sinh kh, times cos kx and sin kx, over a
+    grid on the box. Bound waves shorter than all free ones, which are low, may be missed by `BOUND` times as much. Raises
+    ValueError where `MOST` supports do not do: a box of many wavelengths.
+    """
+    highest = max(free, bound)
+    spacing = 0.1 / box.half
+    grid = spacing * np.arange(-1, math.ceil(highest / spacing) + 3)
+    points = max(24, math.ceil(1.5 * highest * box.half / math.pi) + 12)
+    x = box.half * np.sin(0.5 * np.pi * (np.arange(points) + 0.5) / points)  # denser at the edge
+    z = box.low * (0.5 - 0.5 * np.cos(np.pi * (np.arange(8) + 0.5) / 8)) ** 2  # denser at the surface
+    wanted = _fields(np.abs(grid), x, z, box.depth)
+    allowed = np.where(grid <= free, tolerance, BOUND * tolerance)
+    inside = (grid >= 0) & (grid <= highest)
+    count = math.ceil((0.5 * highest * box.half + 8) / 4) * 4
+    while count <= MOST:
+        chebyshev = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
+        k = highest * (0.5 * (1 + chebyshev)) ** (1 / POWER)
+        basis = _fields(k, x, z, box.depth)
+        u, s, vt = np.linalg.svd(basis, full_matrices=False)
+        table = (vt.T * (s / (s**2 + (RIDGE * s[0]) ** 2))) @ (u.T @ wanted)
+        error = np.abs(basis @ table - wanted).max(axis=0)
+        if (error <= allowed)[inside].all():
+            return Supports(k, table.T.copy(), spacing, float(error[inside & (grid <= free)].max()))
+        count += 4
+    raise ValueError(
+        f"waves as short as {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MOST} support "
+        f"wavenumbers: cut the sea off at a lower frequency"
+    )
+
+
+def _fields(k: np.ndarray, x: np.ndarray, z: np.ndarray, depth: float) -> np.ndarray:
+    """Real and imaginary parts of both profiles times exp(-ikx) at all points: (4 n, k). x and -x have the same weights."""
+    phase = k[None] * x[:, None]
+    down, up = np.exp(k * z[:, None]), np.exp(-k * (z[:, None] + 2 * depth))
+    cosh = (down + up) / (1 + np.exp(-2 * k * depth))
+    kd = np.maximum(k * depth, 1e-9)
+    sinh = np.where(k * depth > 1e-6, (down - up) / -np.expm1(-2 * kd), 1 + z[:, None] / depth)
+    waves = (np.cos(phase), np.sin(phase))
+    return np.concatenate(
+        [(wave[:, None] * profile[None]).reshape(-1, k.size) for wave in waves for profile in (cosh, sinh)]
+    )
+
+
+def weights(table: Float[Array, "g r"], spacing: float, k: Float[Array, " n"]) -> Float[Array, "n r"]:
+    """w_r(k) (-) by cubic interpolation in the table."""
+    place = k / spacing
+    base = jnp.clip(jnp.floor(place).astype(int), 0, table.shape[0] - 4)
+    t = (place - base)[:, None]
+    # the table begins one step below zero
+    near = [
+        -t * (t - 1) * (t - 2) / 6,
+        (t + 1) * (t - 1) * (t - 2) / 2,
+        -(t + 1) * t * (t - 2) / 2,
+        (t + 1) * t * (t - 1) / 6,
+    ]
+    return near[0] * table[base] + sum(one * table[base + i] for i, one in enumerate(near[1:], 1))
+
+
+def cosine_sine(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+    """cos x and sin x to 1e-13 for |x| up to some 1000, in arithmetic that vectorises: five times as fast as XLA's in float64.
+
+    Reduction to |r| <= pi/4 and Taylor's series (Abramowitz and Stegun 1964, 4.3.65 and 4.3.66).
+    """
+    quarter = jnp.round(x * (2 / math.pi))
+    r = (x - quarter * (math.pi / 2)) - quarter * 6.123233995736766e-17  # pi/2 less its float64
+    square = r * r
+    sine = r * _taylor(square, 15)
+    cosine = _taylor(square, 16)
+    turn = quarter - 4 * jnp.floor(0.25 * quarter)
+    odd = (turn == 1) | (turn == 3)
+    c, s = jnp.where(odd, sine, cosine), jnp.where(odd, cosine, sine)
+    return jnp.where((turn == 1) | (turn == 2), -c, c), jnp.where(turn >= 2, -s, s)
+
+
+def _taylor(square: Float[Array, "..."], last: int) -> Float[Array, "..."]:
+    """1 - x^2 / (a a+1) (1 - ...) up to x^last, the terms of a sine over x where `last` is odd."""
+    total = jnp.ones_like(square)
+    for power in range(last, 1, -2):
+        total = 1 - square * total / (power * (power - 1))
+    return total
+
+
+@jax.custom_jvp
+def field(
+    even: Float[Array, "p 2*r"],
+    odd: Float[Array, "q 2*r"],
+    k: Float[Array, " r"],
+    x: Float[Array, " n"],
+    z: Float[Array, " n"],
+    depth: Float[Array, ""],
+) -> tuple[Float[Array, "p n"], Float[Array, "q n"]]:
+    """Re sum c_r P(k_r, z) exp(-i k_r x) at points, with P cosh k(z+h) / cosh kh for `even`, sinh k(z+h) / sinh kh for `odd`.
+
+    Amplitudes are real parts, then imaginary ones. Derivatives by x and z are worked out once for all directions asked for.
+    """
+    cosh, sinh = _terms(k, x, z, depth)
+    return even @ cosh, odd @ sinh
+
+
+def _terms(k, x, z, depth) -> tuple[Float[Array, "2*r n"], Float[Array, "2*r n"]]:
+    cosine, sine = cosine_sine(k[:, None] * x)
+    down = jnp.exp(k[:, None] * z)
+    # barriers: else XLA works them out anew for every product that reads them
+    cosine, sine, down = jax.lax.optimization_barrier((cosine, sine, down))
+    fade = jnp.exp(-2 * k * depth)[:, None]
+    up = fade / down
+    cosh, sinh = (down + up) / (1 + fade), (down - up) / (1 - fade)
+    return jnp.concatenate([cosh * cosine, cosh * sine]), jnp.concatenate([sinh * cosine, sinh * sine])
+
+
+@field.defjvp
+def _field_jvp(primals, tangents):
+    even, odd, k, x, z, depth = primals
+    d_even, d_odd, _, d_x, d_z, _ = tangents
+    cosh, sinh = jax.lax.optimization_barrier(_terms(k, x, z, depth))
+    size = k.shape[0]
+    twice = jnp.concatenate([k, k])[:, None]
+    tanh = jnp.tanh(twice * depth)
+
+    def slopes(amplitude, terms, other, ratio):
+        turned = jnp.concatenate([amplitude[:, size:], -amplitude[:, :size]], axis=1)  # d/dx cos kx = -k sin kx
+        return (turned * twice[:, 0]) @ terms, amplitude @ (other * (twice * ratio))
+
+    # d/dz of cosh/cosh kh is k tanh kh times sinh/sinh kh, and the other way round
+    even_x, even_z = slopes(even, cosh, sinh, tanh)
+    odd_x, odd_z = slopes(odd, sinh, cosh, 1 / tanh)
+    even_x, even_z, odd_x, odd_z = jax.lax.optimization_barrier((even_x, even_z, odd_x, odd_z))
+    return (
+        (even @ cosh, odd @ sinh),
+        (even_x * d_x + even_z * d_z + d_even @ cosh, odd_x * d_x + odd_z * d_z + d_odd @ sinh),
+    )

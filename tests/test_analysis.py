@@ -1,0 +1,228 @@
+"""Analysis of records against signals whose spectra, transfer functions and statistics are known in closed form."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy import signal
+
+from jaxhydro.analysis import (
+    BANDS,
+    PowerSpectrum,
+    band_integral,
+    bands,
+    exceedance,
+    power_spectrum,
+    statistics,
+    transfer_function,
+)
+
+RNG = np.random.default_rng(20)
+STEP = 0.25
+TIMES = 100.0 + STEP * np.arange(4 * 3600)  # an hour
+NOISE = RNG.normal(size=TIMES.size)
+
+
+def narrow(count: int, seed: int, width: float) -> np.ndarray:
+    """A periodic Gaussian process of about unit variance, white within `width` (Hz) of 0.1 Hz and nothing elsewhere."""
+    frequency = np.fft.rfftfreq(count, STEP)
+    inside = np.abs(frequency - 0.1) < width
+    draws = np.random.default_rng(seed).normal(size=(2, inside.sum()))
+    spectrum = np.zeros(frequency.shape, complex)
+    spectrum[inside] = (draws[0] + 1j * draws[1]) * count / (2 * math.sqrt(inside.sum()))
+    return np.fft.irfft(spectrum, count)
+
+
+# spectra and bands
+
+
+@pytest.mark.parametrize("count", [14400, 14399])
+def test_parseval(count: int) -> None:
+    """The raw periodogram of the whole record integrates to its variance exactly: even and odd lengths."""
+    time, x = TIMES[:count], NOISE[:count] + 5.0
+    spectrum = power_spectrum(time, x, segment=3600.0)
+    assert spectrum.segments == 1 and spectrum.resolution == pytest.approx(1 / (count * STEP))
+    assert spectrum.density.sum() * spectrum.frequency[1] == pytest.approx(x.var(), rel=1e-12)
+    assert band_integral(spectrum, 0.0, 2.0) == pytest.approx(x.var(), rel=1e-12)
+    pieces = [band_integral(spectrum, a, a + 0.1) for a in np.arange(20) * 0.1]
+    assert sum(pieces) == pytest.approx(x.var(), rel=1e-12)
+
+
+def test_white_noise_is_flat() -> None:
+    """Density 2 sigma^2 dt; the scatter of a mean over 6 half-overlapped Hann segments is about 1/sqrt(6 * 36/19 / 2)."""
+    spectrum = power_spectrum(TIMES, NOISE)
+    assert spectrum.segments == 6 and spectrum.frequency[1] == pytest.approx(0.001)
+    assert spectrum.resolution == pytest.approx(0.0015, rel=1e-3)  # Hann: 1.5 bins
+    level = spectrum.density[5:-5]
+    assert level.mean() == pytest.approx(2 * STEP, rel=0.03)
+    assert level.std() / level.mean() == pytest.approx(0.42, rel=0.1)
+
+
+def test_a_short_record_has_one_segment() -> None:
+    """Shorter than the default segment: its raw periodogram."""
+    spectrum = power_spectrum(TIMES[:1000], NOISE[:1000])
+    assert spectrum.segments == 1
+    assert band_integral(spectrum, 0.0, 2.0) == pytest.approx(NOISE[:1000].var(), rel=1e-12)
+
+
+@pytest.mark.parametrize("segment, error", [(None, 1e-3), (300.0, 2e-3), (3600.0, 1e-3)])
+def test_energy_of_a_sine(segment: float | None, error: float) -> None:
+    """a^2/2 in the band that holds it, next to nothing in another."""
+    x = 3.0 * np.cos(2 * math.pi * 0.1 * TIMES + 0.4) + 7.0
+    spectrum = power_spectrum(TIMES, x, segment=segment)
+    assert band_integral(spectrum, 0.06, 0.15) == pytest.approx(4.5, rel=error)
+    assert band_integral(spectrum, 0.02, 0.055) < 1e-4
+
+
+def test_fractions_of_cells() -> None:
+    """A constant density: the integral is the width, wherever the limits fall among the frequencies."""
+    spectrum = PowerSpectrum(np.arange(101) * 0.01, np.full(101, 2.0), 1, 0.01)
+    for low, high in ((0.1, 0.3), (0.103, 0.1047), (0.0951, 0.5555), (0.02, 0.9)):
+        assert band_integral(spectrum, low, high) == pytest.approx(2 * (high - low), rel=1e-12)
+
+
+def test_bands_of_the_paper() -> None:
+    """Surge 0.005 to 0.025, heave and pitch 0.02 to 0.055, waves 0.06 or, in the higher sea, 0.05 to 0.15 Hz."""
+    assert bands("surge", 8.96) == {"low_frequency": (0.005, 0.025), "wave_frequency": (0.06, 0.15)}
+    assert bands("heave", 8.96) == bands("pitch", 8.96) == bands("roll", 8.96)
+    assert bands("pitch", 8.96)["low_frequency"] == BANDS["heave"] == (0.02, 0.055)
+    assert bands("surge", 12.8)["wave_frequency"] == (0.05, 0.15)
+
+
+# transfer functions
+
+
+def oscillator() -> tuple[np.ndarray, np.ndarray, float, float]:
+    """White force on x'' + 2 zeta w x' + w^2 x = w^2 f, solved exactly for a force linear between samples."""
+    zeta, omega = 0.15, 2 * math.pi * 0.12
+    system = signal.StateSpace([[0, 1], [-(omega**2), -2 * zeta * omega]], [[0], [omega**2]], [[1, 0]], [[0]])
+    force = signal.sosfiltfilt(signal.butter(6, 0.5, fs=1 / STEP, output="sos"), NOISE)
+    _, motion, _ = signal.lsim(system, force, TIMES - TIMES[0], interp=True)
+    return force, motion, zeta, omega
+
+
+def test_response_of_a_linear_oscillator() -> None:
+    """1/(1 - r^2 + 2 i zeta r): amplitude and phase (a lag is negative), coherence 1, from one hour."""
+    force, motion, zeta, omega = oscillator()
+    found = transfer_function(TIMES, force, motion, segment=400.0)
+    near = (found.frequency > 0.02) & (found.frequency < 0.3)
+    r = 2 * math.pi * found.frequency[near] / omega
+    exact = 1 / (1 - r**2 + 2j * zeta * r)
+    measured = found.amplitude[near] * np.exp(1j * found.phase[near])
+    assert np.abs(measured - exact).max() < 0.03 * np.abs(exact).max()
+    assert found.coherence[near].min() > 0.99
+    assert np.all(found.phase[near] < 0)
+
+
+def test_noise_on_the_motion_lowers_coherence_and_not_the_estimate() -> None:
+    """H1 is unbiased by noise on the motion; coherence falls to S_x/(S_x + S_n)."""
+    force, motion, zeta, omega = oscillator()
+    noise = np.random.default_rng(8).normal(size=TIMES.size) * 0.4
+    found = transfer_function(TIMES, force, motion + noise, segment=100.0)
+    near = (found.frequency > 0.05) & (found.frequency < 0.1)
+    r = 2 * math.pi * found.frequency[near] / omega
+    exact = 1 / np.abs(1 - r**2 + 2j * zeta * r)
+    assert (found.amplitude[near] / exact).mean() == pytest.approx(1.0, abs=0.05)
+    share = exact**2 / (exact**2 + 0.4**2)  # force and noise are white, of density 2 dt and 0.4^2 2 dt
+    assert found.coherence[near].mean() == pytest.approx(share.mean(), abs=0.05)
+    unrelated = transfer_function(TIMES, force, noise, segment=100.0)
+    assert unrelated.coherence[near].mean() < 0.06
+
+
+def test_a_wave_that_lags() -> None:
+    """Motion a quarter of a period later than the wave: phase -pi/2. No wave at all: NaN, not a number made up."""
+    wave = narrow(TIMES.size, 1, 0.004)
+    motion = 2.0 * np.roll(wave, 10)
+    found = transfer_function(TIMES, wave, motion)
+    peak = np.argmin(np.abs(found.frequency - 0.1))
+    assert found.amplitude[peak] == pytest.approx(2.0, rel=0.02)
+    assert found.phase[peak] == pytest.approx(-math.pi / 2, abs=0.03)
+    assert np.all(np.isnan(transfer_function(TIMES, 0 * wave, motion).amplitude))
+
+
+# statistics
+
+
+def test_statistics_of_a_sine() -> None:
+    """Mean, a/sqrt(2), extremes, skewness 0, kurtosis 3/2, its period, its double amplitude."""
+    x = 3.0 * np.cos(2 * math.pi * TIMES / 8.0) + 7.0
+    found = statistics(TIMES, x)
+    assert_allclose(found, [7.0, 3 / math.sqrt(2), 4.0, 10.0, 0.0, 1.5, 8.0, 6.0], rtol=1e-6, atol=1e-9)
+
+
+def test_statistics_of_a_gaussian_process() -> None:
+    """Skewness 0, kurtosis 3, a zero-crossing period of 1/frequency, and a significant double amplitude of 4.004 sigma."""
+    times = STEP * np.arange(4 * 3600 * 30)
+    found = statistics(times, narrow(times.size, 2, 0.01))
+    assert abs(found.skewness) < 0.05 and found.kurtosis == pytest.approx(3.0, abs=0.2)
+    assert found.zero_crossing_period == pytest.approx(10.0, rel=0.01)
+    assert found.significant_double_amplitude == pytest.approx(4.004 * found.standard_deviation, rel=0.02)
+
+
+def test_statistics_of_a_line() -> None:
+    """No crossings: no waves; nothing varies: no shape."""
+    found = statistics(TIMES, TIMES)
+    assert found.skewness == pytest.approx(0.0, abs=1e-9) and found.kurtosis == pytest.approx(1.8, rel=1e-3)
+    assert math.isnan(found.zero_crossing_period) and math.isnan(found.significant_double_amplitude)
+    still = statistics(TIMES, np.full(TIMES.size, 2.0))
+    assert still.mean == 2.0 and still.standard_deviation == 0.0 and math.isnan(still.kurtosis)
+    assert exceedance(TIMES, TIMES).amplitude.size == 0
+
+
+def test_exceedance_of_a_narrow_band_process() -> None:
+    """Rayleigh: the share of peaks above each level within the scatter of 10,800 peaks; plotting position i/(n + 1)."""
+    times = STEP * np.arange(4 * 3600 * 30)
+    found = exceedance(times, narrow(times.size, 3, 0.01))
+    n = len(found.amplitude)
+    assert n == pytest.approx(10800, rel=0.01)
+    assert np.all(np.diff(found.amplitude) >= 0) and found.amplitude[0] > 0
+    assert_allclose(found.probability[[0, -1]], [n / (n + 1), 1 / (n + 1)])
+    # neighbouring peaks are alike: of independent ones there are as many as the band has frequencies, a fifth
+    assert np.abs(found.probability - found.rayleigh).max() < 1.6 / math.sqrt(n / 5)
+    level = np.searchsorted(found.amplitude, 2.0)
+    assert found.probability[level] == pytest.approx(math.exp(-2.0), rel=0.1)
+
+
+def test_peaks_of_two_waves() -> None:
+    """Crests of 1 and 3 m in turn, troughs of 2 m: one peak for each upward crossing."""
+    x = np.tile(
+        np.concatenate(
+            [
+                [1.0, 3.0][i] * np.sin(np.linspace(0, math.pi, 21)[:-1])
+                if j == 0
+                else -2.0 * np.sin(np.linspace(0, math.pi, 21)[:-1])
+                for i in (0, 1)
+                for j in (0, 1)
+            ]
+        ),
+        20,
+    )
+    found = exceedance(np.arange(x.size), x)
+    assert_allclose(np.unique(found.amplitude.round(9)), [1.0, 3.0])
+    assert_allclose(np.unique(exceedance(np.arange(x.size), -x).amplitude.round(9)), [2.0])
+
+
+# what cannot be
+
+
+@pytest.mark.parametrize(
+    "call, message",
+    [
+        (lambda: power_spectrum(np.delete(TIMES, 5), NOISE[1:]), "evenly sampled times expected"),
+        (lambda: statistics(np.delete(TIMES, 5), NOISE[1:]), "evenly sampled times expected"),
+        (lambda: power_spectrum(TIMES, NOISE[1:]), "a value for each of 14400 times expected"),
+        (lambda: power_spectrum(TIMES, np.where(TIMES > 3690, np.nan, 1.0)), "values are numbers, found 39 of 14400"),
+        (lambda: power_spectrum(TIMES, NOISE, segment=0.5), "a segment of 1 s or more, .* found 0.5 s"),
+        (lambda: power_spectrum(TIMES, NOISE, overlap=1.0), "0 <= overlap < 1 expected, found .* and 1"),
+        (lambda: transfer_function(TIMES, NOISE, NOISE, segment=3000.0), "two segments or more expected"),
+        (lambda: transfer_function(TIMES, NOISE, NOISE[1:]), "a value for each"),
+        (lambda: band_integral(power_spectrum(TIMES, NOISE), 0.2, 0.1), "0 <= low < high, found 0.2 and 0.1 Hz"),
+        (lambda: bands("yaw", 9.0), "found 'yaw'"),
+        (lambda: bands("wave", 9.0), "found 'wave'"),
+        (lambda: bands("surge", 0.0), "peak_period is above 0 s, found 0"),
+    ],
+)
+def test_errors_say_what_was_expected(call, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        call()
