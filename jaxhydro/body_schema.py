@@ -110,7 +110,7 @@ Shape = Annotated[
 class Member(Schema):
     """A cylinder or box from rA to rB, m, in RAFT's words: d its diameter or [width, height], m, or one of these at
     each of `stations`; heading, deg, turns copies about z; gamma, deg, twists a box about its axis; `elements` load
-    elements; maccamy_fuchs None: as the member's position says."""
+    elements of `points` Gauss points each; maccamy_fuchs None: as the member's position says."""
 
     name: Text
     group: Text = ""
@@ -122,6 +122,7 @@ class Member(Schema):
     heading: Annotated[tuple[Number, ...], Field(min_length=1), BeforeValidator(_as_list)] = (0.0,)
     gamma: Number = 0.0
     elements: Count | None = None
+    points: Count = 2
     maccamy_fuchs: Flag | None = None
 
     @model_validator(mode="before")
@@ -142,6 +143,8 @@ class Member(Schema):
             yield Problem("rB", "an end B that is not end A", shown(self.rB))
         if self.shape == "rect" and self.maccamy_fuchs:
             yield Problem("maccamy_fuchs", "false for a rectangular member", "true", "The law is for circular ones.")
+        if self.elements is None and "points" in self.model_fields_set:
+            yield Problem("points", "`elements` with it", "none", "Without, strips are chosen by length.")
         if self.stations is not None and any(b <= a for a, b in zip(self.stations, self.stations[1:])):
             step = "A step in d is two stations a millimetre apart." if len(set(self.stations)) > 1 else ""
             yield Problem("stations", "numbers in ascending order", shown(self.stations), step)

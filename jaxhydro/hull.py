@@ -52,7 +52,8 @@ class Hull(eqx.Module):
         radii = sorted({r for r in strips.diffracts if r > 0})
         index = tuple(radii.index(r) if r > 0 else -1 for r in strips.diffracts)
         cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * len(tips.area)))
-        place, which = np.unique(_waterline(elements, tips).round(9), axis=1, return_inverse=True)
+        gauges = np.concatenate([elements.gauge, tips.gauge], axis=1).round(9)
+        place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
         matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
         return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices)
@@ -114,17 +115,6 @@ class Hull(eqx.Module):
         under = SMOOTH * (ramp(low / SMOOTH) - ramp((low - rise) / SMOOTH))
         wet = under / rise * elements.length
         return Wetted(wet, jnp.where(column, wet, elements.length))
-
-
-def _waterline(elements: Elements, ends: Ends) -> np.ndarray:
-    """Where (m) the surface is looked up for elements and ends: a column's axis at still water, a pontoon's middle or end."""
-    found = []
-    of_elements = (elements.start.T, elements.axis.T, elements.length, elements.thickness)
-    for start, axis, length, thickness in zip(*map(np.asarray, of_elements), strict=True):
-        found.append(start + axis * (-start[2] / axis[2] if thickness == 0 else 0.5 * length))
-    for position, axis, radius in zip(*map(np.asarray, (ends.position.T, ends.axis.T, ends.radius)), strict=True):
-        found.append(position - axis * (position[2] / axis[2]) if radius > 0 else position)
-    return np.array(found, float).reshape(-1, 3).T
 
 
 def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tuple[Array, Array, Array]:

@@ -102,6 +102,7 @@ def members_of(platform: schema.Platform) -> list[Member]:
                     twist=math.radians(member.gamma) + (math.radians(heading) if member.rA[:2] == member.rB[:2] else 0.0),
                     elements=member.elements,
                     maccamy_fuchs=member.maccamy_fuchs,
+                    points=member.points,
                 )
             )
     return members

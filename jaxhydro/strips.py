@@ -46,6 +46,7 @@ class Member(NamedTuple):
     twist: float = 0.0
     elements: int | None = None
     maccamy_fuchs: bool | None = None  # None: where it is vertical, circular and pierces the surface
+    points: int = 2  # strips of each of `elements`; 1: lumped at its middle
 
     @property
     def axis(self) -> np.ndarray:
@@ -70,6 +71,13 @@ class Member(NamedTuple):
         c, s = math.cos(self.twist), math.sin(self.twist)
         return c * first + s * second, c * second - s * first
 
+    @property
+    def gauge(self) -> np.ndarray:
+        """Where (m) the surface elevation is looked up for it: a column's axis at still water, a pontoon's middle."""
+        if self.column:
+            return self.a + (self.b - self.a) * (-self.a[2] / (self.b[2] - self.a[2]))
+        return 0.5 * (self.a + self.b)
+
     def size(self, fraction: np.ndarray) -> np.ndarray:
         """Extents (n, 2) at fractions of the length."""
         return np.stack([np.interp(fraction, self.stations, self.sizes[:, i]) for i in range(2)], axis=-1)
@@ -88,12 +96,12 @@ class Member(NamedTuple):
     def elements_and_orders(self) -> list[tuple[float, float, int]]:
         """Load elements as fractions of the length from a to b, with the number of strips of each.
 
-        As many as the platform file says, two strips each; else one between stations, with as many as its length asks for.
+        As many as the platform file says, `points` strips each; else one between stations, with as many as its length asks for.
         """
         length = float(np.linalg.norm(self.b - self.a))
         if self.elements is not None:
             at = np.linspace(0.0, 1.0, self.elements + 1)
-            return [(lo, hi, 2) for lo, hi in pairwise(at)]
+            return [(lo, hi, self.points) for lo, hi in pairwise(at)]
         found = []
         for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
@@ -129,6 +137,7 @@ class Elements(eqx.Module):
     axis: Float[Array, "3 e"]  # upward for a column
     length: Float[Array, " e"]  # m
     thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: a column
+    gauge: Float[Array, "3 e"]  # m, where the surface is looked up: a column's axis at still water, a pontoon's middle
     label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and element
     labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
 
@@ -138,6 +147,7 @@ class Ends(eqx.Module):
 
     position: Float[Array, "3 m"]
     axis: Float[Array, "3 m"]  # unit vector, upward for a column
+    gauge: Float[Array, "3 m"]  # as that of the member's elements
     outward: Float[Array, " m"]  # +1 where the face looks along the axis (a top), -1 where against it (a bottom)
     area: Float[Array, " m"]
     radius: Float[Array, " m"]  # m, of the circle of equal area that carries added mass and drag; 0: none, a pontoon's end
@@ -184,9 +194,9 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
                         0.25 * float(first[0] + last[0]) if member.diffracts else 0.0,
                     )
                 )
-            elements.append((start, member.axis, length, thickness, label))
+            elements.append((start, member.axis, length, thickness, member.gauge, label))
     triple, pair, flat = np.zeros((3, 0)), np.zeros((2, 0)), np.zeros(0)
-    whole = [triple, triple, flat, flat]
+    whole = [triple, triple, flat, flat, triple]
     parts = [triple, triple, np.zeros((3, 2, 0)), flat, flat, pair, pair, flat]
     label_of: tuple[tuple[int, ...], ...] = ((), ())
     element_of: tuple[int, ...] = ()
@@ -198,7 +208,7 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
         label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
     of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
     strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
-    of_elements: dict[str, Any] = dict(zip(("start", "axis", "length", "thickness"), map(jnp.asarray, whole), strict=True))
+    of_elements: dict[str, Any] = dict(zip(("start", "axis", "length", "thickness", "gauge"), map(jnp.asarray, whole), strict=True))
     return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
 
 
@@ -209,19 +219,20 @@ def ends(members: Sequence[Member]) -> Ends:
     Added mass and drag have the free ends of columns only.
     """
     labels = tuple(dict.fromkeys(m.group for m in members if m.column))
-    position, axis, outward, area, radius, label = [], [], [], [], [], []
+    position, axis, gauge, outward, area, radius, label = [], [], [], [], [], [], []
     for member in members:
         upright = bool(member.axis @ (member.b - member.a) > 0)
         for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
             position.append(point)
             axis.append(member.axis)
+            gauge.append(member.gauge)
             outward.append(1.0 if far else -1.0)
             area.append(float(member.area(member.size(np.array([fraction])))[0]))
             radius.append(math.sqrt(area[-1] / math.pi) if member.column else 0.0)
             label.append(labels.index(member.group) if member.column else 0)
-    points, along = np.array(position).reshape(-1, 3).T, np.array(axis).reshape(-1, 3).T
-    arrays = (points, along, np.array(outward), np.array(area), np.array(radius))
-    fields: dict[str, Any] = dict(zip(("position", "axis", "outward", "area", "radius"), map(jnp.asarray, arrays), strict=True))
+    vectors = [np.array(rows).reshape(-1, 3).T for rows in (position, axis, gauge)]
+    arrays = map(jnp.asarray, (*vectors, np.array(outward), np.array(area), np.array(radius)))
+    fields: dict[str, Any] = dict(zip(("position", "axis", "gauge", "outward", "area", "radius"), arrays, strict=True))
     return Ends(**fields, label=tuple(label), labels=labels)
 
 

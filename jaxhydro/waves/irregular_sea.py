@@ -15,7 +15,7 @@ from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, Stretching, WaveSea, growth, stretched
 from jaxhydro.waves.second_order import bound_waves, elevation_spectrum, fold
-from jaxhydro.waves.supports import Box, field, supports, weights
+from jaxhydro.waves.supports import Box, field, supports, surface, weights
 
 DIRECT = 64  # components up to which pairs are written out where a sea is evaluated directly
 EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
@@ -241,7 +241,7 @@ class SupportSea(AbstractSea):
         place = (time - self.start) / self.step
         whole = jnp.floor(place + 1e-6)
         share = place - whole
-        node = jnp.argmin(jnp.abs(share - jnp.array(self.nodes)))
+        node = jnp.argmin(jnp.abs(share - jnp.array(self.nodes))) if len(self.nodes) > 1 else 0
         index = jnp.clip(whole.astype(int), 0, self.series.shape[0] - 1)
         found = self.series[index, node]
         if self.fine is not None:
@@ -280,8 +280,7 @@ class SupportSea(AbstractSea):
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         place = self.along @ points - self.middle
-        rows, still = self.rows(time)[-1:], jnp.zeros_like(place)
-        return field(rows, rows[:0], self.wavenumber, place, still, jnp.asarray(self.environment.depth))[0][0]
+        return surface(self.rows(time)[-1], self.wavenumber, place)
 
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)

@@ -174,3 +174,19 @@ def _field_jvp(primals, tangents):
         (even @ cosh, odd @ sinh),
         (even_x * d_x + even_z * d_z + d_even @ cosh, odd_x * d_x + odd_z * d_z + d_odd @ sinh),
     )
+
+
+@jax.custom_jvp
+def surface(amplitude: Float[Array, " 2*r"], k: Float[Array, " r"], x: Float[Array, " n"]) -> Float[Array, " n"]:
+    """Re sum c_r exp(-i k_r x): `field` at z = 0, for one quantity."""
+    return amplitude @ jnp.concatenate(cosine_sine(k[:, None] * x))
+
+
+@surface.defjvp
+def _surface_jvp(primals, tangents):
+    amplitude, k, x = primals
+    d_amplitude, _, d_x = tangents
+    terms = jax.lax.optimization_barrier(jnp.concatenate(cosine_sine(k[:, None] * x)))
+    real, imaginary = jnp.split(amplitude, 2)
+    slope = jnp.concatenate([k * imaginary, -k * real]) @ terms
+    return amplitude @ terms, slope * d_x + d_amplitude @ terms
