@@ -78,12 +78,13 @@ def main() -> None:
     jax.config.update("jax_enable_x64", True)
     # what compiles in this process is timed too
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
-    from benchmarks import bench_decay, bench_fit
+    from benchmarks import bench_decay, bench_fit, bench_sea
     from jaxhydro.files import write_whole
 
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
-    for more, said in chain(bench_decay.measure(arguments.quick), bench_fit.measure(budget, arguments.quick)):
+    parts = (bench_decay.measure(arguments.quick), bench_sea.measure(arguments.quick), bench_fit.measure(budget, arguments.quick))
+    for more, said in chain.from_iterable(parts):
         rows += more
         notes += said
         for row in more:

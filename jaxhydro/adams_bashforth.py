@@ -15,7 +15,7 @@ from jaxtyping import Array, Float, Int
 from jaxhydro.runge_kutta import RK4, Rate, linearised
 
 BLOCK = 64  # steps per checkpointed block of a reverse gradient
-BATCH = 8  # evaluations linearised together
+BATCH = 4  # evaluations linearised together: their flow fills the cache
 START = 3  # steps by RK4, of four evaluations each
 MEMORY = 4 * START + 1  # slopes that are remembered
 

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripShape
-from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew
+from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew, turned
 from jaxhydro.solve6 import accelerate
 from jaxhydro.strips import end_wetted
 from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
@@ -155,18 +155,18 @@ class Model(eqx.Module):
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
         end_wet = end_wetted(depth[roots.shape[1] - m :])
         points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
-        where = place[:, None] + matrix @ points
+        where = place[:, None] + turned(matrix, points)
         where = where if self.wetting == "instantaneous" else jnp.concatenate([where[:2], points[2:]])
         flow = sea.flow(time, where, self.cylinders)
         if flow is None:
             past, past_end = StripFlow(own, None), EndFlow(own_end, None, None, end_wet)
         else:
-            velocity, acceleration = matrix.T @ flow.velocity, matrix.T @ flow.acceleration
+            velocity, acceleration = turned(matrix.T, flow.velocity), turned(matrix.T, flow.acceleration)
 
             def across(field: Float[Array, "3 n+m"]) -> Float[Array, "2 n"]:
                 return (strips.directions * field[:, None, :n]).sum(axis=0)
 
-            extra = [None if field is None else across(matrix.T @ field) for field in (flow.diffracted, flow.tuned)]
+            extra = [None if field is None else across(turned(matrix.T, field)) for field in (flow.diffracted, flow.tuned)]
             past = StripFlow(own + across(velocity), across(acceleration), *extra)
             at_ends = [(ends.axis * field[:, n:]).sum(axis=0) for field in (velocity, acceleration)]
             past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[n:], end_wet)
@@ -205,12 +205,10 @@ class Model(eqx.Module):
         inertia = body.inertia_at_reference()
         gyroscopic = jnp.concatenate([body.mass * cross(spin, cross(spin, body.centre)), cross(spin, inertia @ spin)])
         # the solution is the acceleration of the reference point, not the rate of its body-axes velocity
-        acceleration = accelerate(
-            body.mass_matrix() + total.added_mass,
-            total.force - gyroscopic,
-            total.masses,
-            total.moments,
-        )
+        mass, masses, moments = body.mass_matrix() + total.added_mass, total.masses, total.moments
+        if self.directions == "earth":  # they turn with the attitude, and `accelerate` takes them for constant
+            mass, masses, moments = mass + moments @ masses, masses[:0], moments[..., :0]
+        acceleration = accelerate(mass, total.force - gyroscopic, masses, moments)
         turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
         return State(self.position_rate(state.position, state.velocity), acceleration - turning, total.memory_rate)
 

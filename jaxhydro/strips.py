@@ -208,7 +208,8 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
         label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
     of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
     strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
-    of_elements: dict[str, Any] = dict(zip(("start", "axis", "length", "thickness", "gauge"), map(jnp.asarray, whole), strict=True))
+    names = ("start", "axis", "length", "thickness", "gauge")
+    of_elements: dict[str, Any] = dict(zip(names, map(jnp.asarray, whole), strict=True))
     return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
 
 

@@ -17,6 +17,8 @@ KEYS = (
     "Reverse gradient of a decay",
     "First result from the cache, import apart",
     "Compilation: tsit5",
+    "Sea of order 2, simulated time over CPU time",
+    "Sea of order 1 against NumPy, same scheme",
     "Calibration by least squares",
     "DE over least squares, simulations",
     "DE over least squares, CPU",
@@ -43,6 +45,8 @@ def test_quick_bench(tmp_path, tmp_path_factory):
     # the same motion, whatever it took
     errors = [float(value) for value in table["Difference from NumPy with its own strips"].split("/")]
     assert errors == pytest.approx([0.0] * 3, abs=5e-3)
+    kinematics = [table[f"Error of velocity / acceleration at 15 m, 5 deg, order {order}"].split(" / ") for order in (1, 2)]
+    assert max(float(value) for pair in kinematics for value in pair) < 2e-5
     assert any("pymoo" in line and "jax" in line for line in lines)
     assert {path.name for path in tmp_path.iterdir()} == {"results.md"}
     assert (shipped.read_bytes() if shipped.exists() else None) == before
