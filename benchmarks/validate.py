@@ -15,11 +15,11 @@ import textwrap
 import time
 from pathlib import Path
 
-from benchmarks.evidence import common, measured, openfast, periods, seeds, starts
+from benchmarks.evidence import common, measured, measured_waves, openfast, openfast_waves, periods, seeds, starts, study_text
 from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
 
 PAGE = ROOT / "docs" / "validation.md"
-SECTIONS = ("seeds", "periods", "openfast", "measured", "starts")
+SECTIONS = ("seeds", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "starts", "study")
 INTRO = """\
 # Validation
 
@@ -34,7 +34,11 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return seeds.run(options.seeds, options.processes, figures)
     if name == "starts":
         return starts.run(options.starts, options.processes, figures)
-    return {"periods": periods, "openfast": openfast, "measured": measured}[name].run(figures)
+    if name == "measured_waves":
+        return measured_waves.run(figures, options.processes)
+    plain = {"periods": periods, "openfast": openfast, "openfast_waves": openfast_waves,
+             "measured": measured, "study": study_text}  # fmt: skip
+    return plain[name].run(figures)
 
 
 def command(name: str, options: argparse.Namespace) -> str:

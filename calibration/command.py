@@ -1,24 +1,37 @@
-"""The calibrate command: from a campaign's folder to files and tables."""
+"""The commands on campaigns, from a folder to files and tables: calibrate, and simulate in measured waves."""
 
+import time as clock
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, cast
 
-from calibration import tables
+from calibration import seas_results, tables
 from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
-from calibration.outputs import MOTION, NotFinite, write_calibration
+from calibration.outputs import MOTION, RESULT, NotFinite, write_calibration
 from calibration.result import Calibration
+from calibration.saved import Applied, applied
+from calibration.seas import Diverged, Options, compare
+from calibration.seas_outputs import COMPARISON, write_comparison
 from jaxhydro.console import complain, progress, say, table
+from jaxhydro.files import check_folder
+from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 
 
-def load(path: Path, out: Path) -> Campaign:
-    """The campaign, its warnings printed. Raises InputError, also where results would replace its own data."""
+def load(
+    path: Path, out: Path, others: tuple[str, ...] = (COMPARISON,), counted: Callable[[Campaign], str] = tables.counted
+) -> Campaign:
+    """The campaign, its warnings printed. Raises InputError, also where results would replace its own data, or stand beside
+    those of another command."""
     campaign = load_campaign(path)
+    if there := [name for name in others if (out / name).exists()]:
+        raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has another command's {there[0]}")])
     for test in campaign.manifest.tests:
         if (campaign.folder / test.file).resolve() == (out / MOTION).resolve():
             found = f"{str(out)!r}, where {MOTION} is the data of test {test.id}"
             raise InputError("--out", [Problem("", "another folder", found)])
-    say(f"{campaign.manifest.name}: {tables.counted(campaign)}")
+    say(f"{campaign.manifest.name}: {counted(campaign)}")
     if campaign.findings:
         table("Warnings", *tables.findings(campaign.findings), left=4, stderr=True)
     return campaign
@@ -52,3 +65,50 @@ def run(campaign: Campaign, out: Path, figures: bool = True) -> Calibration | No
     if not result.converged:
         complain("not converged: the results are marked so")
     return result
+
+
+def simulate_campaign(
+    campaign: Path, out: Path, *, calibration: Path | None, order: int, stretching: str, diffraction: str | None, cutoff: float
+) -> bool:
+    """Simulate a campaign's tests in their measured waves, compare, write and print; False where a motion grows without bound.
+
+    `cutoff` (Hz) is that of the first-order waves, at full scale. Raises InputError, EquilibriumError.
+    """
+    options = Options(cast(Any, order), cast(Any, stretching), diffraction, cutoff=cutoff)
+    if not cutoff > options.low:
+        expected = f"a number above {options.low:g} Hz, where first-order waves begin"
+        raise InputError("--cutoff", [Problem("", expected, f"{cutoff:g}")])
+    begun = clock.monotonic()
+    loaded = load(campaign, check_folder(out), (RESULT, "motion.csv"), seas_results.counted)
+    model, used = build(loaded.platform), None
+    if calibration is not None:
+        used = applied(calibration, model, loaded.platform.name)
+        model = used.model
+        _told(used, calibration, loaded)
+    try:
+        found = compare(loaded, model, options, lambda line: say(line, stderr=True))
+    except Diverged as error:
+        complain(f"{error}; nothing was written")
+        return False
+    source = None if calibration is None else str(calibration)
+    about = {"campaign": loaded.manifest.name, "platform": loaded.platform.name, "calibration": source}
+    write_comparison(found, seas_results.document(found, options, about, used), out)
+    for note in found.notes:
+        complain(f"warning: {note}")
+    table("Waves", *seas_results.seas_table(found), left=3)
+    table("Motions", *seas_results.motions_table(found), left=2)
+    say(f"Spectra: {seas_results.WELCH}")
+    table("Energy in bands", *seas_results.bands_table(found), left=3)
+    say(f"Results are in {out}, after {clock.monotonic() - begun:.0f} s")
+    return True
+
+
+def _told(used: Applied, source: Path, campaign: Campaign) -> None:
+    """Which calibrated values are used, and what is to be said of them."""
+    if used.campaign != campaign.manifest.name:
+        complain(f"warning: {source} is a calibration of {used.campaign!r}, used for {campaign.manifest.name!r}")
+    say(f"Calibrated values used: {', '.join(used.values)}")
+    if used.left:
+        say(f"Not used, the campaign has its own: {', '.join(used.left)}")
+    if used.vague:
+        complain(f"warning: the records of that calibration did not determine {', '.join(used.vague)}: they say little")

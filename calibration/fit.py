@@ -202,7 +202,9 @@ def calibrate(
     records = [record for record in campaign.used("fit") if record.kind == "decay"]
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
-        raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", found)])
+        waves = any(r.kind in ("regular", "irregular") and r.use != "ignore" for r in campaign.records)
+        hint = "Tests in waves are not fitted yet: `jaxhydro simulate CAMPAIGN` compares a model with them." if waves else ""
+        raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", found, hint)])
     for record in records:
         for channel in set(record.values) & set(DOFS[3:]):
             if (largest := float(np.abs(record.values[channel]).max())) > np.pi / 2:

@@ -32,7 +32,7 @@ def write_calibration(calibration: Calibration, folder: str | PathLike[str], fig
     other files stay. Angles are in degrees. Raises NotFinite, and InputError where the folder cannot be written.
     """
     folder = Path(folder)
-    with staged(folder, lambda temporary: _outdated(folder, temporary)) as temporary:
+    with staged(folder, lambda temporary: outdated(folder, temporary)) as temporary:
         drawn = _draw(calibration, temporary / FIGURES) if figures else []
         text = json.dumps({**document(calibration), "figures": drawn}, indent=2, ensure_ascii=False, allow_nan=False)
         (temporary / RESULT).write_text(text + "\n", encoding="utf-8")
@@ -55,10 +55,10 @@ def _draw(calibration: Calibration, folder: Path) -> list[dict[str, str]]:
     return drawn
 
 
-def _outdated(folder: Path, temporary: Path) -> Iterable[str]:
+def outdated(folder: Path, temporary: Path, result: str = RESULT) -> Iterable[str]:
     """What an earlier calibration wrote and the new one does not: its figures, by its own list, and its report."""
     try:
-        listed = json.loads((folder / RESULT).read_text(encoding="utf-8"))["figures"]
+        listed = json.loads((folder / result).read_text(encoding="utf-8"))["figures"]
         names = [Path(figure["file"]).name for figure in listed]
     except (OSError, ValueError, KeyError, TypeError):
         names = []
@@ -155,7 +155,7 @@ def dataset(calibration: Calibration) -> xr.Dataset:
     tests = calibration.tests
     channels = [dof for dof in DOFS if any(series.channel == dof for test in tests for series in test.series)]
     times = [test.time - test.time[0] for test in tests]
-    axis, alike = _common(times)
+    axis, alike = common_axis(times)
     shape = (len(tests), len(channels), len(axis))
     motion = {name: np.full(shape, np.nan) for name in ("measured", "simulated", "before")}
     each = {name: np.full(shape[:2], np.nan) for name in ("noise", "sensor_offset")}
@@ -210,7 +210,7 @@ def dataset(calibration: Calibration) -> xr.Dataset:
     return xr.Dataset(data, coordinates, about)
 
 
-def _common(times: list[np.ndarray]) -> tuple[np.ndarray, bool]:
+def common_axis(times: list[np.ndarray]) -> tuple[np.ndarray, bool]:
     """One time axis, and whether every test's samples lie on it."""
     if not times:
         return np.zeros(0), True

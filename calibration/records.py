@@ -166,6 +166,14 @@ def load_records(manifest: Manifest, folder: Path) -> tuple[Record, ...]:
     return records_of(manifest, read_series(manifest, folder))
 
 
+def whole_series(manifest: Manifest, folder: Path, test: Test) -> tuple[Series, dict[str, float]]:
+    """All that a test's file has, its window left aside, and its readings in still water. Raises InputError."""
+    rest = [other for other in manifest.tests if manifest.zero is not None and other.id == manifest.zero.test]
+    tests = (test.model_copy(update={"window": None}), *rest)
+    series = read_series(manifest.model_copy(update={"tests": tests}), folder)
+    return series[0], still_water(manifest, series[::-1])[-1]
+
+
 def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Record:
     test, scale, good = series.test, factors(manifest, series.channels), series.good
     time = series.time[good] * scale["time"]

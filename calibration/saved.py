@@ -3,12 +3,13 @@
 import json
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from calibration.outputs import RESULT
-from jaxhydro.problems import InputError, Number, Problem, validate
+from jaxhydro.model import Model
+from jaxhydro.problems import InputError, Number, Problem, shown, suggest, validate
 
 
 class _Open(BaseModel):
@@ -124,5 +125,33 @@ def read_values(path: str | PathLike[str]) -> dict[str, float]:
     return read_saved(path).values()
 
 
-def _wrong(path: Path, expected: str, found: str, where: str = "") -> InputError:
-    return InputError(str(path), [Problem(where, expected, found)])
+class Applied(NamedTuple):
+    """A model with values of a calibration, these values, those of them that its records did not determine, and those that were
+    left: moorings are each campaign's own."""
+
+    model: Model
+    values: dict[str, float]
+    vague: tuple[str, ...]
+    left: tuple[str, ...]
+    campaign: str
+
+
+def applied(path: str | PathLike[str], model: Model, platform: str) -> Applied:
+    """Calibrated values used for the model of the platform so named: all of its own, else those of hull and damping.
+
+    Raises InputError for a file that is none, and for values that the model has no place for.
+    """
+    saved = read_saved(path)
+    own = not saved.platform or saved.platform == platform
+    values = {k: v for k, v in saved.values().items() if own or not k.startswith(("mooring.", "stiffness."))}
+    if unknown := [label for label in values if label not in model.values]:
+        expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
+        hint = suggest(unknown[0], model.values)
+        raise _wrong(Path(path), expected, ", ".join(map(shown, unknown)), "baseline.parameters", hint)
+    vague = tuple(label for label in values if not saved.baseline.parameters[label].identifiable)
+    left = tuple(label for label in saved.values() if label not in values)
+    return Applied(model.with_values(values), values, vague, left, saved.campaign)
+
+
+def _wrong(path: Path, expected: str, found: str, where: str = "", hint: str = "") -> InputError:
+    return InputError(str(path), [Problem(where, expected, found, hint)])

@@ -15,9 +15,11 @@ USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
 
 
 def counted(campaign: Campaign) -> str:
-    """How many tests of each use there are."""
-    count = Counter(str(test.use) for test in campaign.manifest.tests)
-    there = [(count[use], word) for use, word in USE.items() if count[use]]
+    """How many tests of each use there are, and of those that are no decays."""
+    tests = campaign.manifest.tests
+    count = Counter(USE[t.use] if t.use == "ignore" or t.kind == "decay" else f"left out ({t.kind})" for t in tests)
+    order = {word: i for i, word in enumerate(USE.values())}
+    there = [(count[word], word) for word in sorted(count, key=lambda word: (order.get(word, len(order)), word))]
     return ", ".join(f"{n} {'test' if n == 1 else 'tests'} {word}" for n, word in there)
 
 

@@ -1,5 +1,6 @@
 """Floating-wind platforms in waves, by differentiable strip theory. Switch JAX's float64 on before building a model."""
 
+from jaxhydro.convergence import Convergence, convergence
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.loads import LOADS, AbstractLoad, Action, Instant, Parameter
 from jaxhydro.model import Model, RigidBody, State
@@ -30,6 +31,7 @@ __all__ = [
     "AbstractSea",
     "Action",
     "Components",
+    "Convergence",
     "Environment",
     "EquilibriumError",
     "InputError",
@@ -45,6 +47,7 @@ __all__ = [
     "WaveSea",
     "build",
     "builtin_platforms",
+    "convergence",
     "equilibrium",
     "free_decay",
     "jonswap",

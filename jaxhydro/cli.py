@@ -1,6 +1,5 @@
 """The command line. What is heavy is imported by the command that needs it."""
 
-import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -8,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from jaxhydro import options
+from jaxhydro import arguments, options, sea_options
 from jaxhydro.console import complain, say, table
 from jaxhydro.problems import InputError, Problem, shown, suggest
 
@@ -22,21 +21,6 @@ TRUTH = {  # what the records of the demo were made with: Table 1 of the paper t
     "pontoon.Ca_t": 0.11, "pontoon.Ca_z": 1.87, "pontoon.Cd_t": 1.84, "pontoon.Cd_z": 4.96,
     "linear_damping.B11": 4.4e4, "linear_damping.B33": 1.6e5, "linear_damping.B55": 3.63e8,
 }  # fmt: skip
-HELP = (
-    "Motions of floating-wind platforms in waves, and the coefficients that make them follow a basin test.\n\n"
-    "A platform is one YAML file: hull members, mass, mooring, starting coefficients. A campaign is a folder: that "
-    "file, a campaign.yaml that says what was measured in which columns, and one data file per test."
-)
-EPILOG = "\n\n".join((
-    "[bold]Examples[/bold]",
-    "jaxhydro demo --out demo",
-    "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
-    "jaxhydro calibrate my-campaign --out results",
-    "[bold]Formats[/bold]",
-    "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
-    "example to copy: `jaxhydro demo` prints where they are.",
-    "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so.",
-))  # fmt: skip
 
 
 class Guarded(TyperGroup):
@@ -62,8 +46,8 @@ class Guarded(TyperGroup):
 
 
 app = typer.Typer(
-    cls=Guarded, help=HELP, epilog=EPILOG, no_args_is_help=True, add_completion=False, rich_markup_mode="rich",
-    pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
+    cls=Guarded, help=arguments.HELP, epilog=arguments.EPILOG, no_args_is_help=True, add_completion=False,
+    rich_markup_mode="rich", pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
 )  # fmt: skip
 Out = Annotated[Path, typer.Option("--out", help="Folder for the results; made where absent.", show_default=False)]
 
@@ -90,36 +74,68 @@ def _options(
     pass
 
 
-@app.command()
+@app.command(epilog=arguments.EXAMPLES)
 def simulate(
-    platform: Annotated[str, typer.Argument(help="A platform file, or a built-in name (see `jaxhydro platforms`).")],
+    ctx: typer.Context,
+    platform: Annotated[
+        str, typer.Argument(help="A platform file, a built-in name (see `jaxhydro platforms`), or a campaign's folder.")
+    ],
     out: Out,
-    duration: Annotated[float, typer.Option(help="Simulated time, s.")] = 600.0,
-    dt: Annotated[float, typer.Option("--dt", help="Time between the samples that are written, s.")] = 0.1,
-    release: Annotated[
-        list[str] | None, typer.Option(help="Offset from rest at the start, m or deg, as surge=5; once per motion.")
-    ] = None,
-    wave_height: Annotated[float | None, typer.Option(help="Regular waves: height crest to trough, m.")] = None,
-    wave_period: Annotated[float | None, typer.Option(help="Regular waves: period, s.")] = None,
-    heading: Annotated[float, typer.Option(help="Where the waves run to, deg from x towards y.")] = 0.0,
-    calibration: Annotated[Path | None, typer.Option(help="A calibration.json whose values are to be used.")] = None,
-    step: Annotated[float | None, typer.Option(help="Largest internal time step, s.", show_default="chosen")] = None,
+    hs: arguments.Hs = None,
+    tp: arguments.Tp = None,
+    gamma: arguments.Gamma = None,
+    spectrum: arguments.Kind = None,
+    seed: arguments.Seed = None,
+    amplitudes: arguments.Height = None,
+    wave: arguments.Wave = None,
+    wave_column: arguments.WaveColumn = None,
+    wave_time_column: arguments.TimeColumn = None,
+    wave_position: arguments.Gauge = None,
+    low: arguments.Low = None,
+    cutoff: arguments.Cutoff = None,
+    order: arguments.Order = None,
+    stretching: arguments.Stretching = None,
+    diffraction: arguments.Diffracting = None,
+    elements: arguments.Elements = None,
+    heading: arguments.Heading = sea_options.DEFAULTS["--heading"],
+    transient: arguments.Transient = None,
+    wave_height: arguments.WaveHeight = None,
+    wave_period: arguments.WavePeriod = None,
+    release: arguments.Release = None,
+    duration: arguments.Duration = None,
+    dt: arguments.Dt = sea_options.DEFAULTS["--dt"],
+    calibration: arguments.Calibrated = None,
+    step: arguments.Step = None,
 ) -> None:
-    """Free decay from an offset, and regular waves: motion.csv, simulated.nc and a figure."""
-    offset = options.releases(release or [])
-    duration = options.positive(duration, "--duration")
+    """Motions in irregular waves, regular waves and free decays: series, statistics and figures.
+
+    With a campaign, its irregular tests in the waves that were measured.
+    """
+    given = sea_options.by_option(ctx.params)
+    if sea_options.is_campaign(platform):
+        return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given))
+    offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
+    sea = sea_options.asked(given, options.finite(heading, "--heading"))
+    if sea is not None and regular is not None:
+        raise options.wrong("--wave-height", "regular waves or an irregular sea, not both")
+    if sea is None and regular is None and not offset:
+        ways = "--release, --hs and --tp, --wave, or --wave-height and --wave-period"
+        raise options.wrong("--release", f"nothing moves: give {ways}")
+    if sea is not None and wave is not None:
+        from calibration.readers import read_table
+
+        sea = sea_options.with_record(sea, wave, read_table(wave), given)
+    duration = sea_options.duration(duration, sea)
     dt = options.interval(dt, "--dt", duration)
     step = None if step is None else options.interval(step, "--step", duration)
-    wave = options.regular(wave_height, wave_period)
-    if wave is None and not offset:
-        raise options.wrong("--release", "nothing moves: give --release, or --wave-height and --wave-period")
-    if not math.isfinite(heading):
-        raise options.wrong("--heading", f"a finite number expected, found {heading:g}")
-    out = options.results_folder(out, "calibration.json", "a calibration")
+    out = options.results_folder(out, "motion.csv")
     _start()
-    from jaxhydro.command import run
+    from jaxhydro import command, sea_command
 
-    if not run(_model(platform, calibration), platform, out, duration, dt, offset, wave, heading, step):
+    model = _model(platform, calibration, diffraction, elements)
+    job = command.Job(platform, out, duration, dt, offset, step)
+    stretch = sea_options.stretching(given)
+    if not (command.run(model, job, regular, heading, stretch) if sea is None else sea_command.run(model, job, sea)):
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -164,7 +180,7 @@ def platforms() -> None:
 
 def _calibrate(campaign: Path, out: Path, figures: bool, truth: dict[str, float] | None = None) -> None:
     """Calibrate; where the truth is known, compare with it and make the report page."""
-    out = options.results_folder(out, "motion.csv", "a simulation")
+    out = options.results_folder(out, "calibration.json")
     _start()
     from calibration import command
 
@@ -197,14 +213,24 @@ def _start() -> None:
         jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
 
 
-def _model(platform: str, calibration: Path | None) -> "Model":
-    from jaxhydro.platform import load_model
+def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, how: dict[str, Any]) -> None:
+    out = options.results_folder(out, "comparison.json")
+    _start()
+    from calibration.command import simulate_campaign
 
-    model = load_model(platform)
+    if not simulate_campaign(campaign, out, calibration=calibration, **how):
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def _model(platform: str, calibration: Path | None, diffraction: str | None, elements: int | None) -> "Model":
+    from jaxhydro.command import model_of
+    from jaxhydro.platform_schema import load_platform
+
+    declared = load_platform(platform)
+    model = model_of(declared, diffraction, elements)
     if calibration is None:
         return model
     from calibration.saved import read_saved
-    from jaxhydro.platform_schema import load_platform
 
     saved, known = read_saved(calibration), model.values
     values = saved.values()
@@ -212,9 +238,9 @@ def _model(platform: str, calibration: Path | None) -> "Model":
         expected = f"parameters of {platform} ({', '.join(sorted(known)) or 'it has none'})"
         hint = suggest(unknown[0], known)
         raise InputError(str(calibration), [Problem("baseline.parameters", expected, ", ".join(map(shown, unknown)), hint)])
-    name = load_platform(platform).name
-    if saved.platform and saved.platform != name:
-        complain(f"warning: {calibration} is a calibration of {saved.platform!r}, and its values are used for {name!r}")
+    if saved.platform and saved.platform != declared.name:
+        used = f"its values are used for {declared.name!r}"
+        complain(f"warning: {calibration} is a calibration of {saved.platform!r}, and {used}")
     say(f"Calibrated values used: {', '.join(values)}")
     if vague := [label for label, one in saved.baseline.parameters.items() if not one.identifiable]:
         complain(f"warning: among them the records did not determine {', '.join(vague)}")

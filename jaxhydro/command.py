@@ -1,7 +1,9 @@
 """The simulate command: from options to files and tables."""
 
+import dataclasses
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -14,58 +16,93 @@ from jaxhydro.export import Motion, write_motion
 from jaxhydro.loads import Buoyancy
 from jaxhydro.model import Model
 from jaxhydro.platform import build
-from jaxhydro.platform_schema import load_platform
+from jaxhydro.platform_schema import Platform, load_platform
 from jaxhydro.plot import for_people, unit_of
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.simulate import default_step, free_decay
 from jaxhydro.statics import equilibrium, natural_modes
-from jaxhydro.waves.sea import WaveSea, regular_wave
+from jaxhydro.strips import COLUMN_SLOPE
+from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
 
 GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
 
 
-def run(
-    model: Model, platform: str, out: Path, duration: float, dt: float, offset: dict[str, float],
-    wave: tuple[float, float] | None, heading: float, step: float | None,
-) -> bool:  # fmt: skip
-    """Simulate, write and print; False where the motion grows beyond all bounds. `offset` in m, rad, `heading` in deg.
+class Job(NamedTuple):
+    """What every simulation is told: the platform's name, where results go, duration and sampling (s), offset from rest (m,
+    rad) and largest step (s; None: chosen)."""
+
+    platform: str
+    out: Path
+    duration: float
+    dt: float
+    offset: dict[str, float]
+    step: float | None
+
+    @property
+    def times(self) -> np.ndarray:
+        """Of the samples that are written, from 0 (s)."""
+        return self.dt * np.arange(math.floor(self.duration / self.dt * (1 + 1e-12)) + 1)
+
+
+def model_of(platform: Platform, diffraction: str | None = None, elements: int | None = None) -> Model:
+    """The model of a platform; `diffraction` and the load `elements` of every pontoon in place of those declared."""
+    if elements is not None:
+        members = []
+        for member in platform.members:
+            axis = np.subtract(member.rB, member.rA)
+            column = abs(axis[2]) > COLUMN_SLOPE * np.linalg.norm(axis)
+            members.append(member if column else member.model_copy(update={"elements": elements}))
+        platform = platform.model_copy(update={"members": tuple(members)})
+    model = build(platform)
+    return model if diffraction is None else dataclasses.replace(model, diffraction=str(diffraction))
+
+
+def finite(times: np.ndarray, position: np.ndarray) -> bool:
+    """Whether a motion is all numbers; where it is not, says from when on."""
+    if np.isfinite(position).all():
+        return True
+    first = times[np.argmin(np.isfinite(position).all(axis=1))]
+    complain(f"the motion grows beyond all bounds at {first:.4g} s; nothing was written. Try a smaller --step.")
+    return False
+
+
+def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float, stretching: Stretching = "vertical") -> bool:
+    """Simulate, write and print; False where the motion grows beyond all bounds. `heading` in deg.
 
     Raises InputError for a wave that cannot be, EquilibriumError where the platform does not rest.
     """
-    sea, ramp = None, 0.0
+    sea, ramp, step = None, 0.0, job.step
     if wave is not None:
-        ramp = min(GROWTH * wave[1], 0.25 * duration)
-        sea = _sea(model, wave, heading, ramp)
+        ramp = min(GROWTH * wave[1], 0.25 * job.duration)
+        sea = _sea(model, wave, heading, ramp, stretching)
         step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
-    _print_rest(model, platform)
-    times = dt * np.arange(math.floor(duration / dt * (1 + 1e-12)) + 1)
-    response = free_decay(model, offset, times, sea=sea, step=step)
-    position = np.asarray(response.position)
-    if not np.isfinite(position).all():
-        first = times[np.argmin(np.isfinite(position).all(axis=1))]
-        complain(f"the motion grows beyond all bounds at {first:.4g} s; nothing was written. Try a smaller --step.")
+    print_rest(model, job.platform)
+    times = job.times
+    position = np.asarray(free_decay(model, job.offset, times, sea=sea, step=step).position)
+    if not finite(times, position):
         return False
     elevation = None
     if sea is not None:
         here = jnp.zeros((2, 1))
         elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, here)[0])(jnp.asarray(times)))
     motion = Motion.of(times, position, elevation)
-    write_motion(motion, out, platform, f"jaxhydro {jaxhydro.__version__}")
+    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}")
     _print_motion(motion, wave, ramp)
-    say(f"Results are in {out}")
+    say(f"Results are in {job.out}")
     return True
 
 
-def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float) -> WaveSea:
+def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, stretching: Stretching) -> WaveSea:
     try:
-        return regular_wave(*wave, model.environment, heading=math.radians(heading), ramp=ramp)
+        return regular_wave(*wave, model.environment, heading=math.radians(heading), ramp=ramp, stretching=stretching)
     except ValueError as error:
         expected = "a wave that does not break"
         raise InputError("--wave-height", [Problem("", expected, f"one too steep ({error})")]) from None
 
 
-def _print_rest(model: Model, platform: str) -> None:
+def print_rest(model: Model, platform: str) -> None:
+    """Print where the platform rests, and its natural periods."""
     rest, modes = np.asarray(equilibrium(model)), natural_modes(model)
     rest = rest.round(8) + 0.0  # no -0.0000
     rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q)):.4f}") for dof, q in zip(DOFS, rest)]

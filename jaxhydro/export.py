@@ -1,14 +1,22 @@
-"""What a simulation leaves behind: simulated.nc, motion.csv and a figure, in m and deg, whole or not at all."""
+"""What a simulation leaves behind: simulated.nc, motion.csv and figures, in m and deg, whole or not at all."""
 
+import json
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from jaxhydro import sea_plot
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.plot import for_people, motion_figure, save, style, unit_of
+from jaxhydro.sea_results import in_order
+
+STATISTICS = "statistics.json"
+OF_SEAS = (STATISTICS, "figures/window.png", "figures/spectra.png")
+HIGHEST = 0.2  # Hz, that spectra are drawn to
 
 
 class Motion(NamedTuple):
@@ -35,7 +43,17 @@ class Motion(NamedTuple):
         return np.hypot(solution[1], solution[2])
 
 
-def write_motion(motion: Motion, folder: Path, title: str, source: str) -> None:
+class SeaState(NamedTuple):
+    """What is written about an irregular sea: its first order (m), the spectrum asked for (Hz -> m2/Hz; None: a record), how it
+    was made, and `summary`'s results."""
+
+    first_order: np.ndarray
+    target: Callable[[np.ndarray], np.ndarray] | None
+    about: Mapping[str, Any]
+    results: Mapping[str, Any]
+
+
+def write_motion(motion: Motion, folder: Path, title: str, source: str, sea: SeaState | None = None) -> None:
     """Write a motion's files into a folder."""
     names = ["time_s", *(f"{dof}_{unit_of(dof)}" for dof in DOFS)]
     columns = [motion.time, *motion.values.T]
@@ -46,17 +64,46 @@ def write_motion(motion: Motion, folder: Path, title: str, source: str) -> None:
         columns.append(motion.wave)
         about = {"units": "m", "long_name": "wave elevation at the reference position"}
         data["wave"] = (("time",), motion.wave, about)
+    if sea is not None:
+        data["wave_first_order"] = (("time",), sea.first_order, {"units": "m", "long_name": "first order of the elevation"})
     coordinates = {
         "time": ("time", motion.time, {"units": "s", "long_name": "time"}),
         "channel": ("channel", np.array(DOFS, dtype=object), {"long_name": "motion"}),
         "unit": ("channel", np.array([unit_of(dof) for dof in DOFS], dtype=object), {"long_name": "unit of a channel"}),
     }
-    dataset = xr.Dataset(data, coordinates, {"title": title, "source": source})
-    with staged(folder) as temporary:
+    of_sea = {} if sea is None else {name: value for name, value in sea.about.items() if value is not None}
+    dataset = xr.Dataset(data, coordinates, {"title": title, "source": source, **of_sea})
+    with staged(folder, lambda temporary: _stale(folder, temporary)) as temporary:
         rows, header = np.stack(columns, axis=1), ",".join(names)
         np.savetxt(temporary / "motion.csv", rows, fmt="%.9g", delimiter=",", header=header, comments="")
         packed = {name: {"zlib": True, "complevel": 4} for name in data}
         dataset.to_netcdf(temporary / "simulated.nc", engine="h5netcdf", encoding=packed)
         with style():
-            figure = motion_figure(motion.time, dict(zip(DOFS, motion.values.T, strict=True)), motion.wave, title)
-            save(figure, temporary / "figures" / "motion.png")
+            if sea is not None and motion.wave is not None:
+                _of_sea(motion, motion.wave, sea, temporary, title, source)
+            else:
+                figure = motion_figure(motion.time, dict(zip(DOFS, motion.values.T, strict=True)), motion.wave, title)
+                save(figure, temporary / "figures" / "motion.png")
+
+
+def _of_sea(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, title: str, source: str) -> None:
+    """Statistics and figures."""
+    text = {"platform": title, "source": source, "sea": dict(sea.about), **sea.results}
+    (folder / STATISTICS).write_text(json.dumps(text, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    time, channels, start = motion.time, in_order(motion.values, wave), sea.results["window"][0]
+    second = sea.first_order if sea.about["order"] == 2 else None
+    kept = {name: values[time >= start] for name, values in channels.items()}
+    height, peak = sea.about["significant_wave_height"], sea.about["peak_period"]
+    title += f"\nHs {height:.3g} m" + (f", Tp {peak:.3g} s" if peak else ", white")
+    for name, figure in (
+        ("motion", sea_plot.record_figure(time, channels, start, title)),
+        ("window", sea_plot.window_figure(time, channels, second, start, title)),
+        ("spectra", sea_plot.spectra_figure(time[time >= start], kept, peak, HIGHEST, sea.target, title)),
+    ):
+        save(figure, folder / "figures" / f"{name}.png")
+
+
+def _stale(folder: Path, temporary: Path) -> Iterable[str]:
+    """What an earlier simulation in a sea wrote and the new one does not."""
+    if (folder / "motion.csv").is_file():
+        yield from (name for name in OF_SEAS if (folder / name).is_file() and not (temporary / name).exists())

@@ -24,6 +24,13 @@ def positive(value: float, option: str) -> float:
     return value
 
 
+def finite(value: float, option: str) -> float:
+    """A finite number."""
+    if not math.isfinite(value):
+        raise wrong(option, f"a finite number expected, found {value:g}")
+    return value
+
+
 def interval(value: float, option: str, duration: float) -> float:
     """A time step that divides a duration into a number of steps that fits into memory."""
     if not 1 <= duration / positive(value, option) <= LARGEST:
@@ -63,9 +70,14 @@ def releases(given: list[str]) -> dict[str, float]:
     return offsets
 
 
-def results_folder(out: Path, other: str, of: str) -> Path:
-    """A folder that can be written, and has no results of another command, which a simulated.nc would spoil."""
+RESULTS = {"motion.csv": "a simulation", "calibration.json": "a calibration", "comparison.json": "a campaign's seas"}
+
+
+def results_folder(out: Path, mine: str) -> Path:
+    """A folder that can be written, and has no results of another command than that which writes `mine`: one simulated.nc would
+    spoil the other."""
     out = check_folder(out)
-    if (out / other).exists() and (out / "simulated.nc").exists():
-        raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has the results of {of}")])
+    for name, of in RESULTS.items():
+        if name != mine and (out / name).exists() and (out / "simulated.nc").exists():
+            raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has the results of {of}")])
     return out

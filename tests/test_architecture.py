@@ -33,9 +33,14 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.body_schema", "jaxhydro.files"),
     ("jaxhydro.platform_schema",),
     ("jaxhydro.platform", "jaxhydro.plot"),
+    ("jaxhydro.convergence",),
     ("jaxhydro",),
+    ("jaxhydro.sea_results",),
+    ("jaxhydro.sea_plot",),
     ("jaxhydro.export", "jaxhydro.console", "jaxhydro.options"),
-    ("jaxhydro.command",),
+    ("jaxhydro.sea_options",),
+    ("jaxhydro.command", "jaxhydro.arguments"),
+    ("jaxhydro.sea_command",),
     ("jaxhydro.cli",),
 )
 SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
@@ -46,13 +51,13 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
 }
 NUMERICS = [name for layer in LAYERS[:13] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
-    "matplotlib": {"jaxhydro.plot", "calibration.plot"},
+    "matplotlib": {"jaxhydro.plot", "calibration.plot", "calibration.seas_plot"},
     "PIL": {"jaxhydro.plot"},
     "ruamel": {"jaxhydro.problems"},
     "yaml": set(),
     "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals")},
-    "xarray": {"jaxhydro.export", "calibration.outputs", "calibration.readers"},
-    "typer": {"jaxhydro.cli", "jaxhydro.options"},
+    "xarray": {"jaxhydro.export", "calibration.outputs", "calibration.readers", "calibration.seas_outputs"},
+    "typer": {"jaxhydro.cli", "jaxhydro.options", "jaxhydro.arguments"},
     "rich": {"jaxhydro.console"},
 }
 STANDARD = set(sys.stdlib_module_names) - {"csv", "io", "json", "logging", "os", "pathlib", "random", "sys", "warnings"}

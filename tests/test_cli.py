@@ -55,7 +55,6 @@ def test_help_and_version() -> None:
         assert words in text
     for command in ("simulate", "calibrate", "report", "demo", "platforms"):
         assert command in text and "--help" in run(command, "--help")
-    assert "--hs" not in run("simulate", "--help")
     assert run("--version") == f"jaxhydro {jaxhydro.__version__}"
     assert "Usage" in run(status=2)
 
@@ -140,7 +139,7 @@ BAD_OPTIONS = [
     (["--release", "surge=1", "--dt", "700"], "found 700"),
     (["--release", "surge=1", "--step", "-1"], "--step"),
     (["--release", "surge=1", "--duration", "ten"], "Invalid value for '--duration'"),
-    (["--hs", "3"], "No such option: --hs"),
+    (["--hx", "3"], "No such option: --hx"),
 ]
 
 

@@ -1,5 +1,6 @@
 """Motion in time: order of the schemes, exact motions, gradients, equilibrium and natural modes."""
 
+import dataclasses
 import math
 from functools import cache
 
@@ -332,6 +333,21 @@ def test_acceleration_and_its_derivatives() -> None:
             other = 0.5 * (other + other.T) if one.shape == (6, 6) else other
             one = 0.5 * (one + one.T) if one.shape == (6, 6) else one
             assert_allclose(one, other, rtol=1e-7, atol=1e-9 * float(jnp.abs(other).max()))
+
+
+@pytest.mark.parametrize("directions", ["body", "earth"])
+def test_slope_of_the_rate_with_attitude(directions: str) -> None:
+    """Forward derivatives against central differences, where the moments of the added mass turn as well."""
+    model = dataclasses.replace(hull(), directions=directions)
+    state = eqx.tree_at(lambda s: s.velocity, model.rest(), jnp.array([0.3, 0.1, 0.2, 0.01, 0.02, 0.01]))
+
+    @eqx.filter_jit
+    def rate(position):
+        return model.rate(jnp.asarray(0.0), eqx.tree_at(lambda s: s.position, state, position), STILL).velocity
+
+    place, size = jnp.array([0.5, 0.1, 0.2, 0.02, 0.05, 0.03]), 1e-5
+    expected = jnp.stack([(rate(place + size * e) - rate(place - size * e)) / (2 * size) for e in jnp.eye(6)], axis=1)
+    assert_allclose(jax.jacfwd(rate)(place), expected, atol=1e-7 * float(jnp.abs(expected).max()))
 
 
 # statics

@@ -270,6 +270,8 @@ BROKEN: list[tuple[str, Any, str]] = [
     ("members.0.heading", [], "members[0].heading: expected a list of numbers (1 or more)"),
     ("members.0.elements", 2.5, "members[0].elements: expected a whole number >= 1 ... found 2.5"),
     ("members.0.elements", 0, "members[0].elements: expected a whole number >= 1 ... found 0"),
+    ("members.0.points", 0, "members[0].points: expected a whole number >= 1 ... found 0"),
+    ("members.1.points", 1, "members[1].points: expected `elements` with it, found none"),
     ("members.0.maccamy_fuchs", "yes", "members[0].maccamy_fuchs: expected true or false, found 'yes'"),
     ("members.1.maccamy_fuchs", True, "members[1].maccamy_fuchs: expected false for a rectangular member"),
     ("members.0.group", "colum", "members[0].group: expected a group of ... (column, pontoon) ... mean 'column'?"),

@@ -1,0 +1,162 @@
+"""Tests in measured waves: the run of each file, the sea of its wave record, and the model's motion against what was measured.
+
+Windows of one file are one continuous run: its sea is made once, of the whole record, and the platform starts at rest with the
+file. Everything is SI at full scale.
+"""
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.manifest import WAVE
+from calibration.records import Record
+from calibration.result import Series, TestFit
+from calibration.runs import Run, runs
+from jaxhydro.analysis import power_spectrum
+from jaxhydro.environment import DOFS, Environment
+from jaxhydro.model import Model
+from jaxhydro.problems import InputError, Problem
+from jaxhydro.simulate import SEA_STEP, default_step, simulate
+from jaxhydro.statics import equilibrium
+from jaxhydro.waves.irregular import separated_record
+from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.sea import Stretching
+
+MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
+INSIDE = 0.95  # of its variance, that should lie in the band
+RESOLVED = 0.075  # steps of this share of the shortest wave's period
+
+
+@dataclass(frozen=True)
+class Options:
+    """How waves are made and act. Frequencies (Hz, full scale) bound the first order; diffraction None: as the platform says.
+
+    In the default band: below it a sea has no first order worth the name, and what a gauge reads there is bound, or the basin's
+    own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge).
+    """
+
+    order: Literal[1, 2] = 2
+    stretching: Stretching = "vertical"
+    diffraction: str | None = None
+    low: float = 0.03
+    cutoff: float = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class RunSea:
+    """The sea of a run. `mismatch`: share of the record, in the band, that the orders asked for miss."""
+
+    sea: IrregularSea
+    mismatch: float
+    rounds: int
+    inside: float  # share of the record's variance in the band
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class SeaTest:
+    """A test after its transient: measured and simulated motions and wave, and what its sea was. `peak_period` in s.
+
+    `fit.start` has nothing; every series is even in time.
+    """
+
+    fit: TestFit
+    wave: np.ndarray
+    simulated_wave: np.ndarray
+    peak_period: float
+    stated_height: float | None  # m: significant, or of regular waves
+    heading: float
+
+
+class Compared(NamedTuple):
+    """What `compare` finds: tests, seas by run, and words of warning."""
+
+    tests: tuple[SeaTest, ...]
+    seas: tuple[tuple[Run, RunSea], ...]
+    notes: tuple[str, ...]
+    step: float
+
+
+def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
+    """The sea of a run's whole record. Raises InputError where the band or the record do not do."""
+    centred = run.wave - run.wave.mean()
+    frequency = np.fft.rfftfreq(len(centred), run.step)
+    power = np.abs(np.fft.rfft(centred)) ** 2
+    inside = float(power[(frequency >= options.low) & (frequency <= options.cutoff)].sum() / max(power.sum(), 1e-300))
+    try:
+        found = separated_record(run.time, run.wave, environment, position=run.position, heading=run.heading,
+                                 low=options.low, cutoff=options.cutoff, order=options.order)  # fmt: skip
+    except ValueError as error:
+        expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
+        raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
+    sea, notes = IrregularSea(found.waves, environment, options.order, options.stretching), []
+    band = f"{options.low:g} to {options.cutoff:g} Hz"
+    if found.mismatch > MISMATCH:
+        notes.append(f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
+                     "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it")  # fmt: skip
+    if inside < INSIDE:
+        notes.append(f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}")
+    return RunSea(sea, found.mismatch, found.rounds, inside, tuple(notes))
+
+
+def with_diffraction(model: Model, options: Options) -> Model:
+    """The model with the diffraction asked for."""
+    return model if options.diffraction is None else dataclasses.replace(model, diffraction=options.diffraction)
+
+
+def compare(campaign: Campaign, model: Model, options: Options, say: Callable[[str], Any] = lambda _: None) -> Compared:
+    """Simulate every run and compare, test by test. Raises InputError, and Diverged where a motion grows beyond all bounds."""
+    model, found = with_diffraction(model, options), runs(campaign)
+    step = min(SEA_STEP, default_step(model), RESOLVED / options.cutoff)
+    from_rest = campaign.manifest.zero is not None
+    still = np.asarray(equilibrium(model)) if from_rest else np.zeros(6)
+    notes = [] if from_rest else ["the campaign states no `zero`: motions are taken as measured from the reference position"]
+    tests, seas = [], []
+    for run in found:
+        made = sea_of(run, model.environment, options)
+        waves = made.sea.components
+        say(f"{run.file}: {waves.omega.size} waves of {run.time[-1] - run.time[0]:.0f} s, order {options.order}; simulating")
+        last = max(int(run.samples(record)[-1]) for record in run.records)
+        times = run.time[: last + 1]
+        try:
+            motion = np.asarray(simulate(model, times, made.sea, step=step).position)
+        except ValueError as error:
+            raise Diverged(f"{run.file}: {error}") from None
+        if not np.isfinite(motion).all():
+            first = times[np.argmin(np.isfinite(motion).all(axis=1))]
+            raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
+        wave = made.sea.gauge(times, run.position)
+        tests += [_test(run, record, motion - still, wave, campaign.manifest.scale) for record in run.records]
+        seas.append((run, made))
+        notes += [*run.notes, *made.notes]
+    order = [record.id for record in campaign.records]
+    return Compared(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), tuple(seas), tuple(notes), step)
+
+
+class Diverged(ArithmeticError):
+    """A simulated motion that is no result."""
+
+
+def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale: float) -> SeaTest:
+    """A test's samples after its transient, on the run's even clock."""
+    at = run.samples(record)
+    whole = np.arange(at[0], at[-1] + 1)
+    whole = whole[run.time[whole] >= record.time[0] + record.transient - 0.5 * run.step]
+    series = tuple(
+        Series(dof, np.interp(whole, at, record.values[dof]), motion[whole, DOFS.index(dof)], 0.0, record.noise[dof], False)
+        for dof in DOFS if dof in record.values
+    )  # fmt: skip
+    test, time, measured = record.test, run.time[whole], run.wave[whole]
+    stated = test.peak_period if record.kind == "irregular" else test.period
+    height = test.significant_wave_height if record.kind == "irregular" else test.wave_height
+    if stated is None:
+        spectrum = power_spectrum(time, measured)
+        period = 1 / float(spectrum.frequency[1:][np.argmax(spectrum.density[1:])])
+    else:
+        period = stated * scale**0.5
+    fit = TestFit(record.id, record.use, record.kind, None, time, series, {}, record.file)
+    return SeaTest(fit, measured, wave[whole], period, None if height is None else height * scale, run.heading)

@@ -1,0 +1,137 @@
+"""What the command line's help says, and the options of `jaxhydro simulate`."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from jaxhydro.sea_options import CUTOFF, LOW, ORDER, SEED, TIME_COLUMN, TRANSIENT, WAVE_COLUMN
+
+SEA, RECORD, HOW = "Irregular waves from a spectrum", "Irregular waves from a record", "How waves act"
+OTHER = "Regular waves and free decays"
+HELP = (
+    "Motions of floating-wind platforms in waves, and the coefficients that make them follow a basin test.\n\n"
+    "A platform is one YAML file: hull members, mass, mooring, starting coefficients. A campaign is a folder: that "
+    "file, a campaign.yaml that says what was measured in which columns, and one data file per test."
+)
+EPILOG = "\n\n".join((
+    "[bold]Examples[/bold]",
+    "jaxhydro demo --out demo",
+    "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --out sea",
+    "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
+    "jaxhydro calibrate my-campaign --out results",
+    "[bold]Formats[/bold]",
+    "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
+    "example to copy: `jaxhydro demo` prints where they are.",
+    "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so.",
+))  # fmt: skip
+EXAMPLES = "\n\n".join((
+    "[bold]Examples[/bold]",
+    "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --duration 3600 --out sea",
+    "jaxhydro simulate volturnus-s --wave tank.csv --wave-column probe1 --wave-position -100 0 --out tank",
+    "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
+    "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
+    "jaxhydro simulate my-campaign --calibration results/calibration.json --out seas",
+))  # fmt: skip
+
+
+class Spectrum(StrEnum):
+    """Spectra by name."""
+
+    jonswap = "jonswap"
+    pierson_moskowitz = "pierson-moskowitz"
+    white = "white"
+
+
+class Amplitudes(StrEnum):
+    """See `spectrum_components`."""
+
+    deterministic = "deterministic"
+    rayleigh = "rayleigh"
+
+
+class Diffraction(StrEnum):
+    """See `Model`."""
+
+    maccamy_fuchs = "maccamy_fuchs"
+    ramp = "ramp"
+    none = "none"
+
+
+class Stretch(StrEnum):
+    """See `WaveSea`."""
+
+    none = "none"
+    vertical = "vertical"
+    wheeler = "wheeler"
+    extrapolation = "extrapolation"
+
+
+def _option(name: str, panel: str, text: str, default: str | bool = False, **more: Any) -> Any:
+    return typer.Option(name, help=text, rich_help_panel=panel, show_default=default, **more)
+
+
+Hs = Annotated[float | None, _option("--hs", SEA, "Significant wave height, m: 4 times the root of the spectrum's area.")]
+Tp = Annotated[float | None, _option("--tp", SEA, "Peak period, s.")]
+Gamma = Annotated[
+    float | None, _option("--gamma", SEA, "Peak enhancement of JONSWAP, 1 to 7.", "IEC 61400-3-1, by Tp / sqrt(Hs)")
+]
+Kind = Annotated[Spectrum | None, _option("--spectrum", SEA, "white: even from --low to --cutoff, without --tp.", "jonswap")]
+Seed = Annotated[int | None, _option("--seed", SEA, "Of the random phases: one seed, one sea.", str(SEED), min=0)]
+Height = Annotated[
+    Amplitudes | None,
+    _option("--amplitudes", SEA, "Of components: as the spectrum says, or random about it, as in nature.", "deterministic"),
+]
+Wave = Annotated[
+    Path | None, _option("--wave", RECORD, "File with a measured elevation: evenly sampled, s and m at full scale.")
+]
+WaveColumn = Annotated[str | None, _option("--wave-column", RECORD, "Its column: a header, or a number from 0.", WAVE_COLUMN)]
+TimeColumn = Annotated[str | None, _option("--wave-time-column", RECORD, "The column of times.", TIME_COLUMN)]
+Gauge = Annotated[
+    tuple[float, float] | None,
+    _option("--wave-position", RECORD, "Where it was measured, m from the reference position.", "0 0", metavar="X Y"),
+]
+Low = Annotated[float | None, _option("--low", HOW, "Lowest frequency of the first-order waves, Hz.", f"{LOW:g}")]
+Cutoff = Annotated[
+    float | None,
+    _option("--cutoff", HOW, "Highest, Hz. In high seas take less: a note says so.", f"{CUTOFF:g}"),
+]
+Order = Annotated[
+    int | None, _option("--order", HOW, "2: with the waves that they bind (Sharma and Dean).", str(ORDER), min=1, max=2)
+]
+Stretching = Annotated[
+    Stretch | None,
+    _option("--stretching", HOW, "Flow above still water; none: wetted up to still water only.", "vertical"),
+]
+Diffracting = Annotated[
+    Diffraction | None,
+    _option(
+        "--diffraction",
+        HOW,
+        "Columns: maccamy_fuchs takes the place of 1 + Ca, ramp does in short waves only, none: 1 + Ca.",
+        "the platform file's, or maccamy_fuchs",
+    ),
+]
+Transient = Annotated[
+    float | None,
+    _option("--transient", HOW, "Left out of statistics and spectra, s.", f"{TRANSIENT:g}, at most a quarter of it all"),
+]
+Elements = Annotated[
+    int | None,
+    _option("--elements", HOW, "Load elements along every pontoon.", "the platform file's, or by length", min=1, max=1000),
+]
+Heading = Annotated[float, _option("--heading", HOW, "Where the waves run to, deg from x towards y.", True)]
+Release = Annotated[
+    list[str] | None, _option("--release", OTHER, "Offset from rest at the start, m or deg, as surge=5; once per motion.")
+]
+WaveHeight = Annotated[float | None, _option("--wave-height", OTHER, "Regular waves: height crest to trough, m.")]
+WavePeriod = Annotated[float | None, _option("--wave-period", OTHER, "Regular waves: period, s.")]
+Duration = Annotated[
+    float | None, typer.Option(help="Simulated time, s.", show_default="600, 3600 in a sea, or all of a record")
+]
+Dt = Annotated[float, typer.Option("--dt", help="Time between the samples that are written, s.")]
+Calibrated = Annotated[Path | None, typer.Option("--calibration", help="A calibration.json whose values are to be used.")]
+Step = Annotated[
+    float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")
+]

@@ -1,0 +1,81 @@
+"""Load elements of a group of members: what a lumped strip is, and how motions come nearer with more."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from jaxhydro import IrregularSea, build, convergence, jonswap, load_platform, natural_modes, simulate, spectrum_components
+from jaxhydro.analysis import band_integral, bands, power_spectrum
+from jaxhydro.convergence import with_elements
+
+PLATFORM = load_platform("volturnus-s-focal")
+TIMES = np.arange(0.0, 480.0, 0.5)
+
+
+@pytest.fixture(scope="module")
+def sea() -> IrregularSea:
+    water = build(PLATFORM).environment
+    waves = spectrum_components(lambda w: jonswap(w, 3.1, 8.96), 480.0, water, low=0.05, cutoff=0.2, seed=3)
+    return IrregularSea(waves, water)
+
+
+@pytest.fixture(scope="module")
+def found(sea: IrregularSea):
+    return convergence(PLATFORM, sea, TIMES, peak_period=8.96, elements=(4, 1, 2), points=1, transient=120.0)
+
+
+def test_a_lumped_strip_is_at_the_middle() -> None:
+    """Midpoint rule: three pontoons of 40.5 m from r = 5 m, one strip each; columns stay as they are."""
+    before, after = (build(p).hull for p in (PLATFORM, with_elements(PLATFORM, "pontoon", 1, points=1)))
+    lumped = [i for i, e in enumerate(after.strips.element) if float(after.elements.thickness[e]) > 0]
+    assert len(lumped) == 3
+    of = np.array(after.strips.element)[lumped]
+    along = after.strips.fraction[np.array(lumped)] * after.elements.length[of]
+    place = after.strips.start[:, lumped] + along * after.strips.axis[:, lumped]
+    assert_allclose(jnp.hypot(place[0], place[1]), 25.25, rtol=1e-12)
+    assert_allclose(after.strips.weight[np.array(lumped)], 1.0, rtol=1e-15)
+    count = [sum(float(h.elements.thickness[e]) == 0 for e in h.strips.element) for h in (before, after)]
+    assert count[0] == count[1] == 4 * 8
+
+
+def test_periods_by_elements(found) -> None:
+    """Heave's added mass is the sum whatever the lumps; of pitch's n lumps miss L^2 / (12 n^2): errors of T^2 fall by 4."""
+    assert found.elements == (4, 1, 2)
+    assert_allclose(found.period["heave"], found.period["heave"][0], rtol=1e-10)
+    whole = natural_modes(build(PLATFORM)).of("pitch")
+    four, one, two = found.period["pitch"] ** 2 - whole**2
+    assert one < two < four < 0
+    assert (one / two, two / four) == pytest.approx((4, 4), rel=0.03)
+
+
+def test_motions_by_elements(found) -> None:
+    """Against the finest: none for itself, less for two than for one; changes of integrals follow."""
+    for dof in ("surge", "heave", "pitch"):
+        four, one, two = found.difference[dof]
+        assert four == 0 < two < one
+    heave = found.change("heave", "wave_frequency")
+    assert heave[0] == 0 < heave[2] < heave[1] < 0.2
+    assert_allclose(found.integral["heave"]["wave_frequency"][1], (1 + heave[1]) * found.integral["heave"]["wave_frequency"][0])
+
+
+def test_the_same_in_a_cut_platform(sea: IrregularSea, found) -> None:
+    """One row is the simulation of the platform with that many elements."""
+    motion = np.asarray(simulate(build(with_elements(PLATFORM, "pontoon", 2, points=1)), TIMES, sea)["heave"])
+    kept = TIMES >= 120.0
+    spectrum = power_spectrum(TIMES[kept], motion[kept])
+    expected = band_integral(spectrum, *bands("heave", 8.96)["low_frequency"])
+    assert found.integral["heave"]["low_frequency"][2] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"group": "pontoons"}, r"a group of members \(column, pontoon\) expected, found 'pontoons'"),
+        ({"elements": (1, 0)}, r"at least 1, found \(1, 0\)"),
+        ({"elements": ()}, r"found \(\)"),
+    ],
+)
+def test_what_cannot_be(sea: IrregularSea, options, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        convergence(PLATFORM, sea, TIMES, peak_period=8.96, **options)
