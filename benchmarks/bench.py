@@ -83,8 +83,8 @@ def main() -> None:
 
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
-    parts = (bench_decay.measure(arguments.quick), bench_sea.measure(arguments.quick), bench_fit.measure(budget, arguments.quick))
-    for more, said in chain.from_iterable(parts):
+    of_models = chain(bench_decay.measure(arguments.quick), bench_sea.measure(arguments.quick))
+    for more, said in chain(of_models, bench_fit.measure(budget, arguments.quick)):
         rows += more
         notes += said
         for row in more:

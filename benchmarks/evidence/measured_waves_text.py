@@ -148,14 +148,14 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
         f"- **Low-frequency surge has the wrong growth**: {row('tuned', 'surge', BANDS[0])} from the lowest sea to the highest "
         f"(order 1: {row('tuned-1', 'surge', BANDS[0])}; {FITTED}: {row('fitted', 'surge', BANDS[0])}). Its standard deviation "
         f"grows with the significant height to the power {power(base['seas'], 0):.2f} measured, {power(base['seas'], 1):.2f} "
-        "simulated: what excites the model is too little in low seas and too much, or too little damped, in high ones.",
+        "simulated: too little excited, or too much damped, in the lowest sea, and the reverse in the highest.",
         f"- **Mean surge** is off by {mean} %. It counts from still water: where the platform rests does not matter.",
         f"- **Low-frequency heave and pitch are missing**: {row('tuned', 'heave', BANDS[0])} and "
         f"{row('tuned', 'pitch', BANDS[0])}. The measured peaks in {SEA} are at {peak(mid, 'heave', 0):.1f} s (heave) and "
         f"{peak(mid, 'pitch', 0):.1f} s (pitch); the model's natural periods are {base['periods'][1]:.1f} and "
-        f"{base['periods'][2]:.1f} s. In part heave's natural period is too short, so its added mass too small; the rest, and "
-        "pitch's, is excitation that second-order waves on these strips do not have.",
-        f"- Twelve elements along every pontoon instead of three change no error by more than {finer:.1f} points.", "",
+        f"{base['periods'][2]:.1f} s. Heave's natural period is too short, so its added mass too small; whether "
+        "the rest, and pitch's, is excitation that is not there or damping that is too large, this comparison does not say.",
+        f"- Twelve elements along every pontoon instead of three change no error by more than {finer:.2f} points.", "",
     ]  # fmt: skip
 
 

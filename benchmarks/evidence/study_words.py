@@ -46,8 +46,8 @@ def words(found: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
 
         first = [over("2", "1", i) if "2" in result else "–" for i in (0, 2, 4)]
         later = [over("3", "2", i) if "3" in result else "–" for i in (0, 1, 4)]
-        drift = f"{result['3'][-1] - result['2'][-1] if '2' in result else result['3'][-1] - base['2'][-1]:.2f}"
-        rows.append((name, *first, *later, drift if "3" in result else "–"))
+        drift = f"{both['3'][-1] - both['2'][-1]:.2f}" if "3" in result else "–"
+        rows.append((name, *first, *later, drift))
     head = ("Changed", "surge LF 2/1", "heave LF 2/1", "pitch LF 2/1", "surge LF 3/2", "surge WF 3/2", "pitch LF 3/2",
             "drift 3 - 2 (m)")  # fmt: skip
     paper = [implied(a, b, i)[0] for a, b, i in
