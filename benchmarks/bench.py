@@ -1,9 +1,10 @@
 """Speed as ratios in one run: against plain NumPy, finite differences and population searches.
 
-    python -m benchmarks.bench [--quick] [--budget SECONDS] [--out FILE]
+    python -m benchmarks.bench [--quick] [--only decay|sea|fit] [--budget SECONDS] [--out FILE]
 
 writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
-contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run; it writes only where `--out` says.
+contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run, `--only` a part; these write only where
+`--out` says.
 """
 
 import argparse
@@ -67,10 +68,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a smoke run of a minute, its numbers worth nothing")
     parser.add_argument("--budget", type=float, help="CPU seconds for each population search (300; quick: 0.3)")
-    parser.add_argument("--out", type=Path, help="file to write (benchmarks/results.md; quick: none)")
+    parser.add_argument("--only", choices=("decay", "sea", "fit"), help="one part of the three")
+    parser.add_argument("--out", type=Path, help="file to write (benchmarks/results.md; quick or a part: none)")
     arguments = parser.parse_args()
     budget = (0.3 if arguments.quick else 300.0) if arguments.budget is None else arguments.budget
-    out = arguments.out or (None if arguments.quick else RESULTS)
+    out = arguments.out or (None if arguments.quick or arguments.only else RESULTS)
     cores = os.cpu_count() or 1
     pin()
     import jax
@@ -83,13 +85,18 @@ def main() -> None:
 
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
-    of_models = chain(bench_decay.measure(arguments.quick), bench_sea.measure(arguments.quick))
-    for more, said in chain(of_models, bench_fit.measure(budget, arguments.quick)):
+    parts = {
+        "decay": lambda: bench_decay.measure(arguments.quick),
+        "sea": lambda: bench_sea.measure(arguments.quick),
+        "fit": lambda: bench_fit.measure(budget, arguments.quick),
+    }
+    for more, said in chain.from_iterable(part() for name, part in parts.items() if arguments.only in (None, name)):
         rows += more
         notes += said
         for row in more:
             console.print(f"{row.what}: {row.result}", style="dim", highlight=False)
-    options = (" --quick" if arguments.quick else "") + f" --budget {budget:g}"
+    options = (" --quick" if arguments.quick else "") + (f" --only {arguments.only}" if arguments.only else "")
+    options += f" --budget {budget:g}" if arguments.only in (None, "fit") else ""
     begun = [
         f"{datetime.date.today().isoformat()}, `python -m benchmarks.bench{options}`. Process CPU time on one core, "
         "contestants in turns, medians; ratios are medians over turns. Compilation is apart everywhere.",

@@ -22,8 +22,9 @@ class Flow(eqx.Module):
     """Water at points, along earth axes: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2).
 
     `diffracted` (m/s2) is what the displaced mass of a cylinder is to be multiplied by for its excitation, the inertia
-    coefficient of MacCamy and Fuchs included: zero at points that are on none, None where there are none. `tuned` (m/s2) is
-    the acceleration in waves that are long for the cylinder, where it was asked for: see `diffraction.long_waves`.
+    coefficient of MacCamy and Fuchs included: zero at points that are on none, None where there are none. Horizontal: of a
+    leaning cylinder what the vertical acceleration adds is left out. `tuned` (m/s2) is the acceleration in waves that are
+    long for the cylinder, where it was asked for: see `diffraction.long_waves`.
     """
 
     velocity: Float[Array, "3 n"]
