@@ -11,10 +11,11 @@ import numpy as np
 from ruamel.yaml import YAML
 
 from benchmarks.bench_timing import Row, contest, times
+from benchmarks.reference_model import matrix_of, state_of
 from benchmarks.reference_waves import WaveModel, Waves, march
 from jaxhydro import IrregularSea, State, build, equilibrium, jonswap, load_platform, spectrum_components
+from jaxhydro.convergence import with_elements
 from jaxhydro.integrate import clock, integrate
-from jaxhydro.platform_schema import Platform
 from jaxhydro.waves import Components
 
 HEIGHT, PERIOD = 8.1, 12.8  # m, s
@@ -29,12 +30,7 @@ class Hour:
     """A sea of `duration` s and the platform in it, as case 4 of the paper: second order, stretching, MacCamy and Fuchs."""
 
     def __init__(self, duration: float) -> None:
-        platform = load_platform(PLATFORM)
-        members = [
-            member.model_copy(update={"elements": ELEMENTS}) if member.group == "pontoon" else member
-            for member in platform.members
-        ]
-        self.platform: Platform = platform.model_copy(update={"members": tuple(members)})
+        self.platform = with_elements(load_platform(PLATFORM), "pontoon", ELEMENTS)
         self.model = build(self.platform)
         self.duration, self.steps = duration, round(duration / STEP)
         self.components: Components = spectrum_components(
@@ -107,7 +103,7 @@ def speed(hour: Hour, rounds: int, seconds: float) -> tuple[list[Row], list[str]
     share = hour.duration / seconds
     hour_of = {name: turn.median * (share if name == "numpy" else 1.0) for name, turn in turns.items()}
     pairs = plain(hour, 2)
-    pairs.rate(0.0, state := _state(begin))
+    pairs.rate(0.0, state := state_of(begin))
     begun = time.process_time()
     pairs.rate(1.0, state)
     each = time.process_time() - begun
@@ -162,7 +158,7 @@ def kinematics(hour: Hour) -> tuple[list[Row], list[str]]:
     for order in (1, 2):
         sea = hour.prepared(order)
         model = plain(hour, order)
-        attitude = build_rotation(AWAY[3:])
+        attitude = matrix_of(state_of(AWAY)[3:7])
         points = AWAY[:3, None] + attitude @ np.asarray(hour.model.hull.strips.start)
         points[2] = np.minimum(points[2], 0.0)
         worst = np.zeros(2)
@@ -189,18 +185,6 @@ def preparing(hour: Hour) -> tuple[list[Row], list[str]]:
         what = f"Sea of order {order} made ready, N = {hour.components.omega.size}"
         rows.append(Row(what, f"{took:.2g} s, {sea.series.nbytes / 1e6:.3g} MB", goal, prototype))
     return rows, ["A sea made ready: its second order, its support wavenumbers and their series; the memory is what is kept."]
-
-
-def build_rotation(attitude: np.ndarray) -> np.ndarray:
-    from scipy.spatial.transform import Rotation
-
-    return Rotation.from_euler("ZYX", attitude[::-1]).as_matrix()
-
-
-def _state(q: np.ndarray) -> np.ndarray:
-    from benchmarks.reference_model import state_of
-
-    return state_of(q, np.zeros(6))
 
 
 def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:

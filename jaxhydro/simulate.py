@@ -16,6 +16,7 @@ from jaxhydro.model import Model, State
 from jaxhydro.response import Response
 from jaxhydro.rotations import rotation
 from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
@@ -83,14 +84,14 @@ def simulate(
     irregular = isinstance(sea, IrregularSea)
     method = ("ab4" if irregular else "tsit5") if method is None else method
     limit = step if step is not None else SEA_STEP if irregular else default_step(model)
-    duration = float(times[-1] - times[0])
-    steps = max(1, math.ceil(duration / limit - 1e-9))
     start = model.rest()
     rest = equilibrium(model) if position is None or isinstance(position, Mapping) else jnp.zeros(6)
     q = rest + by_name(position)
     start = State(q, model.body_velocity(q, by_name(rate)), start.memory)
     if isinstance(sea, IrregularSea):
         return _in_irregular(model, sea, start, times, limit, method, adjoint)
+    duration = float(times[-1] - times[0])
+    steps = max(1, math.ceil(duration / limit - 1e-9))
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
 
 
@@ -99,7 +100,8 @@ def _in_irregular(
 ) -> Response:
     """In steps that divide the sea's period; prepared anew for a larger box where the platform has left the first one."""
     begin, duration = float(times[0]), float(times[-1] - times[0])
-    step = float(sea.components.period) / even(float(sea.components.period) / limit)
+    period = float(sea.components.period)
+    step = period / fourier_length(period / limit)
     steps = max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
     points, excursion = model.hull.extremities(), EXCURSION
     while True:
@@ -118,14 +120,6 @@ def _reached(position, points, along, middle):
     """Farthest distance (m) of any point of the hull from the middle of the sea's box, along the waves."""
     place = jax.vmap(lambda q: along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - middle)(position)
     return jnp.abs(place).max()
-
-
-def even(steps: float) -> int:
-    """The least whole number, not below `steps`, with no prime factor above 5: a good length of Fourier transforms."""
-    count = max(1, math.ceil(steps - 1e-9))
-    while (60 ** count.bit_length()) % count:
-        count += 1
-    return count
 
 
 def free_decay(

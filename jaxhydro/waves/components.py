@@ -25,11 +25,16 @@ class Components(eqx.Module):
     first: int | None = eqx.field(static=True, default=None)
 
     @property
-    def period(self) -> Float[Array, ""]:
-        """Time (s) after which the sea repeats itself. Raises ValueError where the frequencies are no harmonics."""
+    def harmonics(self) -> tuple[int, int]:
+        """Numbers of the first and the last harmonic. Raises ValueError where the frequencies are none."""
         if self.first is None:
             raise ValueError("the components are no successive harmonics of a period")
-        return self.first * 2 * math.pi / self.omega[0]
+        return self.first, self.first + self.omega.size - 1
+
+    @property
+    def period(self) -> Float[Array, ""]:
+        """Time (s) after which the sea repeats itself. Raises ValueError where the frequencies are no harmonics."""
+        return self.harmonics[0] * 2 * math.pi / self.omega[0]
 
     def vector(self) -> Float[Array, "2 w"]:
         """Wavenumber vectors (rad/m)."""

@@ -27,10 +27,15 @@ _second_order = eqx.filter_jit(elevation_spectrum)  # once per band and record l
 def repeat_period(duration: float) -> float:
     """The least number of whole seconds, not below `duration` (s), with no prime factor above 5: steps of 1, 0.5, 0.25, 0.2 or
     0.1 s then make Fourier transforms of good lengths, and the sea does not repeat itself within `duration`."""
-    seconds = max(math.ceil(duration - 1e-9), 1)
-    while (60 ** seconds.bit_length()) % seconds:  # 60 = 2^2 3 5: divides a high power of it only if 2, 3 and 5 are all it has
-        seconds += 1
-    return float(seconds)
+    return float(fourier_length(duration))
+
+
+def fourier_length(least: float) -> int:
+    """The least whole number, not below `least`, with no prime factor above 5: a good length of Fourier transforms."""
+    count = max(math.ceil(least - 1e-9), 1)
+    while (60 ** count.bit_length()) % count:  # 60 = 2^2 3 5: divides a high power of it only if 2, 3 and 5 are all it has
+        count += 1
+    return count
 
 
 def spectrum_components(

@@ -17,7 +17,6 @@ from jaxhydro.waves.sea import AbstractSea, Stretching, WaveSea, growth, stretch
 from jaxhydro.waves.second_order import bound_waves, elevation_spectrum, fold
 from jaxhydro.waves.supports import Box, field, supports, surface, weights
 
-DIRECT = 64  # components up to which pairs are written out where a sea is evaluated directly
 EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
 
 
@@ -67,11 +66,11 @@ class IrregularSea(AbstractSea):
     ) -> Float[np.ndarray, " t"]:
         """Elevation (m) at `times` (s) at a fixed horizontal `position` (m), of all orders or of the `order` asked for."""
         waves, times = self.components, np.asarray(times, float)
-        spectrum = np.zeros(2 * _last(waves) + 1, complex)
+        first, last = waves.harmonics
+        spectrum = np.zeros(2 * last + 1, complex)
         if order != 2:
-            first = _first(waves)
             there = waves.complex_amplitude() * jnp.exp(-1j * (jnp.asarray(position) @ waves.vector()))
-            spectrum[first : first + waves.omega.size] = np.asarray(there)
+            spectrum[first : last + 1] = np.asarray(there)
         if order != 1 and self.order == 2:
             spectrum += np.asarray(_elevation(waves, self.environment, jnp.asarray(position, float)))
         omega = 2 * math.pi / float(waves.period) * np.arange(spectrum.size)
@@ -99,7 +98,7 @@ class IrregularSea(AbstractSea):
         box = Box(0.0, 5.0 * math.ceil(half / 5.0), 2.0 * math.floor(low / 2.0), depth)
         found = supports(box, free, 2 * free if self.order == 2 else 0.0)
         size = round(float(waves.period) / clock.step)
-        highest = _last(waves) * self.order
+        highest = waves.harmonics[1] * self.order
         if abs(size * clock.step - float(waves.period)) > 1e-6 * clock.step:
             raise ValueError(f"steps of {clock.step:g} s do not divide the sea's period of {float(waves.period):g} s")
         if highest >= size:
@@ -111,7 +110,7 @@ class IrregularSea(AbstractSea):
         options = (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp)
         arrays = (jnp.asarray(found.table), found.spacing, jnp.asarray(middle), jnp.asarray(along), radius)
         spectrum = _spectrum(waves, self.environment, self.order, options, *arrays)
-        series, fine = _series(spectrum, 2 * math.pi / float(waves.period), clock.start, clock.step, size, clock)
+        series, fine = _series(spectrum, 2 * math.pi / float(waves.period), size, clock)
         return SupportSea(
             self.environment,
             series,
@@ -129,16 +128,6 @@ class IrregularSea(AbstractSea):
 
 
 _elevation = eqx.filter_jit(elevation_spectrum)
-
-
-def _first(waves: Components) -> int:
-    if waves.first is None:
-        raise ValueError("the components are no successive harmonics of a period")
-    return waves.first
-
-
-def _last(waves: Components) -> int:
-    return _first(waves) + waves.omega.size - 1
 
 
 @eqx.filter_jit
@@ -175,30 +164,28 @@ def _spectrum(
 
     def sums(omega, vector, elevation, potential):
         rows, k = families(omega, vector, elevation, potential, diffract_bound)
-        w = weights(table, spacing, k)
-        both = jnp.concatenate([rows.real, rows.imag]) @ w
-        return both
+        return jnp.concatenate([rows.real, rows.imag]) @ weights(table, spacing, k)
 
-    first = _first(waves)
+    first, last = waves.harmonics
     free = PlaneWaves.free(waves, environment)
     rows, k = families(free.omega, free.vector, free.elevation, free.potential, True)
     found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
     if order == 1:
         return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
     real, imaginary = jnp.split(fold(waves, environment, sums), 2, axis=1)
-    return (real + 1j * imaginary).at[first : first + waves.omega.size].add(found)
+    return (real + 1j * imaginary).at[first : last + 1].add(found)
 
 
 @eqx.filter_jit
 def _series(
-    spectrum: Complex[Array, "b f r"], fundamental: float, start: float, step: float, size: int, clock: Clock
+    spectrum: Complex[Array, "b f r"], fundamental: float, size: int, clock: Clock
 ) -> tuple[Float[Array, "t s f 2*r"], Float[Array, "h f 2*r"] | None]:
     """Real and imaginary parts on the clock, by inverse Fourier transforms, one for each node of the steps."""
     omega = fundamental * jnp.arange(spectrum.shape[0])
     kept = clock.steps + 1
 
     def at(node: Float[Array, ""]) -> Float[Array, "t f 2*r"]:
-        shifted = spectrum * jnp.exp(1j * omega * (start + node * step))[:, None, None]
+        shifted = spectrum * jnp.exp(1j * omega * (clock.start + node * clock.step))[:, None, None]
 
         def one(rows):  # (b, r)
             values = jnp.fft.ifft(rows, n=size, axis=0) * size
@@ -210,7 +197,7 @@ def _series(
     series = jnp.stack([at(jnp.asarray(node)) for node in clock.nodes], axis=1)
     if not clock.fine:
         return series, None
-    times = start + step * (0.5 + jnp.arange(clock.fine))
+    times = clock.start + clock.step * (0.5 + jnp.arange(clock.fine))
     halves = jnp.einsum("tb,bfr->tfr", jnp.exp(1j * omega * times[:, None]), spectrum)
     return series, jnp.concatenate([halves.real, halves.imag], axis=2)
 

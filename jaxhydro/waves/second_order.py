@@ -140,10 +140,7 @@ def fold(waves: Components, environment: Environment, reduce: Reduce, kinds: Seq
     amplitudes, and finite where omega and vector are 0: b = 0 is the set-down, and of empty pairs the vector means nothing.
     Memory is that of the result, also for gradients. Raises ValueError where the components are no successive harmonics.
     """
-    if waves.first is None:
-        raise ValueError("the components are no successive harmonics of a period")
-    n = waves.omega.size
-    last = waves.first + n - 1
+    n, (first, last) = waves.omega.size, waves.harmonics
     width = min(n, TILE)
     amplitude, index = waves.complex_amplitude(), jnp.arange(n, dtype=float)
     # apart, so that derivatives by amplitudes leave the transfer functions alone
@@ -154,21 +151,21 @@ def fold(waves: Components, environment: Environment, reduce: Reduce, kinds: Seq
     fundamental = waves.omega[-1] / last
 
     def sums(tables: tuple[Float[Array, "4 m"], Float[Array, "2 m"]], tile: _Tiles) -> PyTree:
-        (first, a), (second, b) = (
+        (one, a), (other, b) = (
             [jax.lax.dynamic_slice_in_dim(table, start, width, axis=1) for table in tables] for start in (tile.i, tile.j)
         )
-        e, phi = _transfer((first[1], first[2:]), (second[1], second[2:]), environment, tile.sign)
-        weight = jnp.where(first[0] == second[0], 0.5, 1.0) * jax.lax.complex(a[0], a[1])
+        e, phi = _transfer((one[1], one[2:]), (other[1], other[2:]), environment, tile.sign)
+        weight = jnp.where(one[0] == other[0], 0.5, 1.0) * jax.lax.complex(a[0], a[1])
         weight = weight * jax.lax.complex(b[0], tile.sign * b[1])
         omega = jnp.broadcast_to(tile.harmonic * fundamental, (width,))
-        return reduce(omega, first[2:] + tile.sign * second[2:], weight * e, weight * phi)
+        return reduce(omega, one[2:] + tile.sign * other[2:], weight * e, weight * phi)
 
     def step(total: PyTree, tile: _Tiles) -> tuple[PyTree, None]:
         # pairs are worked out again for gradients: kept, they are the square of the components
         found = jax.checkpoint(sums, prevent_cse=False)(tables, tile)
         return jax.tree.map(lambda t, f: t.at[tile.harmonic].add(f), total, found), None
 
-    tiles = _tiles(n, waves.first, kinds, width)
+    tiles = _tiles(n, first, kinds, width)
     shapes = jax.eval_shape(sums, tables, jax.tree.map(lambda x: x[0], tiles))
     empty = jax.tree.map(lambda s: jnp.zeros((2 * last + 1, *s.shape), s.dtype), shapes)
     return jax.lax.scan(step, empty, tiles)[0]
