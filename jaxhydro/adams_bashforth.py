@@ -72,7 +72,7 @@ def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool)
         at, add, time, number = _row(index)
         path = jax.lax.dynamic_update_index_in_dim(path, y, number + jnp.maximum(index - len(ROWS.time) + 1, 0), 0)
         state = y + step * (at @ slopes)
-        slope = rate(driver, start + step * time, state)
+        slope = jnp.concatenate(rate(driver, start + step * time, state))
         taken = jax.lax.dynamic_update_index_in_dim(taken, state, index, 0) if keep else None
         return *_advance(y, slopes, slope, add, step), path, taken
 
@@ -132,7 +132,7 @@ def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Flo
     def advance(carry, index):
         y, slopes = carry
         at, add, time, _ = _row(index)
-        slope = rate(driver, start + step * time, y + step * (at @ slopes))
+        slope = jnp.concatenate(rate(driver, start + step * time, y + step * (at @ slopes)))
         return _advance(y, slopes, slope, add, step), y
 
     total = evaluations(capacity + 1)

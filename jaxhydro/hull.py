@@ -69,8 +69,7 @@ class Hull(eqx.Module):
     def wrench(self, force: Float[Array, " l"], away: Float[Array, " l"]) -> Float[Array, "6"]:
         """Force and moment (N, N m) on the platform, in body axes, of forces (N) along lines whose strips are `away` (m) from
         the element's start."""
-        lever, twist = jnp.split(self.motion, 2, axis=1)
-        return (lever + twist * away) @ force
+        return self.motion @ jnp.concatenate([force, away * force])
 
     def split(self, lines: Float[Array, " l"]) -> tuple[Float[Array, "2 n"], Float[Array, " m"]]:
         """What belongs to the strips, by direction, and what to the ends."""

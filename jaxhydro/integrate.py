@@ -65,8 +65,8 @@ def _by_loop(
     run: Any = loop.forward if adjoint == "forward" else loop.backward
     options = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
 
-    def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> Float[Array, " s"]:
-        return ravel_pytree(driver[0].rate(time, unravel(y), driver[1]))[0]
+    def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> tuple[Array, ...]:
+        return tuple(leaf.reshape(-1) for leaf in jax.tree.leaves(driver[0].rate(time, unravel(y), driver[1])))
 
     path = run((model, sea), y, start, step, count, rate=rate, capacity=capacity, **options)
     states = jax.vmap(unravel)(path)

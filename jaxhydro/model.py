@@ -161,14 +161,16 @@ class Model(eqx.Module):
         if flow is None:
             past, past_end = StripFlow(own, None), EndFlow(own_end, None, None, end_wet)
         else:
-            velocity, acceleration = turned(matrix.T, flow.velocity), turned(matrix.T, flow.acceleration)
+            axes = matrix if flow.axes is None else flow.axes.T @ matrix
+            toward = (axes @ strips.directions.reshape(3, -1)).reshape(-1, 2, n)
+            toward_end = axes @ ends.axis
 
-            def across(field: Float[Array, "3 n+m"]) -> Float[Array, "2 n"]:
-                return (strips.directions * field[:, None, :n]).sum(axis=0)
+            def across(field: Float[Array, "a n+m"]) -> Float[Array, "2 n"]:
+                return (toward * field[:, None, :n]).sum(axis=0)
 
-            extra = [None if field is None else across(turned(matrix.T, field)) for field in (flow.diffracted, flow.tuned)]
-            past = StripFlow(own + across(velocity), across(acceleration), *extra)
-            at_ends = [(ends.axis * field[:, n:]).sum(axis=0) for field in (velocity, acceleration)]
+            extra = [None if field is None else across(field) for field in (flow.diffracted, flow.tuned)]
+            past = StripFlow(own + across(flow.velocity), across(flow.acceleration), *extra)
+            at_ends = [(toward_end * field[:, n:]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
             past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[n:], end_wet)
         return Instant(
             time, state.position, matrix, state.velocity, self.environment, hull, wetted, shape, past, past_end, lines

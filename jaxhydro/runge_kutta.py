@@ -17,7 +17,7 @@ from jaxtyping import Array, Float, Int
 BLOCK = 64  # steps per checkpointed block of a reverse gradient
 BATCH = 32  # stages linearised together: fills the vector units and stays in the cache
 
-Rate = Callable[[Any, Float[Array, ""], Float[Array, " s"]], Float[Array, " s"]]
+Rate = Callable[[Any, Float[Array, ""], Float[Array, " s"]], tuple[Float[Array, " _"], ...]]  # part by part
 
 
 class Scheme(NamedTuple):
@@ -56,7 +56,7 @@ def _step(driver, y, time, step, rate: Rate, scheme: Scheme, keep: bool):
     def stage(slopes, row):
         index, node, coefficients = row
         at = y + step * (coefficients @ slopes)
-        slope = rate(driver, time + node * step, at)
+        slope = jnp.concatenate(rate(driver, time + node * step, at))
         return jax.lax.dynamic_update_index_in_dim(slopes, slope, index, 0), at if keep else None
 
     rows = (jnp.arange(size), jnp.array(scheme.nodes), jnp.asarray(scheme.coefficients()))
@@ -143,14 +143,15 @@ def linearised(
     but for the last batch's rest)."""
     total, size = states.shape
     points = -(-total // batch) * batch
+    parts = len(jax.eval_shape(rate, driver, times[0], states[0]))
     times, states = jnp.pad(times, (0, points - total)), jnp.pad(states, ((0, points - total), (0, 0)))
     moving = bool(jax.tree.leaves(d_driver))
 
     def at(time: Float[Array, ""], state: Float[Array, " s"]) -> tuple[Float[Array, "s s"], Float[Array, " s"]]:
-        slope = jax.jacfwd(lambda y: rate(driver, time, y))(state)
+        slope = jnp.concatenate([jax.jacrev(lambda y, i=i: rate(driver, time, y)[i])(state) for i in range(parts)])
         if not moving:
             return slope, jnp.zeros(size)
-        return slope, eqx.filter_jvp(lambda d: rate(d, time, state), (driver,), (d_driver,))[1]
+        return slope, eqx.filter_jvp(lambda d: jnp.concatenate(rate(d, time, state)), (driver,), (d_driver,))[1]
 
     def block(index, out):
         here = index * batch

@@ -257,6 +257,27 @@ def test_diffraction_by_a_fixed_column() -> None:
     assert_allclose(force_at_rest(modulus, wave(period=period, phase=math.pi / 2))[0], -size * abs(factor), rtol=1e-9)
 
 
+def test_diffraction_by_a_leaning_column() -> None:
+    """MacCamy and Fuchs' factor multiplies the whole acceleration, of which a column takes what is across it.
+
+    By Airy's formulas and quad along a column that leans by 12 degrees.
+    """
+    angle, omega = math.radians(12.0), 2 * math.pi / 6.0
+    model, sea = only(jh.build(platform()), StripInertia), wave(period=6.0)
+    k = float(jnp.linalg.norm(sea.waves.vector))
+    ka = 5 * k
+    factor = 4 * (yvp(1, ka) - 1j * jvp(1, ka)) / (math.pi * ka**2 * (jvp(1, ka) ** 2 + yvp(1, ka) ** 2))
+
+    def across(z: float) -> complex:
+        size = 2.0 * omega**2 * np.exp(-1j * k * z * math.sin(angle)) / math.sinh(k * 200)
+        return size * (1j * math.cos(angle) * math.cosh(k * (z + 200)) + math.sin(angle) * math.sinh(k * (z + 200)))
+
+    integral = complex(*(quad(lambda z, part=part: getattr(across(z), part), -20, 0)[0] for part in ("real", "imag")))
+    size = (1025 * math.pi / 4 * 100 * factor * integral).real
+    found = model.force_at_rest(jnp.array([0.0, 0.0, 0.0, 0.0, angle, 0.0]), sea)
+    assert_allclose(found[:3], [size * math.cos(angle), 0.0, -size * math.sin(angle)], rtol=1e-7, atol=1e-3)
+
+
 def test_end_of_a_fixed_column() -> None:
     """Pressure on the bottom's area plus rho Ca 2/3 pi r^3 times the water's acceleration, by Airy's formulas."""
     model, sea = only(jh.build(platform()), EndInertia), wave(phase=0.6)

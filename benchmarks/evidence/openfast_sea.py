@@ -160,7 +160,7 @@ class GridSea(jh.AbstractSea):
     def flow(self, time: jax.Array, points: jax.Array, cylinders: Cylinders | None = None) -> Flow:
         at, weights = self._around(points)
         four = None if cylinders is None else dataclasses.replace(cylinders, of=cylinders.of * 4)
-        return jax.tree.map(lambda field: self._mixed(field, weights), self.inner.flow(time, at, four))
+        return jax.tree.map(lambda field: self._mixed(field, weights), self.inner.flow(time, at, four).earth())
 
 
 def sea(run: Run, grid: bool = False) -> OpenFASTSea:

@@ -19,19 +19,29 @@ class Cylinders(eqx.Module):
 
 
 class Flow(eqx.Module):
-    """Water at points, along earth axes: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2).
+    """Water at points: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2).
+
+    Vectors have components along `axes`, unit vectors in earth axes; None: along earth axes themselves.
 
     `diffracted` (m/s2) is what the displaced mass of a cylinder is to be multiplied by for its excitation, the inertia
-    coefficient of MacCamy and Fuchs included: zero at points that are on none, None where there are none. Horizontal: of a
-    leaning cylinder what the vertical acceleration adds is left out. `tuned` (m/s2) is the acceleration in waves that are
-    long for the cylinder, where it was asked for: see `diffraction.long_waves`.
+    coefficient of MacCamy and Fuchs included: zero at points that are on none, None where there are none. Its vertical
+    component, of which a cylinder that leans takes what is across it, has the same coefficient. `tuned` (m/s2) is the
+    acceleration in waves that are long for the cylinder, where it was asked for: see `diffraction.long_waves`.
     """
 
-    velocity: Float[Array, "3 n"]
-    acceleration: Float[Array, "3 n"]
+    velocity: Float[Array, "a n"]
+    acceleration: Float[Array, "a n"]
     pressure: Float[Array, " n"]
-    diffracted: Float[Array, "3 n"] | None = None
-    tuned: Float[Array, "3 n"] | None = None
+    diffracted: Float[Array, "a n"] | None = None
+    tuned: Float[Array, "a n"] | None = None
+    axes: Float[Array, "3 a"] | None = None
+
+    def earth(self) -> "Flow":
+        """The same along earth axes."""
+        if (axes := self.axes) is None:
+            return self
+        extra = (None if field is None else axes @ field for field in (self.diffracted, self.tuned))
+        return Flow(axes @ self.velocity, axes @ self.acceleration, self.pressure, *extra)
 
 
 class StripFlow(eqx.Module):

@@ -110,17 +110,18 @@ class IrregularSea(AbstractSea):
         options = (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp)
         arrays = (jnp.asarray(found.table), found.spacing, jnp.asarray(middle), jnp.asarray(along), radius)
         spectrum = _spectrum(waves, self.environment, self.order, options, *arrays)
-        series, fine = _series(spectrum, 2 * math.pi / float(waves.period), size, clock)
+        series, fine = _series(spectrum, 2 * math.pi / float(waves.period), size, clock, self.ramp)
+        wavenumber = jnp.asarray(found.wavenumber)
         return SupportSea(
             self.environment,
             series,
             fine,
-            jnp.asarray(found.wavenumber),
+            wavenumber,
+            jnp.exp(-2 * wavenumber * depth),
             jnp.asarray(middle),
             jnp.asarray(along),
             jnp.asarray(clock.start),
             jnp.asarray(clock.step),
-            jnp.asarray(self.ramp, float),
             clock.nodes,
             self.stretching,
             box.half,
@@ -157,10 +158,10 @@ def _spectrum(
         factor = maccamy_fuchs(jnp.abs(k) * radius[:, None])
         factor = factor if lag else jnp.abs(factor).astype(complex)
         factor = jnp.concatenate([factor, long_waves(jnp.abs(k) * radius[:, None])]) if ramp else factor
-        excitation = factor * (rate * speed if diffracting else jnp.zeros_like(speed))
-        return jnp.concatenate(
-            [jnp.stack([speed, rate * speed, omega * potential]), excitation, jnp.stack([upward, rate * upward, elevation])]
-        ), jnp.abs(k)
+        excited = rate * factor if diffracting else jnp.zeros_like(factor)
+        even = jnp.concatenate([jnp.stack([speed, rate * speed, omega * potential]), excited * speed])
+        odd = jnp.concatenate([jnp.stack([upward, rate * upward]), excited * upward])
+        return jnp.concatenate([even, odd, elevation[None]]), jnp.abs(k)
 
     def sums(omega, vector, elevation, potential):
         rows, k = families(omega, vector, elevation, potential, diffract_bound)
@@ -178,11 +179,12 @@ def _spectrum(
 
 @eqx.filter_jit
 def _series(
-    spectrum: Complex[Array, "b f r"], fundamental: float, size: int, clock: Clock
+    spectrum: Complex[Array, "b f r"], fundamental: float, size: int, clock: Clock, ramp: float
 ) -> tuple[Float[Array, "t s f 2*r"], Float[Array, "h f 2*r"] | None]:
     """Real and imaginary parts on the clock, by inverse Fourier transforms, one for each node of the steps."""
     omega = fundamental * jnp.arange(spectrum.shape[0])
     kept = clock.steps + 1
+    times = clock.start + clock.step * jnp.arange(kept)
 
     def at(node: Float[Array, ""]) -> Float[Array, "t f 2*r"]:
         shifted = spectrum * jnp.exp(1j * omega * (clock.start + node * clock.step))[:, None, None]
@@ -192,13 +194,14 @@ def _series(
             values = jnp.concatenate([values] * math.ceil(kept / size))[:kept] if kept > size else values[:kept]
             return jnp.concatenate([values.real, values.imag], axis=1)
 
-        return jnp.swapaxes(jax.lax.map(one, jnp.swapaxes(shifted, 0, 1)), 0, 1)
+        share = growth(times + node * clock.step, ramp)
+        return share[:, None, None] * jnp.swapaxes(jax.lax.map(one, jnp.swapaxes(shifted, 0, 1)), 0, 1)
 
     series = jnp.stack([at(jnp.asarray(node)) for node in clock.nodes], axis=1)
     if not clock.fine:
         return series, None
-    times = clock.start + clock.step * (0.5 + jnp.arange(clock.fine))
-    halves = jnp.einsum("tb,bfr->tfr", jnp.exp(1j * omega * times[:, None]), spectrum)
+    middle = times[: clock.fine] + 0.5 * clock.step
+    halves = jnp.einsum("tb,bfr->tfr", growth(middle, ramp)[:, None] * jnp.exp(1j * omega * middle[:, None]), spectrum)
     return series, jnp.concatenate([halves.real, halves.imag], axis=2)
 
 
@@ -206,19 +209,20 @@ class SupportSea(AbstractSea):
     """An irregular sea of one heading for one hull and one clock: see `supports` for how it works.
 
     `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: horizontal velocity and
-    acceleration, pressure over density, what cylinders of each radius are excited by (and `Flow.tuned` for each), vertical
-    velocity and acceleration, and elevation. Only times of the clock may be asked for.
+    acceleration, pressure over density, what cylinders of each radius are excited by horizontally (and `Flow.tuned` for
+    each); vertical velocity and acceleration, and what excites the cylinders vertically; elevation. Only times of the clock
+    may be asked for.
     """
 
     environment: Environment
     series: Float[Array, "t s f 2*r"]
     fine: Float[Array, "h f 2*r"] | None
     wavenumber: Float[Array, " r"]
+    fade: Float[Array, " r"]  # exp(-2kh)
     middle: Float[Array, ""]  # m, of the box along the waves
     along: Float[Array, "2"]
     start: Float[Array, ""]
     step: Float[Array, ""]
-    ramp: Float[Array, ""]
     nodes: tuple[float, ...] = eqx.field(static=True)
     stretching: Stretching = eqx.field(static=True)
     half: float = eqx.field(static=True)  # m, of the box
@@ -234,36 +238,34 @@ class SupportSea(AbstractSea):
         if self.fine is not None:
             between = jnp.abs(share - 0.5) < 0.25
             found = jnp.where(between, self.fine[jnp.minimum(index, self.fine.shape[0] - 1)], found)
-        return found * growth(time, self.ramp)
+        return found
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
-        rows, k, depth = self.rows(time), self.wavenumber, jnp.asarray(self.environment.depth)
-        families = rows.shape[0] - 6
-        even, odd = rows[: 3 + families], rows[3 + families : 5 + families]
+        rows, k, fade = self.rows(time), self.wavenumber, self.fade
+        families = (rows.shape[0] - 6) // 2
+        even, odd = rows[: 3 + families], rows[3 + families : -1]
         place = self.along @ points[:2] - self.middle
-        level, above = stretched(self, self.stretching, time, points, depth)
+        level, above = stretched(self, self.stretching, time, points, self.environment.depth)
         if above is None:
-            along, up = field(even, odd, k, place, level, depth)
+            along, up = field(even, odd, k, place, level, fade)
         else:
-            tanh = jnp.tanh(jnp.concatenate([k, k]) * depth)
-            slope = jnp.concatenate([k, k]) * tanh
+            tanh = jnp.tile((1 - fade) / (1 + fade), 2)
+            slope = jnp.tile(k, 2) * tanh
             along, up = field(
-                jnp.concatenate([even, odd * slope / tanh**2]), jnp.concatenate([odd, even * slope]), k, place, level, depth
+                jnp.concatenate([even, odd * slope / tanh**2]), jnp.concatenate([odd, even * slope]), k, place, level, fade
             )
             along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
-        direction = self.along[:, None]
         excited: list[Array] = []
         if cylinders is not None and families:
             of, radii = jnp.array(cylinders.of), cylinders.radius.size
-            for first in range(3, 3 + families, radii):
-                each = sum(jnp.where(of == i, along[first + i], 0.0) for i in range(radii))
-                excited.append(jnp.concatenate([direction * each, jnp.zeros((1, of.size))]))
-        return Flow(
-            jnp.concatenate([direction * along[0], up[:1]]),
-            jnp.concatenate([direction * along[1], up[1:2]]),
-            along[2],
-            *excited,
-        )
+            for first in range(0, families, radii):
+                horizontal = sum(jnp.where(of == i, along[3 + first + i], 0.0) for i in range(radii))
+                vertical = sum(jnp.where(of == i, up[2 + first + i], 0.0) for i in range(radii))
+                excited.append(jnp.stack([horizontal, vertical]))
+        axes = jnp.zeros((3, 2)).at[:2, 0].set(self.along).at[2, 1].set(1.0)
+        diffracted, tuned = [*excited, None, None][:2]
+        velocity, acceleration = (jnp.stack([along[i], up[i]]) for i in (0, 1))
+        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes)
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         place = self.along @ points - self.middle

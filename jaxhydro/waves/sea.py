@@ -92,8 +92,9 @@ class WaveSea(AbstractSea):
         of, ka = jnp.array(cylinders.of), k * cylinders.radius[:, None]
 
         def excited(factors):
-            each = [((rate * factor * horizontal) @ along).real * (of == i) for i, factor in enumerate(factors)]
-            return jnp.concatenate([sum(each), jnp.zeros((1, of.size))])
+            horizontally = sum(((rate * factor * horizontal) @ along).real * (of == i) for i, factor in enumerate(factors))
+            vertically = sum(((rate * factor * up) @ upward).real * (of == i) for i, factor in enumerate(factors))
+            return jnp.concatenate([horizontally, vertically[None]])
 
         factors = maccamy_fuchs(ka)
         diffracted = excited(factors if cylinders.lag else jnp.abs(factors))

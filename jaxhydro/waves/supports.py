@@ -5,13 +5,14 @@ the field of every wavenumber is a combination, with weights w_r(k), of the fiel
 per sea, to R whose amplitudes are functions of time: sum over n of w_r(k_n) a_n exp(i omega_n t).
 """
 
-import functools
 import math
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
 POWER = 0.75  # supports are Chebyshev points in k^POWER: denser where profiles change most
@@ -39,7 +40,7 @@ class Supports(NamedTuple):
     error: float
 
 
-@functools.lru_cache(maxsize=64)
+@lru_cache(maxsize=64)
 def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLERANCE) -> Supports:
     """The fewest supports in a box for free waves of up to `free` (rad/m) and bound ones of up to `bound`.
 
@@ -129,48 +130,56 @@ def field(
     k: Float[Array, " r"],
     x: Float[Array, " n"],
     z: Float[Array, " n"],
-    depth: Float[Array, ""],
+    fade: Float[Array, " r"],
 ) -> tuple[Float[Array, "p n"], Float[Array, "q n"]]:
     """Re sum c_r P(k_r, z) exp(-i k_r x) at points, with P cosh k(z+h) / cosh kh for `even`, sinh k(z+h) / sinh kh for `odd`.
 
-    Amplitudes are real parts, then imaginary ones. Derivatives by x and z are worked out once for all directions asked for.
+    Amplitudes are real parts, then imaginary ones; `fade` is exp(-2kh). Derivatives by x and z are worked out once for all
+    directions asked for.
     """
-    cosh, sinh = _terms(k, x, z, depth)
+    cosh, sinh = _terms(k, x, z, fade)
     return even @ cosh, odd @ sinh
 
 
-def _terms(k, x, z, depth) -> tuple[Float[Array, "2*r n"], Float[Array, "2*r n"]]:
+def _terms(k, x, z, fade) -> tuple[Float[Array, "2*r n"], Float[Array, "2*r n"]]:
     cosine, sine = cosine_sine(k[:, None] * x)
     down = jnp.exp(k[:, None] * z)
     # barriers: else XLA works them out anew for every product that reads them
     cosine, sine, down = jax.lax.optimization_barrier((cosine, sine, down))
-    fade = jnp.exp(-2 * k * depth)[:, None]
+    fade = fade[:, None]
     up = fade / down
     cosh, sinh = (down + up) * (1 / (1 + fade)), (down - up) * (1 / (1 - fade))
     return jnp.concatenate([cosh * cosine, cosh * sine]), jnp.concatenate([sinh * cosine, sinh * sine])
 
 
-@field.defjvp
+@partial(field.defjvp, symbolic_zeros=True)
 def _field_jvp(primals, tangents):
-    even, odd, k, x, z, depth = primals
+    even, odd, k, x, z, fade = primals
     d_even, d_odd, _, d_x, d_z, _ = tangents
-    cosh, sinh = jax.lax.optimization_barrier(_terms(k, x, z, depth))
-    size = k.shape[0]
-    twice = jnp.concatenate([k, k])[:, None]
-    tanh = jnp.tanh(twice * depth)
-
-    def slopes(amplitude, terms, other, ratio):
-        turned = jnp.concatenate([amplitude[:, size:], -amplitude[:, :size]], axis=1)  # d/dx cos kx = -k sin kx
-        return (turned * twice[:, 0]) @ terms, amplitude @ (other * (twice * ratio))
-
+    cosh, sinh = jax.lax.optimization_barrier(_terms(k, x, z, fade))
+    p, q, k, tanh = len(even), len(odd), jnp.concatenate([k, k]), jnp.tile((1 - fade) / (1 + fade), 2)
     # d/dz of cosh/cosh kh is k tanh kh times sinh/sinh kh, and the other way round
-    even_x, even_z = slopes(even, cosh, sinh, tanh)
-    odd_x, odd_z = slopes(odd, sinh, cosh, 1 / tanh)
-    even_x, even_z, odd_x, odd_z = jax.lax.optimization_barrier((even_x, even_z, odd_x, odd_z))
-    return (
-        (even @ cosh, odd @ sinh),
-        (even_x * d_x + even_z * d_z + d_even @ cosh, odd_x * d_x + odd_z * d_z + d_odd @ sinh),
-    )
+    with_cosh = jnp.concatenate([even, _slope(even, k), odd * (k / tanh)]) @ cosh
+    with_sinh = jnp.concatenate([odd, _slope(odd, k), even * (k * tanh)]) @ sinh
+    with_cosh, with_sinh = jax.lax.optimization_barrier((with_cosh, with_sinh))
+    d_along = with_cosh[p : 2 * p] * _zeros(d_x) + with_sinh[2 * q :] * _zeros(d_z)
+    d_up = with_sinh[q : 2 * q] * _zeros(d_x) + with_cosh[2 * p :] * _zeros(d_z)
+    if not isinstance(d_even, SymbolicZero):
+        d_along = d_along + d_even @ cosh
+    if not isinstance(d_odd, SymbolicZero):
+        d_up = d_up + d_odd @ sinh
+    return (with_cosh[:p], with_sinh[:q]), (d_along, d_up)
+
+
+def _slope(amplitude: Float[Array, "p 2*r"], k: Float[Array, " 2*r"]) -> Float[Array, "p 2*r"]:
+    """Amplitudes of the derivative by x: d/dx cos kx = -k sin kx."""
+    real, imaginary = jnp.split(amplitude, 2, axis=-1)
+    return jnp.concatenate([imaginary, -real], axis=-1) * k
+
+
+def _zeros(tangent):
+    """A tangent as an array."""
+    return jnp.zeros(tangent.shape, tangent.dtype) if isinstance(tangent, SymbolicZero) else tangent
 
 
 @jax.custom_jvp
@@ -179,11 +188,11 @@ def surface(amplitude: Float[Array, " 2*r"], k: Float[Array, " r"], x: Float[Arr
     return amplitude @ jnp.concatenate(cosine_sine(k[:, None] * x))
 
 
-@surface.defjvp
+@partial(surface.defjvp, symbolic_zeros=True)
 def _surface_jvp(primals, tangents):
     amplitude, k, x = primals
     d_amplitude, _, d_x = tangents
     terms = jax.lax.optimization_barrier(jnp.concatenate(cosine_sine(k[:, None] * x)))
-    real, imaginary = jnp.split(amplitude, 2)
-    slope = jnp.concatenate([k * imaginary, -k * real]) @ terms
-    return amplitude @ terms, slope * d_x + d_amplitude @ terms
+    found = jnp.stack([amplitude, _slope(amplitude, jnp.concatenate([k, k]))]) @ terms
+    tangent = found[1] * _zeros(d_x)
+    return found[0], tangent if isinstance(d_amplitude, SymbolicZero) else tangent + d_amplitude @ terms
