@@ -10,7 +10,10 @@ from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
 from calibration.outputs import MOTION, RESULT, NotFinite, write_calibration
 from calibration.result import Calibration
+from calibration.runs import KINDS
 from calibration.saved import Applied, applied
+from calibration.sea_fit import calibrate_in_waves
+from calibration.sea_residuals import Objective
 from calibration.seas import Diverged, Options, compare
 from calibration.seas_outputs import COMPARISON, write_comparison
 from jaxhydro.console import complain, progress, say, table
@@ -37,14 +40,46 @@ def load(
     return campaign
 
 
-def run(campaign: Campaign, out: Path, figures: bool = True) -> Calibration | None:
+def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campaign, bool]:
+    """`load` for a calibration, and whether it is to the tests in waves: as asked for ("decays", "waves"), else where there is
+    no decay to fit."""
+
+    def waves(campaign: Campaign) -> bool:
+        kinds = {test.kind for test in campaign.manifest.tests if test.use == "fit"}
+        return tests == "waves" or (tests is None and "decay" not in kinds and bool(kinds & set(KINDS)))
+
+    loaded = load(path, out, counted=lambda campaign: tables.counted(campaign, KINDS if waves(campaign) else ("decay",)))
+    return loaded, waves(loaded)
+
+
+def run(
+    campaign: Campaign,
+    out: Path,
+    figures: bool = True,
+    *,
+    waves: bool = False,
+    objective: Objective = "bands",
+    start: Path | None = None,
+) -> Calibration | None:
     """Calibrate, write and print the result; of a fit that the user stops, what was reached; None if that is no number.
 
-    Raises InputError, and Interrupted where nothing was reached.
+    `waves`: to the tests in waves, by `objective`. `start` is a calibration whose values are begun from. Raises InputError, and
+    Interrupted where nothing was reached.
     """
+    begin: dict[str, Any] = {}
+    if start is not None:
+        used = applied(start, build(campaign.platform), campaign.platform.name)
+        begin = {"start": used.values}
+        _told(used, start, campaign)
     try:
         with progress() as show:
-            result = calibrate(campaign, progress=show)
+            if waves:
+                result = calibrate_in_waves(campaign, progress=show, objective=objective, **begin)
+            else:
+                result = calibrate(campaign, progress=show, **begin)
+    except Diverged as error:
+        complain(f"{error}; nothing was written")
+        return None
     except Interrupted as stopped:
         if stopped.partial is None:
             raise
@@ -56,6 +91,8 @@ def run(campaign: Campaign, out: Path, figures: bool = True) -> Calibration | No
         return None
     table("Parameters", *tables.parameters(result))
     table("Errors, before and after", *tables.errors(result), left=3)
+    if (energies := tables.bands(result))[1]:
+        table("Errors of energy in bands", *energies, left=4)
     warned = {str(finding) for finding in campaign.findings}
     for note in result.notes:
         if note not in warned:

@@ -11,8 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.identifiability import CLEAR, memory, spread
-from calibration.parameters import slopes
+from calibration.identifiability import CLEAR, Spread, memory, spread
+from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Estimate, Series, TestFit
@@ -44,8 +44,14 @@ def estimates(fit: Fit, tests: Sequence[TestFit]) -> tuple[dict[str, Estimate], 
     variance = products[..., -1, -1] / np.maximum(samples - unknowns / len(data.dofs), 1)
     ridge, width = np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
     uncertainty = spread(products, fit.weight, variance, inflation, ridge, width)
+    return verdicts(space, problem.model, np.asarray(fit.unknowns.shared), uncertainty)
+
+
+def verdicts(
+    space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread
+) -> tuple[dict[str, Estimate], list[tuple[str, str]]]:
+    """`estimates` of free parameters at coordinates, from the covariance of these."""
     deviation, correlation = uncertainty.deviation(), uncertainty.correlation()
-    x = np.asarray(fit.unknowns.shared)
     slope = slopes(space, x)
     found = {}
     for i, parameter in enumerate(space.free):
@@ -53,7 +59,7 @@ def estimates(fit: Fit, tests: Sequence[TestFit]) -> tuple[dict[str, Estimate], 
         value, small = float(parameter.transform.forward(jnp.asarray(x[i]))), float(abs(slope[i]) * deviation[i])
         # known to a quarter of its size, or known to be small
         clear = bool(deviation[i] < CLEAR or small < CLEAR * abs(parameter.start)) and not bound
-        about = problem.model.about(parameter.label)
+        about = model.about(parameter.label)
         found[parameter.label] = Estimate(
             parameter.label,
             value,
@@ -133,13 +139,16 @@ def strays(tests: Sequence[TestFit], declared: Model) -> list[str]:
 
 
 def remarks(
-    campaign: Campaign, parameters: dict[str, Estimate], pairs: Sequence[tuple[str, str]] = ()
+    campaign: Campaign,
+    parameters: dict[str, Estimate],
+    pairs: Sequence[tuple[str, str]] = (),
+    kinds: Sequence[str] = ("decay",),
 ) -> tuple[str, ...]:
     """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
     said = [str(finding) for finding in campaign.findings]
-    left = [r.id for r in campaign.records if r.use != "ignore" and r.kind != "decay"]
+    left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
     if left:
-        said.append(f"only decays are fitted; left out: {', '.join(left)}")
+        said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
     vague = [label for label, p in parameters.items() if not p.identifiable]
     if vague:
         ends = "its value is no result" if len(vague) == 1 else "their values are not results"

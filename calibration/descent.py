@@ -1,6 +1,8 @@
 """The optimiser: optimistix's Levenberg-Marquardt with steps that cannot run away."""
 
-from typing import Any
+import math
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -66,3 +68,51 @@ class _Region(optx.ClassicalTrustRegion):
 
     def init(self, y: PyTree, f_info_struct: Any) -> Any:
         return eqx.tree_at(lambda s: s.step_size, super().init(y, f_info_struct), jnp.array(100.0))
+
+
+PATIENCE = 60  # iterations at most
+REFUSED = 8  # refused steps in a row after which there is nowhere to go
+SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # `descend` ends by its own tolerance
+
+
+class Reached(NamedTuple):
+    """Where a descent is after an iteration: the unknowns, what the objective returned beside its residuals there, the sum of
+    squares, whether it is done, and whether that is a minimum."""
+
+    unknowns: PyTree
+    aux: PyTree
+    cost: float
+    done: bool
+    settled: bool
+
+
+@eqx.filter_jit
+def _begin(objective: Callable, unknowns: PyTree, args: PyTree):
+    f_struct, aux_struct = jax.eval_shape(lambda: objective(unknowns, args))
+    return SOLVER.init(objective, unknowns, args, {}, f_struct, aux_struct, frozenset())
+
+
+@eqx.filter_jit
+def _step(objective: Callable, unknowns: PyTree, args: PyTree, state: Any):
+    return SOLVER.step(objective, unknowns, args, {}, state, frozenset())
+
+
+def descend(objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float) -> Iterator[Reached]:
+    """Levenberg-Marquardt on the residuals that `objective(unknowns, args)` returns first, iteration by iteration.
+
+    It is done where an accepted step gains less than `tolerance` of the sum of squares, where steps are refused however short
+    they are, or after `PATIENCE` iterations. One compilation serves all calls with arguments of the same shapes.
+    """
+    state = _begin(objective, unknowns, args)
+    last, refused, accepted = math.inf, 0, 0
+    for i in range(PATIENCE):
+        unknowns, state, _ = _step(objective, unknowns, args, state)
+        cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
+        taken = int(state.num_accepted_steps) > accepted
+        accepted = int(state.num_accepted_steps)
+        refused = 0 if taken else refused + 1
+        settled = (taken and last - cost < tolerance * cost) or refused >= REFUSED
+        last = cost
+        yield Reached(unknowns, state.aux, cost, settled or i == PATIENCE - 1, settled and math.isfinite(cost))
+        if settled:
+            return

@@ -4,14 +4,12 @@ import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, series_of, strays
-from calibration.descent import ClippedLevenbergMarquardt
+from calibration.descent import descend
 from calibration.identifiability import VAGUE
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record
@@ -28,19 +26,18 @@ SIDE = 0.1  # weight of a record's other channels against the released one, on t
 GROWTH = 2.5  # the window grows by this factor, from CYCLES cycles to the whole record
 CYCLES = 1.25
 STEPS_PER_PERIOD = 16  # of the shortest natural period: an error of some 1e-7 in the period
-PATIENCE = 60  # iterations at most per stage
-REFUSED = 8  # refused steps in a row after which a stage ends
-SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # stages end by their own tolerance
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a calibration is: what it is doing, iterations, J, and the fraction done (0 to 1, a guess)."""
+    """How far a calibration is: what it is doing, iterations, the objective, the fraction done (0 to 1, a guess), and what the
+    objective is called."""
 
     stage: str
     iteration: int
     objective: float
     fraction: float
+    name: str = "J"
 
 
 class Interrupted(KeyboardInterrupt):
@@ -49,19 +46,6 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, partial: Calibration | None):
         super().__init__("calibration interrupted")
         self.partial = partial
-
-
-@eqx.filter_jit
-def _step(problem: Problem, unknowns: Unknowns, state, weight, until, prior):
-    """One iteration of the optimiser. One compilation serves all stages of a fit."""
-    return SOLVER.step(_objective, unknowns, (problem, weight, until, prior), {}, state, frozenset())
-
-
-@eqx.filter_jit
-def _begin(problem: Problem, unknowns: Unknowns, weight, until, prior):
-    args = (problem, weight, until, prior)
-    f_struct, aux_struct = jax.eval_shape(lambda: _objective(unknowns, args))
-    return SOLVER.init(_objective, unknowns, args, {}, f_struct, aux_struct, frozenset())
 
 
 def _objective(unknowns: Unknowns, args):
@@ -106,25 +90,15 @@ class Fit:
         prior = (mean, self.ridge)
         self.samples = samples_until(self.problem.data, until)
         weight, until = jnp.asarray(weight), jnp.asarray(until)
-        state = _begin(self.problem, self.unknowns, weight, until, prior)
-        last, refused, accepted = np.inf, 0, 0
-        for i in range(PATIENCE):
-            self.unknowns, state, _ = _step(self.problem, self.unknowns, state, weight, until, prior)
-            self.products = np.asarray(state.aux)
+        args = (self.problem, weight, until, prior)
+        settled = False
+        for i, now in enumerate(descend(_objective, self.unknowns, args, tolerance)):
+            self.unknowns, self.products, settled = now.unknowns, np.asarray(now.aux), now.settled
             self.iterations += 1
-            cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
-            taken = int(state.num_accepted_steps) > accepted
-            accepted = int(state.num_accepted_steps)
-            refused = 0 if taken else refused + 1
-            idle = taken and last - cost < tolerance * cost
-            last = cost
             objective = self.objective()
             self.history.append(objective)
             self.report(stage, self.iterations, objective, fraction[0] + (fraction[1] - fraction[0]) * min(1.0, i / 15))
-            # nothing left to gain, or nowhere to go however short the step
-            if idle or refused >= REFUSED:
-                return bool(np.isfinite(cost))
-        return False
+        return settled
 
     def information(self, until) -> float:
         """How many independent observations the records stand for when the model's error, not noise, is what is left: four
@@ -202,8 +176,8 @@ def calibrate(
     records = [record for record in campaign.used("fit") if record.kind == "decay"]
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
-        waves = any(r.kind in ("regular", "irregular") and r.use != "ignore" for r in campaign.records)
-        hint = "Tests in waves are not fitted yet: `jaxhydro simulate CAMPAIGN` compares a model with them." if waves else ""
+        waves = any(r.kind in ("regular", "irregular") and r.use == "fit" for r in campaign.records)
+        hint = "Tests in waves are fitted by `jaxhydro calibrate --tests waves`, `calibrate_in_waves`." if waves else ""
         raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", found, hint)])
     for record in records:
         for channel in set(record.values) & set(DOFS[3:]):

@@ -120,6 +120,11 @@ def _errors(test: TestFit) -> dict[str, Any]:
                 "in_objective": bool(series.scored),
                 "before": _before(test, series),
             }
+    for key, name in (("bands", "after"), ("bands_before", "before")):
+        each = {channel: {k: v for k, one in row.items() if math.isfinite(v := float(getattr(one, name)))}
+                for channel, row in test.bands.items()}  # fmt: skip
+        if any(each.values()):
+            errors[key] = {channel: row for channel, row in each.items() if row}
     return errors
 
 

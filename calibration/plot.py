@@ -11,12 +11,15 @@ from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatte
 
 from calibration.formatting import number
 from calibration.result import Calibration, Estimate, Series, TestFit
+from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS
 from jaxhydro.files import safe_name
 from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WIDTH, for_people, header, stack, unit_of
 from jaxhydro.response import Cycles, decay_cycles
 
 _USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
+HIGHEST, DECADES = 0.2, 4.5  # Hz that spectra are drawn to, and of their largest value downwards
+BAND_COLOURS = ("#ece3cf", "#dbe9ee")
 CLEAR = 25  # times the noise: an amplitude from which decrement and period are well measured
 
 
@@ -30,6 +33,9 @@ def figures(calibration: Calibration) -> Iterator[tuple[str, str, Figure]]:
         if figure is not None:
             yield f"decay-{dof}.png", _DECAY.format(dof=dof), figure
     for test in calibration.tests:
+        if test.bands:
+            yield f"spectra-{safe_name(test.id)}.png", _SPECTRA.format(id=test.id), spectra_figure(test)
+            continue
         yield f"test-{safe_name(test.id)}.png", _TEST.format(id=test.id, channel=test.main.channel), test_figure(test)
 
 
@@ -37,6 +43,33 @@ _PARAMETERS = "Where every parameter started and where it ended, with two standa
 _DECAY = "Decays in {dof}: logarithmic decrement per cycle and period against amplitude; triangles lie beyond the edge."
 _TEST = ("Test {id}: measured and simulated {channel}; their difference over a grey band of two standard deviations of "
          "the noise; the other channels.")
+
+
+_SPECTRA = "Test {id}: spectra of the motions, measured and simulated before and after calibration; bands shaded."
+
+
+def spectra_figure(test: TestFit) -> Figure:
+    """Densities of the motions that count in an irregular sea."""
+    shown = [series for series in test.series if series.channel in test.bands]
+    figure, axes = stack([1.15] * len(shown))
+    artists: dict[str, Artist] = {}
+    for ax, series in zip(axes, shown):
+        channel, top, before = series.channel, 0.0, test.start.get(series.channel)
+        for shade, band in zip(BAND_COLOURS, test.bands[channel].values()):
+            ax.axvspan(band.low, band.high, color=shade, lw=0, zorder=0.5)
+        rows = [("measured", series.measured, MEASURED, 1.5), ("calibrated", series.simulated, SIMULATED, 0.9)]
+        for label, values, colour, size in [*rows, *([("before", before, BEFORE, 0.9)] if before is not None else [])]:
+            found = power_spectrum(test.time, for_people(channel, values))
+            seen = (found.frequency > 0) & (found.frequency <= HIGHEST)
+            artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=size)[0]
+            top = max(top, float(found.density[seen].max()))
+        ax.set_yscale("log")
+        ax.set_ylim(top * 10**-DECADES, 2.5 * top)
+        ax.set_xlim(0, HIGHEST)
+        ax.set_ylabel(f"{channel.capitalize()}\n({unit_of(channel)}²/Hz)")
+    axes[-1].set_xlabel("Frequency (Hz)")
+    header(figure, f"{test.id} ({_USE[test.use]})", artists)
+    return figure
 
 
 def test_figure(test: TestFit) -> Figure:

@@ -1,6 +1,8 @@
 """What a calibration returns, as values: parameters with their uncertainty, and every test measured against simulated."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +46,15 @@ class Series:
         return self.rmse / max(float(np.std(self.measured)), 1e-300)
 
 
+class BandError(NamedTuple):
+    """(simulated - measured) / measured energy in a band of a motion's spectrum, after and before calibration; limits in Hz."""
+
+    after: float
+    before: float
+    low: float
+    high: float
+
+
 @dataclass(frozen=True, eq=False)
 class TestFit:
     """One test: its records against the model's motion. `start` is the model's motion before calibration, by channel."""
@@ -56,6 +67,7 @@ class TestFit:
     series: tuple[Series, ...]
     start: dict[str, np.ndarray]
     file: str
+    bands: Mapping[str, Mapping[str, "BandError"]] = field(default_factory=dict)  # by channel and band
 
     @property
     def main(self) -> Series:

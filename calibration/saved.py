@@ -95,7 +95,7 @@ class Saved(_Open):
         """Test -> channel -> error. Raises InputError for what is none."""
         return {
             id: {name: validate(Error, value, f"{source}: baseline.error.{id}.{name}")
-                 for name, value in row.items() if name not in ("use", "bands")}
+                 for name, value in row.items() if name not in ("use", "bands", "bands_before")}
             for id, row in self.baseline.error.items()
         }  # fmt: skip
 

@@ -5,7 +5,7 @@ file. Everything is SI at full scale.
 """
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
@@ -108,10 +108,15 @@ def with_diffraction(model: Model, options: Options) -> Model:
     return model if options.diffraction is None else dataclasses.replace(model, diffraction=options.diffraction)
 
 
+def sea_step(model: Model, options: Options) -> float:
+    """The largest time step (s) that follows the platform and the waves."""
+    return min(SEA_STEP, default_step(model), RESOLVED / options.cutoff)
+
+
 def compare(campaign: Campaign, model: Model, options: Options, say: Callable[[str], Any] = lambda _: None) -> Compared:
     """Simulate every run and compare, test by test. Raises InputError, and Diverged where a motion grows beyond all bounds."""
     model, found = with_diffraction(model, options), runs(campaign)
-    step = min(SEA_STEP, default_step(model), RESOLVED / options.cutoff)
+    step = sea_step(model, options)
     from_rest = campaign.manifest.zero is not None
     still = np.asarray(equilibrium(model)) if from_rest else np.zeros(6)
     notes = [] if from_rest else ["the campaign states no `zero`: motions are taken as measured from the reference position"]
@@ -141,22 +146,43 @@ class Diverged(ArithmeticError):
     """A simulated motion that is no result."""
 
 
-def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale: float) -> SeaTest:
-    """A test's samples after its transient, on the run's even clock."""
+MOVES = 0.2  # of the largest motion of its unit: what moves less is in the files, and neither in tables nor fitted
+
+
+def moving_channels(motions: Mapping[str, np.ndarray]) -> list[str]:
+    """The motions that are large beside others of their unit."""
+    size = {name: float(np.std(values)) for name, values in motions.items()}
+    angle = {name: DOFS.index(name) > 2 for name in size}
+    largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
+    return [name for name in size if size[name] >= MOVES * largest[angle[name]]]
+
+
+def window(run: Run, record: Record) -> np.ndarray:
+    """Indices into the run's clock of a test's samples after its transient."""
     at = run.samples(record)
     whole = np.arange(at[0], at[-1] + 1)
-    whole = whole[run.time[whole] >= record.time[0] + record.transient - 0.5 * run.step]
+    return whole[run.time[whole] >= record.time[0] + record.transient - 0.5 * run.step]
+
+
+def peak_period(run: Run, record: Record, scale: float) -> float:
+    """Stated peak period (s, full scale) of a test, or the period of its regular waves; as measured where none is stated."""
+    stated = record.test.peak_period if record.kind == "irregular" else record.test.period
+    if stated is not None:
+        return stated * scale**0.5
+    whole = window(run, record)
+    spectrum = power_spectrum(run.time[whole], run.wave[whole])
+    return 1 / float(spectrum.frequency[1:][np.argmax(spectrum.density[1:])])
+
+
+def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale: float) -> SeaTest:
+    """A test's samples after its transient, on the run's even clock."""
+    at, whole = run.samples(record), window(run, record)
     series = tuple(
         Series(dof, np.interp(whole, at, record.values[dof]), motion[whole, DOFS.index(dof)], 0.0, record.noise[dof], False)
         for dof in DOFS if dof in record.values
     )  # fmt: skip
     test, time, measured = record.test, run.time[whole], run.wave[whole]
-    stated = test.peak_period if record.kind == "irregular" else test.period
     height = test.significant_wave_height if record.kind == "irregular" else test.wave_height
-    if stated is None:
-        spectrum = power_spectrum(time, measured)
-        period = 1 / float(spectrum.frequency[1:][np.argmax(spectrum.density[1:])])
-    else:
-        period = stated * scale**0.5
     fit = TestFit(record.id, record.use, record.kind, None, time, series, {}, record.file)
-    return SeaTest(fit, measured, wave[whole], period, None if height is None else height * scale, run.heading)
+    stated = None if height is None else height * scale
+    return SeaTest(fit, measured, wave[whole], peak_period(run, record, scale), stated, run.heading)

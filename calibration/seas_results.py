@@ -11,7 +11,7 @@ from calibration.campaign import Campaign
 from calibration.formatting import number, percent
 from calibration.runs import KINDS
 from calibration.saved import Applied
-from calibration.seas import Compared, Options, SeaTest
+from calibration.seas import Compared, Options, SeaTest, moving_channels
 from calibration.tables import Rows
 from jaxhydro.analysis import BANDS, LONG, SEGMENT, PowerSpectrum, band_integral, bands, power_spectrum
 from jaxhydro.environment import DOFS
@@ -19,7 +19,6 @@ from jaxhydro.plot import for_people, unit_of
 
 OVERLAP, WINDOW = 0.5, "hann"
 WELCH = f"Welch, {WINDOW} segments of {SEGMENT:g} s that overlap by {OVERLAP:.0%}; a shorter record is one, not windowed"
-MOVES = 0.2  # of the largest motion of its unit: what moves less is in the files and not in tables
 NAMES = {"low_frequency": "low", "wave_frequency": "wave"}
 
 
@@ -68,9 +67,7 @@ def in_bands(test: SeaTest) -> dict[str, dict[str, Band]]:
 
 def moving(test: SeaTest) -> list[str]:
     """The motions that are worth a line."""
-    size = {name: float(np.std(pair[0])) for name, pair in channels(test).items() if name in DOFS}
-    largest = {unit: max((size[n] for n in size if unit_of(n) == unit), default=0.0) for unit in ("m", "deg")}
-    return [name for name in size if size[name] >= MOVES * largest[unit_of(name)]]
+    return moving_channels({series.channel: series.measured for series in test.fit.series})
 
 
 def amplitude(test: SeaTest, x: np.ndarray) -> float:

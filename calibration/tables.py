@@ -14,10 +14,10 @@ Rows = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
 USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
 
 
-def counted(campaign: Campaign) -> str:
-    """How many tests of each use there are, and of those that are no decays."""
+def counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
+    """How many tests of each use there are, and of those of other kinds."""
     tests = campaign.manifest.tests
-    count = Counter(USE[t.use] if t.use == "ignore" or t.kind == "decay" else f"left out ({t.kind})" for t in tests)
+    count = Counter(USE[t.use] if t.use == "ignore" or t.kind in kinds else f"left out ({t.kind})" for t in tests)
     order = {word: i for i, word in enumerate(USE.values())}
     there = [(count[word], word) for word in sorted(count, key=lambda word: (order.get(word, len(order)), word))]
     return ", ".join(f"{n} {'test' if n == 1 else 'tests'} {word}" for n, word in there)
@@ -55,6 +55,16 @@ def errors(result: Calibration) -> Rows:
             rmse = f"{number(float(for_people(series.channel, series.rmse)), 2)} {unit_of(series.channel)}"
             rows.append((test.id, USE[test.use], series.channel, percent(before), percent(series.relative), rmse))
     return ("Test", "Use", "Channel", "Before", "After", "RMSE"), rows
+
+
+def bands(result: Calibration) -> Rows:
+    """Errors of energy in bands, of tests in irregular waves."""
+    names = {"low_frequency": "low", "wave_frequency": "wave"}
+    rows = [
+        (test.id, USE[test.use], channel, names.get(band, band), percent(one.before), percent(one.after))
+        for test in result.tests for channel, row in test.bands.items() for band, one in row.items()
+    ]  # fmt: skip
+    return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
 def outcome(result: Calibration) -> str:

@@ -72,6 +72,49 @@ def band_integral(spectrum: PowerSpectrum, low: float, high: float) -> float:
     return float(np.interp(high, edges, total) - np.interp(low, edges, total))
 
 
+class BandWeights(NamedTuple):
+    """`band_integral` of `power_spectrum` as a quadratic form of the record: the mean over segments of sum_f weight |F|^2.
+
+    F is the discrete Fourier transform of a segment less its mean, times `window`; segments begin at the samples `starts`, and
+    `weight` is for the frequencies from the index `first` on.
+    """
+
+    starts: np.ndarray
+    window: Float[np.ndarray, " s"]
+    first: int
+    weight: Float[np.ndarray, " f"]
+
+    def integral(self, x: Float[np.ndarray, " t"]) -> float:
+        """unit^2, of a record as long as that for which the weights were made."""
+        parts = x[self.starts[:, None] + np.arange(len(self.window))]
+        lines = np.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * self.window)
+        inside = np.abs(lines[:, self.first : self.first + len(self.weight)]) ** 2
+        return float((inside @ self.weight).mean())
+
+
+def band_weights(
+    count: int, step: float, low: float, high: float,
+    segment: float | None = None, overlap: float = 0.5, window: str = "hann",
+) -> BandWeights:
+    """For records of `count` samples every `step` (s) and the band from `low` to `high` (Hz); options of `power_spectrum`.
+
+    Raises ValueError for high <= low or low < 0, or a segment or overlap out of range.
+    """
+    if not 0 <= low < high:
+        raise ValueError(f"a band has 0 <= low < high, found {low} and {high} Hz")
+    size, shared, name = _segments(count, step, segment, overlap, window)
+    taper = signal.get_window(name, size)
+    f = np.fft.rfftfreq(size, step)
+    edges = np.concatenate([f[:1], 0.5 * (f[1:] + f[:-1]), f[-1:]])
+    share = np.clip((np.minimum(high, edges[1:]) - np.maximum(low, edges[:-1])) / np.diff(edges), 0.0, 1.0)
+    sides = np.full(len(f), 2.0)
+    sides[[0, *([-1] if size % 2 == 0 else [])]] = 1.0
+    weight = share * (f[1] - f[0]) * sides * step / np.sum(taper**2)
+    inside = np.flatnonzero(weight)
+    first, last = (int(inside[0]), int(inside[-1]) + 1) if len(inside) else (0, 1)
+    return BandWeights(np.arange(0, count - size + 1, size - shared), taper, first, weight[first:last])
+
+
 def bands(dof: str, peak_period: float) -> dict[str, tuple[float, float]]:
     """`low_frequency` and `wave_frequency` band (Hz) of surge, heave or pitch in a sea of this peak period (s).
 

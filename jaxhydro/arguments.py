@@ -51,6 +51,21 @@ class Amplitudes(StrEnum):
     rayleigh = "rayleigh"
 
 
+class Fitted(StrEnum):
+    """Which tests are fitted."""
+
+    decays = "decays"
+    waves = "waves"
+
+
+class Objective(StrEnum):
+    """See `calibration.calibrate_in_waves`."""
+
+    bands = "bands"
+    motion = "motion"
+    both = "both"
+
+
 class Diffraction(StrEnum):
     """See `Model`."""
 
@@ -135,3 +150,8 @@ Calibrated = Annotated[Path | None, typer.Option("--calibration", help="A calibr
 Step = Annotated[
     float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")
 ]
+Tests = Annotated[
+    Fitted | None, typer.Option(help="Tests to fit: free decays, or those in waves.", show_default="decays where there are any")
+]
+Aim = Annotated[Objective, typer.Option(help="In waves, fit energy in frequency bands, the motion itself, or both.")]
+Begin = Annotated[Path | None, typer.Option(help="A calibration.json whose coefficients are begun from.")]

@@ -144,9 +144,16 @@ def calibrate(
     campaign: Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")],
     out: Out,
     figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
+    tests: arguments.Tests = None,
+    objective: arguments.Aim = arguments.Objective.bands,
+    start: arguments.Begin = None,
 ) -> None:
-    """Fit a platform's coefficients to the tests marked `fit`: calibration.json, simulated.nc, figures."""
-    _calibrate(campaign, out, figures)
+    """Fit a platform's coefficients to the tests marked `fit`: calibration.json, simulated.nc, figures.
+
+    To the free decays where there are any, else to the tests in irregular and regular waves.
+    """
+    kind = None if tests is None else tests.value
+    _calibrate(campaign, out, figures, None, kind, objective=objective.value, start=start)
 
 
 @app.command()
@@ -178,13 +185,16 @@ def platforms() -> None:
     table("Built-in platforms and their natural periods", heads, [particulars(name) for name in builtin_platforms()], 2)
 
 
-def _calibrate(campaign: Path, out: Path, figures: bool, truth: dict[str, float] | None = None) -> None:
+def _calibrate(
+    campaign: Path, out: Path, figures: bool, truth: dict[str, float] | None = None, tests: str | None = None, **how: Any
+) -> None:
     """Calibrate; where the truth is known, compare with it and make the report page."""
     out = options.results_folder(out, "calibration.json")
     _start()
     from calibration import command
 
-    result = command.run(command.load(campaign, out), out, figures)
+    loaded, waves = command.load_fitted(campaign, out, tests)
+    result = command.run(loaded, out, figures, waves=waves, **how)
     if result is not None and truth is not None:
         from calibration.report import write_report
         from calibration.tables import against

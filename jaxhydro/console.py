@@ -54,7 +54,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
         def note(now: Any) -> None:
             if now.stage not in stages:
                 stages.append(now.stage)
-                shown.print(Text(f"{now.stage}: iteration {now.iteration}, J = {now.objective:.4g}"), soft_wrap=True)
+                shown.print(Text(f"{now.stage}: iteration {now.iteration}, {now.name} = {now.objective:.4g}"), soft_wrap=True)
 
         yield note
         return
@@ -69,7 +69,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
         def update(now: Any) -> None:
             nonlocal furthest
             furthest = max(furthest, now.fraction)
-            state = f"iteration {now.iteration}, J = {now.objective:.4g}"
+            state = f"iteration {now.iteration}, {now.name} = {now.objective:.4g}"
             bar.update(task, description=str(now.stage), completed=furthest, state=state)
 
         yield update

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import equinox as eqx
 import jax
@@ -17,7 +18,7 @@ from jaxhydro.response import Response
 from jaxhydro.rotations import rotation
 from jaxhydro.statics import equilibrium, natural_modes
 from jaxhydro.waves.irregular import fourier_length
-from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
+from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea, SupportSea
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
 SEA_STEP = 0.25  # s, in irregular seas where no step is asked for
@@ -89,16 +90,36 @@ def simulate(
     q = rest + by_name(position)
     start = State(q, model.body_velocity(q, by_name(rate)), start.memory)
     if isinstance(sea, IrregularSea):
-        return _in_irregular(model, sea, start, times, limit, method, adjoint)
+        return in_irregular(model, sea, start, times, limit, method, adjoint).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / limit - 1e-9))
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
 
 
-def _in_irregular(
-    model: Model, sea: IrregularSea, start: State, times: Float[Array, " t"], limit: float, method: Method, adjoint: Adjoint
-) -> Response:
-    """In steps that divide the sea's period; prepared anew for a larger box where the platform has left the first one."""
+class InIrregular(NamedTuple):
+    """A simulation in an irregular sea, the sea as it was prepared, and the steps taken: size (s) and number."""
+
+    response: Response
+    sea: SupportSea
+    step: float
+    steps: int
+
+
+def in_irregular(
+    model: Model,
+    sea: IrregularSea,
+    start: State,
+    times: Float[Array, " t"],
+    limit: float,
+    method: Method = "ab4",
+    adjoint: Adjoint = "forward",
+    margin: float = 0.0,
+) -> InIrregular:
+    """In steps of at most `limit` (s) that divide the sea's period; prepared anew for a larger box where the platform has left
+    the first one. The last box has `margin` (m) to spare, for what drifts further in it.
+
+    Raises ValueError for a platform that is carried away.
+    """
     begin, duration = float(times[0]), float(times[-1] - times[0])
     period = float(sea.components.period)
     step = period / fourier_length(period / limit)
@@ -108,11 +129,11 @@ def _in_irregular(
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion)
         found = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
         reached = float(_reached(found.position, jnp.asarray(points), prepared.along, prepared.middle))
-        if not reached > prepared.half:
-            return found
+        if not reached + margin > prepared.half:
+            return InIrregular(found, prepared, step, steps)
         if reached > prepared.half + 10 * EXCURSION:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
-        excursion += reached - prepared.half + 0.5 * EXCURSION
+        excursion += reached + margin - prepared.half + 0.5 * EXCURSION
 
 
 @eqx.filter_jit

@@ -1,0 +1,185 @@
+"""Calibration in measured waves: free parameters fitted to the motions of tests in irregular and regular waves."""
+
+import math
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.conclusion import remarks, verdicts
+from calibration.descent import descend
+from calibration.fit import Interrupted, Progress
+from calibration.identifiability import VAGUE, memory, spread
+from calibration.parameters import choose, parameter_space
+from calibration.result import BandError, Calibration, TestFit
+from calibration.runs import KINDS, runs
+from calibration.sea_residuals import Objective, SeaProblem, condensed_in_waves, pose_in_waves
+from calibration.seas import Options, SeaTest, compare, moving_channels, sea_step, with_diffraction
+from calibration.seas_results import in_bands
+from jaxhydro.environment import DOFS
+from jaxhydro.platform import build
+from jaxhydro.problems import InputError, Problem
+
+ROUNDS = 4  # times that the model's error is estimated anew
+SETTLED = 0.05  # relative change of that estimate that is none
+TOLERANCE = 1e-3  # relative decrease of the sum of squares that ends a round
+
+
+def _objective(x, args):
+    """Residuals of the tests and of the prior, for optimistix."""
+    problem, mean, ridge = args
+    rows, products = condensed_in_waves(x, problem)
+    return (rows, ridge * (x - mean)), products
+
+
+@eqx.filter_jit
+def _groups(problem: SeaProblem, x):
+    return problem.residuals(x)
+
+
+class SeaFit:
+    """One calibration in waves under way. The prior of every parameter weighs as one observation beside the tests' own, whose
+    error is that of the model: it is estimated from what is left of them, and the fit made anew, until both agree."""
+
+    def __init__(self, problem: SeaProblem, report: Callable[[str, int, float, float], None]) -> None:
+        self.problem, self.report = problem, report
+        free, start = problem.space.free, problem.space.start
+        known = [np.isfinite(p.prior_deviation) for p in free]
+        self.mean = jnp.array([p.prior_mean if k else s for p, s, k in zip(free, start, known)])
+        self.width = np.array([p.prior_deviation if k else VAGUE for p, k in zip(free, known)])
+        self.x, self.products = start, np.zeros(0)
+        self.iterations, self.converged = 0, False
+        self.history: list[float] = []
+        self.error = self.left(start)
+
+    def residuals(self, x) -> list[np.ndarray]:
+        """By group: all bands, then motion by motion."""
+        return [np.asarray(group) for group in _groups(self.problem, x)]
+
+    def left(self, x) -> float:
+        """Root mean square of what is left of an observation."""
+        groups = self.residuals(x)
+        return float(np.sqrt(sum(float(np.sum(g**2)) for g in groups) / self.observations(groups)))
+
+    def observations(self, groups: Sequence[np.ndarray]) -> float:
+        """How many there are: one for every band, and for every motion, whose residuals' squares sum to one relative to it."""
+        return sum(len(g) if bands else 1 for g, bands in zip(groups, self.problem.in_bands))
+
+    def run(self) -> None:
+        """All rounds."""
+        for number in range(ROUNDS):
+            ridge = jnp.asarray(max(self.error, 1e-6) / self.width)
+            for i, now in enumerate(descend(_objective, self.x, (self.problem, self.mean, ridge), TOLERANCE)):
+                self.x, self.products, self.converged = now.unknowns, np.asarray(now.aux), now.settled
+                self.iterations += 1
+                squares = float(self.products[:, -1, -1].sum())
+                self.history.append(float(np.sqrt(squares / self.observations(self.residuals(self.x)))))
+                share = (number + min(1.0, i / 10)) / ROUNDS
+                self.report(f"round {number + 1} in waves", self.iterations, self.history[-1], share)
+            before, self.error = self.error, self.left(self.x)
+            if abs(self.error / before - 1) < SETTLED:
+                return
+
+    def uncertainty(self):
+        """Covariance of the coordinates. A motion's residual counts as many times as it is independent; bands once each, with
+        the variance that is left after what the parameters and their prior took."""
+        groups = self.residuals(self.x)
+        ridge = self.error / self.width
+        whole = self.products[:, :-1, :-1].sum(axis=0)
+        used = float(np.trace(np.linalg.solve(whole + np.diag(ridge**2), whole)))
+        total = sum(len(g) if bands else len(g) / memory(g) for g, bands in zip(groups, self.problem.in_bands))
+        variance = np.array([float(np.mean(g**2)) for g in groups]) * total / max(total - used, 1.0)
+        inflation = np.array([1.0 if bands else memory(g) for g, bands in zip(groups, self.problem.in_bands)])
+        ones = np.ones((1, len(groups)))
+        return spread(self.products[None], ones, variance[None], inflation[None], ridge, self.width)
+
+
+def calibrate_in_waves(
+    campaign: Campaign,
+    *,
+    free: Sequence[str] | None = None,
+    progress: Callable[[Progress], None] | None = None,
+    start: dict[str, float] | None = None,
+    objective: Objective = "bands",
+    options: Options | None = None,
+) -> Calibration:
+    """Fit the declared model's coefficients to the tests in waves marked `fit`, all together, in their measured waves.
+
+    `objective` "bands": the logarithms of simulated over measured energy in the low and the wave-frequency band of every motion
+    that matters, which a sensor's clock and the phase of slow drift do not touch; "motion": simulated less measured, sample by
+    sample, over the measured standard deviation; "both". Of regular waves always the motion. Every free parameter has a prior,
+    a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the model's own error, which is
+    estimated from the residuals: energies in a few bands do not determine many coefficients, and say so by their deviations.
+
+    `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
+    Raises InputError where there is nothing to fit, Interrupted with what was reached.
+    """
+    begun = clock.monotonic()
+    source = str(campaign.folder / "campaign.yaml")
+    options = Options() if options is None else options
+    records = [record for record in campaign.used("fit") if record.kind in KINDS]
+    if not records:
+        found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
+        raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", found)])
+    declared = with_diffraction(build(campaign.platform), options).with_values(start or {})
+    moved = {dof for record in records for dof in moving_channels({k: record.values[k] for k in DOFS if k in record.values})}
+    wish = campaign.manifest.calibrate
+    labels = choose(declared, sorted(moved), wish.free if free is None else free, wish.fixed, source)
+    if not labels:
+        none = f"none: the platform declares nothing that acts on {', '.join(sorted(moved))}"
+        raise InputError(source, [Problem("calibrate.free", "at least one free parameter", none)])
+    priors = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
+    space = parameter_space(declared, labels, dict(wish.bounds), priors, source)
+
+    def report(stage: str, iteration: int, value: float, fraction: float) -> None:
+        if progress is not None:
+            progress(Progress(stage, iteration, value, fraction, "error"))
+
+    seas = runs(campaign)
+    report("seas of the wave records", 0, math.nan, 0.0)
+    problem = pose_in_waves(
+        declared, seas, space, options, from_rest=campaign.manifest.zero is not None, scale=campaign.manifest.scale,
+        step=sea_step(declared, options), objective=objective,
+    )  # fmt: skip
+    fit = SeaFit(problem, report)
+    try:
+        fit.run()
+    except KeyboardInterrupt:
+        fit.converged = False
+        if not fit.iterations:
+            raise Interrupted(None) from None
+        raise Interrupted(_conclude(campaign, fit, options, clock.monotonic() - begun)) from None
+    return _conclude(campaign, fit, options, clock.monotonic() - begun)
+
+
+def _conclude(campaign: Campaign, fit: SeaFit, options: Options, seconds: float) -> Calibration:
+    """Parameters with their deviations, and all tests in waves before and after."""
+    problem = fit.problem
+    model = problem.space.model(problem.model, fit.x)
+    parameters, pairs = verdicts(problem.space, problem.model, np.asarray(fit.x), fit.uncertainty())
+    after, before = (compare(campaign, one, options) for one in (model, problem.model))
+    tests = [_test(*pair) for pair in zip(after.tests, before.tests, strict=True)]
+    notes = remarks(campaign, parameters, pairs, KINDS)
+    return Calibration(
+        campaign.manifest.name, model, parameters, tuple(tests), fit.converged, fit.iterations, seconds, tuple(fit.history),
+        (*notes, *after.notes), campaign.platform.name,
+    )  # fmt: skip
+
+
+def _test(after: SeaTest, before: SeaTest) -> TestFit:
+    """A test with both motions, the errors of its bands, and its motions that matter counting in J."""
+    counts = moving_channels({s.channel: s.measured for s in after.fit.series})
+    series = tuple(replace(s, scored=s.channel in counts) for s in after.fit.series)
+    start = {s.channel: s.simulated for s in before.fit.series}
+    bands = {}
+    if after.fit.kind == "irregular":
+        earlier = in_bands(before)
+        bands = {
+            name: {k: BandError(band.error, earlier[name][k].error, band.low, band.high) for k, band in row.items()}
+            for name, row in in_bands(after).items() if name in counts
+        }  # fmt: skip
+    return replace(after.fit, series=series, start=start, bands=bands)

@@ -1,0 +1,140 @@
+"""Calibration in measured waves: residuals, their Jacobian, coefficients of a made run found back, messages."""
+
+import json
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from test_cli import cache, run  # noqa: F401
+from test_seas import made  # noqa: F401  (a fixture: a run of the NumPy model)
+
+from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaign
+from calibration.outputs import document, write_calibration
+from calibration.parameters import parameter_space
+from calibration.runs import runs
+from calibration.sea_residuals import pose_in_waves
+from calibration.seas import Options, compare, with_diffraction
+from calibration.seas_results import in_bands
+from jaxhydro.analysis import band_integral, band_weights, power_spectrum
+from jaxhydro.environment import DOFS
+from jaxhydro.platform import build
+from jaxhydro.problems import InputError
+
+OPTIONS = Options(order=2, diffraction="none", cutoff=0.2)
+LABELS = ("column.Cd_t", "pontoon.Cd_z")
+
+
+@pytest.fixture(scope="module")
+def campaign(made):  # noqa: F811
+    return load_campaign(made)
+
+
+@pytest.fixture(scope="module")
+def problem(campaign):
+    """From two drag coefficients that are off by factors; one set of shapes, so that it is compiled once."""
+    model = with_diffraction(build(campaign.platform), OPTIONS).with_values(start_of(campaign))
+    return pose_in_waves(
+        model, runs(campaign), parameter_space(model, LABELS), OPTIONS, from_rest=True, scale=campaign.manifest.scale,
+        step=0.25, objective="both",
+    )  # fmt: skip
+
+
+def start_of(campaign) -> dict[str, float]:
+    true = build(campaign.platform).values
+    return {label: factor * float(true[label]) for label, factor in zip(LABELS, (0.4, 2.0))}
+
+
+@pytest.mark.parametrize("count, segment", [(4001, None), (12_000, 1000.0), (12_345, 500.0)])
+def test_energy_in_a_band_as_a_quadratic_form(count: int, segment: float | None) -> None:
+    """Against Welch by SciPy and its integral, of records of one segment and of many, to rounding; the ends cut cells."""
+    step = 0.25
+    x = np.random.default_rng(1).normal(size=count).cumsum()
+    spectrum = power_spectrum(step * np.arange(count), x, segment)
+    for low, high in ((0.005, 0.025), (0.0, 3.0), (0.0503, 0.1511)):
+        weights = band_weights(count, step, low, high, segment)
+        assert weights.integral(x) == pytest.approx(band_integral(spectrum, low, high), rel=1e-12)
+    with pytest.raises(ValueError, match="0 <= low < high"):
+        band_weights(count, step, 0.2, 0.1)
+
+
+def test_residuals_are_what_the_comparison_says(campaign, problem) -> None:
+    """ln(1 + error) of every band, and the motions' RMSE over their deviations, by another path: compare, SciPy's Welch."""
+    groups = [np.asarray(g) for g in eqx.filter_jit(lambda p: p.residuals(p.space.start))(problem)]
+    assert problem.in_bands == (True, False, False, False, False, False, False)  # three motions of two tests
+    tests = {test.fit.id: test for test in compare(campaign, problem.model, OPTIONS).tests if test.fit.use == "fit"}
+    pieces = [piece for run in problem.runs for piece in run.pieces]
+    expected = [np.log1p(in_bands(tests[p.test])[DOFS[p.dof]][band].error) for p in pieces for band in p.names]
+    assert len(expected) == 6  # of the irregular test
+    assert_allclose(groups[0], expected, atol=2e-3)
+    for piece, group in zip(pieces, groups[1:], strict=True):
+        series = next(s for s in tests[piece.test].fit.series if s.channel == DOFS[piece.dof])
+        off = np.std(series.simulated - series.measured) / np.std(series.measured)
+        assert np.linalg.norm(group) == pytest.approx(off, rel=0.02)
+
+
+def test_gradient_through_a_sea_and_its_spectra(problem) -> None:
+    """Gradient and Gauss-Newton matrix of all residuals against central differences."""
+    stacked = eqx.filter_jit(lambda p, x: jnp.concatenate(p.residuals(x)))
+    x = problem.space.start + jnp.array([0.2, -0.3])
+    products = np.asarray(eqx.filter_jit(lambda p, x: p.products(x))(problem, x)).sum(axis=0)
+    pairs = [(stacked(problem, x + d), stacked(problem, x - d)) for d in 1e-4 * np.eye(2)]
+    slopes = np.stack([np.asarray(one - other) / 2e-4 for one, other in pairs], axis=1)
+    r = np.asarray(stacked(problem, x))
+    assert_allclose(products[:2, 2], slopes.T @ r, rtol=1e-4)
+    assert_allclose(products[:2, :2], slopes.T @ slopes, rtol=1e-4)
+    assert products[2, 2] == pytest.approx(r @ r, rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def fitted(campaign):
+    said = []
+    result = calibrate_in_waves(
+        campaign, free=LABELS, start=start_of(campaign), objective="both", options=OPTIONS, progress=said.append
+    )
+    return result, said, build(campaign.platform).values
+
+
+def test_coefficients_of_a_made_run_are_found_back(fitted) -> None:
+    """Two drag coefficients of the NumPy model, within 3 % or two of their deviations; the held-out sea is met too."""
+    result, said, true = fitted
+    assert result.converged and said[-1].name == "error" and said[-1].objective < 0.3 * said[1].objective
+    for label in LABELS:
+        one = result.parameters[label]
+        assert one.identifiable
+        assert abs(one.value - float(true[label])) < max(0.03 * float(true[label]), 2 * one.standard_deviation), label
+    tests = {test.id: test for test in result.tests}
+    assert set(tests) == {"sea-a", "sea-b", "wave"} and result.objective("holdout") < 0.1
+    for band in tests["sea-b"].bands["surge"].values():
+        assert abs(band.after) < 0.03
+    assert max(abs(b.before) for row in tests["sea-a"].bands.values() for b in row.values()) > 0.1
+
+
+def test_what_is_written(fitted, tmp_path) -> None:
+    result, _, _ = fitted
+    found = document(result)["baseline"]["error"]
+    assert set(found["sea-a"]["bands"]) == set(found["sea-a"]["bands_before"]) == {"surge", "heave", "pitch"}
+    assert "bands" not in found["wave"]
+    write_calibration(result, tmp_path / "o")
+    saved = json.loads((tmp_path / "o" / "calibration.json").read_text())
+    assert {figure["file"] for figure in saved["figures"]} >= {"figures/spectra-sea-a.png", "figures/test-wave.png"}
+
+
+def test_messages(campaign, made, tmp_path) -> None:  # noqa: F811
+    with pytest.raises(InputError, match="--tests waves"):
+        calibrate(campaign)
+    with pytest.raises(InputError, match="a parameter of this platform"):
+        calibrate_in_waves(campaign, free=["colunm.Cd_t"], options=OPTIONS)
+    said = run("calibrate", made, "--tests", "decays", "--out", tmp_path / "o", status=2)
+    assert "at least one decay test" in said
+
+    def stop(now) -> None:
+        if now.iteration == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as stopped:
+        calibrate_in_waves(
+            campaign, free=LABELS, start=start_of(campaign), objective="both", options=OPTIONS, progress=stop
+        )
+    assert stopped.value.partial is not None and not stopped.value.partial.converged
