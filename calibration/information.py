@@ -1,0 +1,75 @@
+"""Algebra of information matrices: elimination of unknowns, principal directions, collinearity."""
+
+import numpy as np
+
+LEAST_VARIANCE = 1e-20  # m2, rad2: a record made without noise is not known to better than a sensor's last digit
+
+
+def eliminated(
+    products: np.ndarray, weight: np.ndarray, variance: np.ndarray, inflation: np.ndarray, shared: int
+) -> np.ndarray:
+    """Information (p, p) of the shared coordinates; the records' own unknowns eliminated by a Schur complement each.
+
+    `products` (record, channel, k, k) are the [J r]^T [J r]; `weight`, `variance` and `inflation` (record, channel) as in
+    `spread`, whose sandwich this is the inverse of, without the prior: H S^-1 H (Godambe 1960, Annals of Mathematical
+    Statistics 31, 1208-1211), which is J^T J / sigma^2 where every record was weighed by its noise.
+    """
+    hessian, scatter = np.zeros((shared, shared)), np.zeros((shared, shared))
+    power = weight**2 * np.maximum(variance, LEAST_VARIANCE) * inflation
+    for block, w, s in zip(products[..., :-1, :-1], weight, power, strict=True):
+        bread, meat = np.einsum("ckl,c->kl", block, w), np.einsum("ckl,c->kl", block, s)
+        # the shared unknowns, with the record's own at their best for each
+        follow = np.concatenate([np.eye(shared), -inverse(bread[shared:, shared:]) @ bread[shared:, :shared]])
+        hessian += follow.T @ bread @ follow
+        scatter += follow.T @ meat @ follow
+    return hessian @ inverse(scatter) @ hessian
+
+
+def principal(information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Standard deviations along the principal directions, ascending, and these as columns."""
+    values, axes = np.linalg.eigh(information)
+    return deviations(values[::-1], values.max(initial=0.0)), axes[:, ::-1]
+
+
+def collinearity(information: np.ndarray) -> float:
+    """gamma = 1 / sqrt(lambda_min of the information scaled to a unit diagonal): 1 for orthogonal columns, inf for dependent
+    ones (Brun, Reichert and Kuensch 2001, Water Resources Research 37, 1015-1030)."""
+    scale = np.sqrt(np.diag(information))
+    least = np.linalg.eigvalsh(information / np.outer(scale, scale))[0]
+    return float(1 / np.sqrt(least)) if least > 1e-14 else np.inf
+
+
+def within(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
+    """The matrix with all but some rows and columns zero."""
+    mask = np.isin(np.arange(len(matrix)), list(keep))
+    return np.where(np.outer(mask, mask), matrix, 0.0)
+
+
+def inverse(matrix: np.ndarray) -> np.ndarray:
+    """Pseudo-inverse of a positive semi-definite matrix, whatever the units of its rows."""
+    d = np.diag(matrix)
+    scale = np.where(d > 0, 1 / np.sqrt(np.where(d > 0, d, 1.0)), 0.0)
+    both = np.outer(scale, scale)
+    return np.linalg.pinv(matrix * both, rcond=1e-13, hermitian=True) * both
+
+
+def deviations(values: np.ndarray, largest: float) -> np.ndarray:
+    """1 / sqrt of information; inf for what is no more than rounding."""
+    there = values > 16 * np.finfo(float).eps * len(values) * largest
+    return np.where(there, 1 / np.sqrt(np.where(there, values, 1.0)), np.inf)
+
+
+def varimax(axes: np.ndarray) -> np.ndarray:
+    """The orthonormal basis of the same space (p, k) with the largest variance of squared entries, by fixed-point steps.
+
+    With columns of unit length that is the largest sum of fourth powers, a convex function: no step makes it smaller.
+    """
+    size = axes.shape[1]
+    if size < 2:
+        return axes
+    # a start without symmetry: an even mixture of two sparse directions is a stationary point
+    turn = np.linalg.qr(np.random.default_rng(0).standard_normal((size, size)))[0]
+    for _ in range(200):
+        u, _, v = np.linalg.svd(axes.T @ (axes @ turn) ** 3)
+        turn = u @ v
+    return axes @ turn
