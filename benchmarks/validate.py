@@ -15,11 +15,22 @@ import textwrap
 import time
 from pathlib import Path
 
-from benchmarks.evidence import common, measured, measured_waves, openfast, openfast_waves, periods, seeds, starts, study_text
+from benchmarks.evidence import (
+    common,
+    measured,
+    measured_waves,
+    openfast,
+    openfast_waves,
+    periods,
+    seeds,
+    starts,
+    study_text,
+    tuned_seas,
+)
 from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
 
 PAGE = ROOT / "docs" / "validation.md"
-SECTIONS = ("seeds", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "starts", "study")
+SECTIONS = ("seeds", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas", "starts", "study")
 INTRO = """\
 # Validation
 
@@ -36,6 +47,8 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return starts.run(options.starts, options.processes, figures)
     if name == "measured_waves":
         return measured_waves.run(figures, options.processes)
+    if name == "tuned_seas":
+        return tuned_seas.run(figures, options.processes)
     plain = {"periods": periods, "openfast": openfast, "openfast_waves": openfast_waves,
              "measured": measured, "study": study_text}  # fmt: skip
     return plain[name].run(figures)

@@ -91,6 +91,8 @@ def run(
         return None
     table("Parameters", *tables.parameters(result))
     table("Errors, before and after", *tables.errors(result), left=3)
+    if (damping := tables.linear_quadratic(result))[1]:
+        table("Classical analysis: x'' + p x' + q x'|x'| + w² x = 0", *damping)
     if (energies := tables.bands(result))[1]:
         table("Errors of energy in bands", *energies, left=4)
     warned = {str(finding) for finding in campaign.findings}

@@ -11,7 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.identifiability import CLEAR, Spread, memory, spread
+from calibration.directions import Identifiability, errors_of
+from calibration.identifiability import CLEAR, Spread, spread
 from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
@@ -26,32 +27,20 @@ if TYPE_CHECKING:
 
 
 LOST = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
-TOGETHER = 0.9  # correlation beyond which two vague parameters are said to be known together only
 
 
-def estimates(fit: Fit, tests: Sequence[TestFit]) -> tuple[dict[str, Estimate], list[tuple[str, str]]]:
-    """The fitted parameters: a standard deviation where the records determine them, none where not. And the pairs of vague
-    ones that the records cannot tell apart."""
-    problem, data, space, products = fit.problem, fit.problem.data, fit.problem.space, fit.products
+def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
+    """The fitted parameters: a standard deviation where the records determine them, none where not."""
+    problem, products = fit.problem, fit.products
     assert products is not None, "nothing has been minimised yet"
-    samples = np.maximum(np.asarray(data.present).sum(axis=-1), 1)
-    inflation = np.ones(samples.shape)
-    for i, test in enumerate(tests):
-        for series in test.series:
-            j = data.dofs.index(DOFS.index(series.channel))
-            inflation[i, j] = memory(series.simulated - series.measured)
-    unknowns = products.shape[-1] - 1
-    variance = products[..., -1, -1] / np.maximum(samples - unknowns / len(data.dofs), 1)
     ridge, width = np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
-    uncertainty = spread(products, fit.weight, variance, inflation, ridge, width)
-    return verdicts(space, problem.model, np.asarray(fit.unknowns.shared), uncertainty)
+    uncertainty = spread(products, fit.weight, *errors_of(fit, tests), ridge, width)
+    return verdicts(problem.space, problem.model, np.asarray(fit.unknowns.shared), uncertainty)
 
 
-def verdicts(
-    space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread
-) -> tuple[dict[str, Estimate], list[tuple[str, str]]]:
+def verdicts(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread) -> dict[str, Estimate]:
     """`estimates` of free parameters at coordinates, from the covariance of these."""
-    deviation, correlation = uncertainty.deviation(), uncertainty.correlation()
+    deviation = uncertainty.deviation()
     slope = slopes(space, x)
     found = {}
     for i, parameter in enumerate(space.free):
@@ -70,14 +59,7 @@ def verdicts(
             bound,
             clear,
         )
-    labels = list(found)
-    pairs = [
-        (a, b)
-        for i, a in enumerate(labels)
-        for j, b in enumerate(labels[:i])
-        if abs(correlation[i, j]) > TOGETHER and not (found[a].identifiable and found[b].identifiable)
-    ]
-    return found, pairs
+    return found
 
 
 @eqx.filter_jit
@@ -141,7 +123,7 @@ def strays(tests: Sequence[TestFit], declared: Model) -> list[str]:
 def remarks(
     campaign: Campaign,
     parameters: dict[str, Estimate],
-    pairs: Sequence[tuple[str, str]] = (),
+    found: Identifiability,
     kinds: Sequence[str] = ("decay",),
 ) -> tuple[str, ...]:
     """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
@@ -153,5 +135,4 @@ def remarks(
     if vague:
         ends = "its value is no result" if len(vague) == 1 else "their values are not results"
         said.append(f"these records do not determine {', '.join(vague)}: {ends}")
-    said += [f"{a} and {b} cannot be told apart: only their joint effect is known" for a, b in pairs]
-    return tuple(said)
+    return (*said, *found.sentences())

@@ -10,6 +10,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, series_of, strays
 from calibration.descent import descend
+from calibration.directions import identifiability_of
 from calibration.identifiability import VAGUE
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record
@@ -218,7 +219,7 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
     space, x = fit.problem.space, fit.unknowns.shared
     model = space.model(fit.problem.model, x)
     tests = series_of(fit.problem, fit.records, fit.unknowns)
-    parameters, pairs = estimates(fit, tests)
+    parameters, found = estimates(fit, tests), identifiability_of(fit, tests)
     lost = strays(tests, declared)
     held = [record for record in campaign.used("holdout") if record.kind == "decay"]
     if held:
@@ -239,8 +240,9 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
         fit.iterations,
         seconds,
         tuple(fit.history),
-        (*lost, *remarks(campaign, parameters, pairs)),
+        (*lost, *remarks(campaign, parameters, found)),
         campaign.platform.name,
+        found,
     )
 
 

@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from jaxhydro.model import Model
+
+if TYPE_CHECKING:
+    from calibration.directions import Identifiability
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +83,8 @@ class Calibration:
     """A calibrated model and how well it follows its campaign.
 
     `objective` is J = sum of RMSE over standard deviation over the scored series of the tests of one use; None where there
-    are none. `history` is J at each accepted iteration. `notes` are findings in words (records, identifiability).
+    are none. `history` is J at each accepted iteration. `notes` are findings in words, `identifiability` the numbers of what
+    the fitted records determine.
     """
 
     campaign: str
@@ -93,6 +97,7 @@ class Calibration:
     history: tuple[float, ...]
     notes: tuple[str, ...]
     platform: str = ""
+    identifiability: "Identifiability | None" = None
 
     def objective(self, use: str) -> float | None:
         """J over the tests of one use (fit, holdout)."""

@@ -12,14 +12,17 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.conclusion import remarks, verdicts
 from calibration.descent import descend
+from calibration.directions import Identifiability, identifiability
 from calibration.fit import Interrupted, Progress
-from calibration.identifiability import VAGUE, memory, spread
-from calibration.parameters import choose, parameter_space
+from calibration.identifiability import VAGUE, Spread, memory, spread
+from calibration.information import eliminated
+from calibration.parameters import choose, parameter_space, slopes
 from calibration.result import BandError, Calibration, TestFit
 from calibration.runs import KINDS, runs
 from calibration.sea_residuals import Objective, SeaProblem, condensed_in_waves, pose_in_waves
 from calibration.seas import Options, SeaTest, compare, moving_channels, sea_step, with_diffraction
 from calibration.seas_results import in_bands
+from calibration.statements import Parameters
 from jaxhydro.environment import DOFS
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
@@ -84,9 +87,9 @@ class SeaFit:
             if abs(self.error / before - 1) < SETTLED:
                 return
 
-    def uncertainty(self):
-        """Covariance of the coordinates. A motion's residual counts as many times as it is independent; bands once each, with
-        the variance that is left after what the parameters and their prior took."""
+    def identifiability(self) -> tuple[Spread, Identifiability]:
+        """Covariance of the coordinates, and what it says. A motion's residual counts as many times as it is independent; bands
+        once each, with the variance that is left after what the parameters and their prior took."""
         groups = self.residuals(self.x)
         ridge = self.error / self.width
         whole = self.products[:, :-1, :-1].sum(axis=0)
@@ -94,8 +97,17 @@ class SeaFit:
         total = sum(len(g) if bands else len(g) / memory(g) for g, bands in zip(groups, self.problem.in_bands))
         variance = np.array([float(np.mean(g**2)) for g in groups]) * total / max(total - used, 1.0)
         inflation = np.array([1.0 if bands else memory(g) for g, bands in zip(groups, self.problem.in_bands)])
-        ones = np.ones((1, len(groups)))
-        return spread(self.products[None], ones, variance[None], inflation[None], ridge, self.width)
+        parts = (self.products[None], np.ones((1, len(groups))), variance[None], inflation[None])
+        found = spread(*parts, ridge, self.width)
+        space, x = self.problem.space, np.asarray(self.x)
+        values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
+        units = tuple(self.problem.model.about(label).unit for label in space.labels)
+        bound = [p.label for p, c in zip(space.free, x, strict=True) if p.transform.at_bound(float(c))]
+        said = identifiability(
+            Parameters(space.labels, values, slopes(space, x), units), eliminated(*parts, len(x)), found.covariance,
+            "the tests in waves", bound,
+        )  # fmt: skip
+        return found, said
 
 
 def calibrate_in_waves(
@@ -160,13 +172,14 @@ def _conclude(campaign: Campaign, fit: SeaFit, options: Options, seconds: float)
     """Parameters with their deviations, and all tests in waves before and after."""
     problem = fit.problem
     model = problem.space.model(problem.model, fit.x)
-    parameters, pairs = verdicts(problem.space, problem.model, np.asarray(fit.x), fit.uncertainty())
+    uncertainty, known = fit.identifiability()
+    parameters = verdicts(problem.space, problem.model, np.asarray(fit.x), uncertainty)
     after, before = (compare(campaign, one, options) for one in (model, problem.model))
     tests = [_test(*pair) for pair in zip(after.tests, before.tests, strict=True)]
-    notes = remarks(campaign, parameters, pairs, KINDS)
+    notes = remarks(campaign, parameters, known, KINDS)
     return Calibration(
         campaign.manifest.name, model, parameters, tuple(tests), fit.converged, fit.iterations, seconds, tuple(fit.history),
-        (*notes, *after.notes), campaign.platform.name,
+        (*notes, *after.notes), campaign.platform.name, known,
     )  # fmt: skip
 
 

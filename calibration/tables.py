@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from calibration.campaign import Campaign
 from calibration.checks import Finding
+from calibration.classical import classical
 from calibration.formatting import number, percent, with_deviation
 from calibration.result import Calibration, Estimate
 from jaxhydro.plot import for_people, unit_of
@@ -55,6 +56,26 @@ def errors(result: Calibration) -> Rows:
             rmse = f"{number(float(for_people(series.channel, series.rmse)), 2)} {unit_of(series.channel)}"
             rows.append((test.id, USE[test.use], series.channel, percent(before), percent(series.relative), rmse))
     return ("Test", "Use", "Channel", "Before", "After", "RMSE"), rows
+
+
+def linear_quadratic(result: Calibration) -> Rows:
+    """The classical P-Q fit of every decay, measured and simulated, where it has cycles enough: 95 % intervals."""
+    rows = []
+    for test in result.tests:
+        main = test.main
+        try:
+            found = [classical(test.time, x, main.noise).fit for x in (main.measured, main.simulated)]
+        except ValueError:
+            continue
+        measured, simulated = found
+        unit = "m" if unit_of(main.channel) == "m" else "rad"
+        cells = [
+            (with_deviation(float(a.value), 0.5 * float(a.upper - a.lower)), number(float(b.value), 3))
+            for a, b in ((measured.linear, simulated.linear), (measured.quadratic, simulated.quadratic))
+        ]
+        rows.append((test.id, number(measured.period, 4), *cells[0], *cells[1], f"1/{unit}"))
+    heads = ("Test", "Period (s)", "p ± 95 % (1/s)", "simulated", "q ± 95 %", "simulated", "Unit of q")
+    return heads, rows
 
 
 def bands(result: Calibration) -> Rows:
