@@ -103,9 +103,9 @@ What the energies tell, in the words of the package:
 
 {said}
 
-**What tuning cannot mend**: in the held-out sea more than {100 * MENDED:.0f} % is left, begun from {beyond}. The measured point,
-which seems to be at the keel (see *Measured waves*), is taken as the manifest states it, so coefficients make up for some of
-that here: they are no result about the hull until the reference is put right.
+**What tuning cannot mend**: in the held-out sea more than {100 * MENDED:.0f} % is left, begun from {beyond}. The measured
+point, which seems to be at the keel (see *Measured waves*), is taken as the manifest states it, so coefficients make up for
+some of that here: they are no result about the hull until the reference is put right.
 """
     short = tuple(
         f"tuned to two lower seas from {name}, the third is more than {100 * MENDED:.0f} % off in {', '.join(words)}"
