@@ -185,15 +185,9 @@ def calibrate(
             if (largest := float(np.abs(record.values[channel]).max())) > np.pi / 2:
                 where, found = f"tests, {record.id}, channel {channel}", f"{np.degrees(largest):.3g} deg"
                 raise InputError(source, [Wrong(where, "angles below 90 deg", found, "Is the unit right?")])
-    wish = campaign.manifest.calibrate
-    released = [str(record.degree_of_freedom) for record in records]
-    labels = choose(declared, released, wish.free if free is None else free, wish.fixed, source)
-    if not labels:
-        none = f"none: the platform declares nothing that acts on {', '.join(sorted(set(released)))}"
-        raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", none)])
-    declared = declared.with_values(start or {})
-    priors = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
-    space = parameter_space(declared, labels, dict(wish.bounds), priors, source)
+    begin = declared.with_values(start or {})
+    space = space_of(campaign, declared, begin, [str(record.degree_of_freedom) for record in records], free)
+    declared = begin
     problem = pose(declared, campaign, records, space)
     unknowns = Unknowns(space.start, first_guess(records, problem.data))
 
@@ -212,6 +206,20 @@ def calibrate(
         fit.converged = False
         raise Interrupted(finish() if fit.iterations else None) from None
     return finish()
+
+
+def space_of(
+    campaign: Campaign, declared: Model, begin: Model, moved: Sequence[str], free: Sequence[str] | None
+) -> ParameterSpace:
+    """The free parameters, begun from another model's values: those of `declared` that `moved` motions are about, or the labels
+    and patterns asked for, with the manifest's bounds and priors. Raises InputError where there are none."""
+    source, wish = str(campaign.folder / "campaign.yaml"), campaign.manifest.calibrate
+    labels = choose(declared, moved, wish.free if free is None else free, wish.fixed, source)
+    if not labels:
+        none = f"none: the platform declares nothing that acts on {', '.join(sorted(set(moved)))}"
+        raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", none)])
+    priors = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
+    return parameter_space(begin, labels, dict(wish.bounds), priors, source)
 
 
 def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) -> Calibration:

@@ -13,10 +13,10 @@ from calibration.campaign import Campaign
 from calibration.conclusion import remarks, verdicts
 from calibration.descent import descend
 from calibration.directions import Identifiability, identifiability
-from calibration.fit import Interrupted, Progress
+from calibration.fit import Interrupted, Progress, space_of
 from calibration.identifiability import VAGUE, Spread, memory, spread
 from calibration.information import eliminated
-from calibration.parameters import choose, parameter_space, slopes
+from calibration.parameters import slopes
 from calibration.result import BandError, Calibration, TestFit
 from calibration.runs import KINDS, runs
 from calibration.sea_residuals import Objective, SeaProblem, condensed_in_waves, pose_in_waves
@@ -24,6 +24,7 @@ from calibration.seas import Options, SeaTest, compare, moving_channels, sea_ste
 from calibration.seas_results import in_bands
 from calibration.statements import Parameters
 from jaxhydro.environment import DOFS
+from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 
@@ -40,6 +41,11 @@ def _objective(x, args):
 
 
 @eqx.filter_jit
+def _inside(problem: SeaProblem, x):
+    return problem.inside(x)
+
+
+@eqx.filter_jit
 def _groups(problem: SeaProblem, x):
     return problem.residuals(x)
 
@@ -48,8 +54,9 @@ class SeaFit:
     """One calibration in waves under way. The prior of every parameter weighs as one observation beside the tests' own, whose
     error is that of the model: it is estimated from what is left of them, and the fit made anew, until both agree."""
 
-    def __init__(self, problem: SeaProblem, report: Callable[[str, int, float, float], None]) -> None:
-        self.problem, self.report = problem, report
+    def __init__(self, pose: Callable[[Model], SeaProblem], declared: Model, report: Callable[..., None]) -> None:
+        self.pose, self.report = pose, report
+        self.problem = problem = pose(declared)
         free, start = problem.space.free, problem.space.start
         known = [np.isfinite(p.prior_deviation) for p in free]
         self.mean = jnp.array([p.prior_mean if k else s for p, s, k in zip(free, start, known)])
@@ -65,12 +72,7 @@ class SeaFit:
 
     def left(self, x) -> float:
         """Root mean square of what is left of an observation."""
-        groups = self.residuals(x)
-        return float(np.sqrt(sum(float(np.sum(g**2)) for g in groups) / self.observations(groups)))
-
-    def observations(self, groups: Sequence[np.ndarray]) -> float:
-        """How many there are: one for every band, and for every motion, whose residuals' squares sum to one relative to it."""
-        return sum(len(g) if bands else 1 for g, bands in zip(groups, self.problem.in_bands))
+        return math.sqrt(sum(float(np.sum(group**2)) for group in self.residuals(x)) / self.problem.observations)
 
     def run(self) -> None:
         """All rounds."""
@@ -79,12 +81,14 @@ class SeaFit:
             for i, now in enumerate(descend(_objective, self.x, (self.problem, self.mean, ridge), TOLERANCE)):
                 self.x, self.products, self.converged = now.unknowns, np.asarray(now.aux), now.settled
                 self.iterations += 1
-                squares = float(self.products[:, -1, -1].sum())
-                self.history.append(float(np.sqrt(squares / self.observations(self.residuals(self.x)))))
+                self.history.append(math.sqrt(float(self.products[:, -1, -1].sum()) / self.problem.observations))
                 share = (number + min(1.0, i / 10)) / ROUNDS
                 self.report(f"round {number + 1} in waves", self.iterations, self.history[-1], share)
+            if not bool(_inside(self.problem, self.x)):
+                self.problem = self.pose(self.problem.space.model(self.problem.model, self.x))
+                self.converged = False
             before, self.error = self.error, self.left(self.x)
-            if abs(self.error / before - 1) < SETTLED:
+            if self.converged and abs(self.error / before - 1) < SETTLED:
                 return
 
     def identifiability(self) -> tuple[Spread, Identifiability]:
@@ -139,13 +143,7 @@ def calibrate_in_waves(
         raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", found)])
     declared = with_diffraction(build(campaign.platform), options).with_values(start or {})
     moved = {dof for record in records for dof in moving_channels({k: record.values[k] for k in DOFS if k in record.values})}
-    wish = campaign.manifest.calibrate
-    labels = choose(declared, sorted(moved), wish.free if free is None else free, wish.fixed, source)
-    if not labels:
-        none = f"none: the platform declares nothing that acts on {', '.join(sorted(moved))}"
-        raise InputError(source, [Problem("calibrate.free", "at least one free parameter", none)])
-    priors = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
-    space = parameter_space(declared, labels, dict(wish.bounds), priors, source)
+    space = space_of(campaign, declared, declared, sorted(moved), free)
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
         if progress is not None:
@@ -153,28 +151,31 @@ def calibrate_in_waves(
 
     seas = runs(campaign)
     report("seas of the wave records", 0, math.nan, 0.0)
-    problem = pose_in_waves(
-        declared, seas, space, options, from_rest=campaign.manifest.zero is not None, scale=campaign.manifest.scale,
-        step=sea_step(declared, options), objective=objective,
-    )  # fmt: skip
-    fit = SeaFit(problem, report)
+
+    def pose(model: Model) -> SeaProblem:
+        return pose_in_waves(
+            model, seas, space, options, from_rest=campaign.manifest.zero is not None, scale=campaign.manifest.scale,
+            step=sea_step(declared, options), objective=objective,
+        )  # fmt: skip
+
+    fit = SeaFit(pose, declared, report)
     try:
         fit.run()
     except KeyboardInterrupt:
         fit.converged = False
         if not fit.iterations:
             raise Interrupted(None) from None
-        raise Interrupted(_conclude(campaign, fit, options, clock.monotonic() - begun)) from None
-    return _conclude(campaign, fit, options, clock.monotonic() - begun)
+        raise Interrupted(_conclude(campaign, declared, fit, options, clock.monotonic() - begun)) from None
+    return _conclude(campaign, declared, fit, options, clock.monotonic() - begun)
 
 
-def _conclude(campaign: Campaign, fit: SeaFit, options: Options, seconds: float) -> Calibration:
+def _conclude(campaign: Campaign, declared: Model, fit: SeaFit, options: Options, seconds: float) -> Calibration:
     """Parameters with their deviations, and all tests in waves before and after."""
     problem = fit.problem
     model = problem.space.model(problem.model, fit.x)
     uncertainty, known = fit.identifiability()
     parameters = verdicts(problem.space, problem.model, np.asarray(fit.x), uncertainty)
-    after, before = (compare(campaign, one, options) for one in (model, problem.model))
+    after, before = (compare(campaign, one, options) for one in (model, declared))
     tests = [_test(*pair) for pair in zip(after.tests, before.tests, strict=True)]
     notes = remarks(campaign, parameters, known, KINDS)
     return Calibration(

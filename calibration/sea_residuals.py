@@ -11,7 +11,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
@@ -23,7 +23,7 @@ from jaxhydro.analysis import band_weights
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
-from jaxhydro.simulate import in_irregular
+from jaxhydro.simulate import farthest, in_irregular
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular_sea import SupportSea
 
@@ -79,16 +79,27 @@ class SeaProblem(eqx.Module):
     from_rest: bool = eqx.field(static=True)
     objective: Objective = eqx.field(static=True)
 
-    def motions(self, x: Float[Array, " p"]) -> tuple[Float[Array, "t 6"], ...]:
-        """Motion of every run at its times, counted as it was measured (m, rad)."""
+    def motions(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, "t 6"], ...], Float[Array, "6"]]:
+        """Position in every run at its times, and the position that was measured as zero (m, rad)."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model) if self.rest is None else self.rest
         state = State(rest, jnp.zeros(6), model.rest().memory)
-        base = rest if self.from_rest else jnp.zeros(6)
-        return tuple(
-            integrate(model, run.sea, state, run.times[0], run.step, run.steps, "ab4").at(run.times)[0] - base
-            for run in self.runs
+        positions = tuple(
+            integrate(model, run.sea, state, run.times[0], run.step, run.steps, "ab4").at(run.times)[0] for run in self.runs
         )
+        return positions, rest if self.from_rest else jnp.zeros(6)
+
+    def inside(self, x: Float[Array, " p"]) -> Bool[Array, ""]:
+        """Whether the hull stays in the box that every sea was prepared for, outside which its flow is wrong."""
+        points = jnp.asarray(self.model.hull.extremities())
+        far = [farthest(one, points, run.sea) <= run.sea.half for one, run in zip(self.motions(x)[0], self.runs, strict=True)]
+        return jnp.stack(far).all()
+
+    @property
+    def observations(self) -> int:
+        """How many there are: one for every band, and one for every motion, whose residual's square is relative to its own."""
+        pieces = [piece for run in self.runs for piece in run.pieces]
+        return sum(self.in_bands) * sum(len(piece.energies) for piece in pieces) + self.in_bands.count(False)
 
     @property
     def in_bands(self) -> tuple[bool, ...]:
@@ -102,9 +113,10 @@ class SeaProblem(eqx.Module):
         """In one group ln(simulated / measured energy) by test, motion and band; in others, motion by motion, simulated less
         measured over the measured standard deviation and the root of the number of samples, each about its mean."""
         energies, motions = [], []
-        for run, motion in zip(self.runs, self.motions(x), strict=True):
+        positions, base = self.motions(x)
+        for run, position in zip(self.runs, positions, strict=True):
             for piece in run.pieces:
-                there = motion[piece.begin : piece.begin + piece.measured.shape[0], piece.dof]
+                there = position[piece.begin : piece.begin + piece.measured.shape[0], piece.dof] - base[piece.dof]
                 if self.objective != "motion":  # regular waves have none
                     energies += [jnp.log(one.of(there) / one.measured) for one in piece.energies]
                 if self.objective != "bands" or not piece.energies:

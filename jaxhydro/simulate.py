@@ -128,7 +128,7 @@ def in_irregular(
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion)
         found = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
-        reached = float(_reached(found.position, jnp.asarray(points), prepared.along, prepared.middle))
+        reached = float(_farthest(found.position, jnp.asarray(points), prepared))
         if not reached + margin > prepared.half:
             return InIrregular(found, prepared, step, steps)
         if reached > prepared.half + 10 * EXCURSION:
@@ -136,11 +136,13 @@ def in_irregular(
         excursion += reached + margin - prepared.half + 0.5 * EXCURSION
 
 
-@eqx.filter_jit
-def _reached(position, points, along, middle):
-    """Farthest distance (m) of any point of the hull from the middle of the sea's box, along the waves."""
-    place = jax.vmap(lambda q: along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - middle)(position)
+def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: SupportSea) -> Float[Array, ""]:
+    """Farthest distance (m) of any of the hull's `points` from the middle of the sea's box, along the waves."""
+    place = jax.vmap(lambda q: sea.along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - sea.middle)(position)
     return jnp.abs(place).max()
+
+
+_farthest = eqx.filter_jit(farthest)
 
 
 def free_decay(
