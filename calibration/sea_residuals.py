@@ -75,6 +75,7 @@ class SeaProblem(eqx.Module):
     model: Model
     runs: tuple[SeaRun, ...]
     rest: Float[Array, "6"] | None  # None where free parameters move the equilibrium
+    points: Float[Array, "3 p"]  # m, the hull's extremities
     space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
     objective: Objective = eqx.field(static=True)
@@ -91,9 +92,9 @@ class SeaProblem(eqx.Module):
 
     def inside(self, x: Float[Array, " p"]) -> Bool[Array, ""]:
         """Whether the hull stays in the box that every sea was prepared for, outside which its flow is wrong."""
-        points = jnp.asarray(self.model.hull.extremities())
-        far = [farthest(one, points, run.sea) <= run.sea.half for one, run in zip(self.motions(x)[0], self.runs, strict=True)]
-        return jnp.stack(far).all()
+        positions, _ = self.motions(x)
+        far = [farthest(one, self.points, run.sea) - run.sea.half for one, run in zip(positions, self.runs, strict=True)]
+        return (jnp.stack(far) <= 0).all()
 
     @property
     def observations(self) -> int:
@@ -176,7 +177,8 @@ def pose_in_waves(
         taken = in_irregular(model, sea.sea, state, times, step, margin=MARGIN)
         pieces = tuple(piece for record in fitted for piece in _pieces(run, record, scale))
         made.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, taken.steps))
-    return SeaProblem(model, tuple(made), None if moves else rest, space, from_rest, objective)
+    points = jnp.asarray(model.hull.extremities())
+    return SeaProblem(model, tuple(made), None if moves else rest, points, space, from_rest, objective)
 
 
 def _pieces(run: Run, record: Record, scale: float) -> list[Piece]:

@@ -226,10 +226,10 @@ def test_a_record_that_second_order_does_not_follow():
     assert made.mismatch == 0 and any("of the wave record's variance" in note for note in made.notes)
 
 
-def test_calibrating_tests_in_waves_is_declined(made, tmp_path):
+def test_decays_are_wanted_where_only_waves_are(made, tmp_path):
     """One message, and what else there is to do."""
     text = failure(made, lambda folder: calibrate(load_campaign(folder)))
-    assert "irregular marked fit" in text and "jaxhydro simulate" in text
+    assert "irregular marked fit" in text and "--tests waves" in text
 
 
 # calibrated values
