@@ -113,8 +113,7 @@ def decay_information(
     test = Test.model_validate(stated)
     record = Record(test.id, test.kind, test.use, dof, time, values, None, None, dict(noise), True, 0.0, test, test.file)
     data = gather([record], model, float(modes.period.min()) / STEPS_PER_PERIOD)
-    moves = any(label.startswith(("mooring.", "stiffness.")) for label in space.labels)
-    problem = Problem(model, data, space, True, None if moves else rest)
+    problem = Problem(model, data, space, True, None if space.moves_equilibrium else rest)
     own = np.zeros((3, len(data.dofs)))
     own[0] = [values[DOFS[i]][0] / float(unit) for i, unit in zip(data.dofs, data.unit[0], strict=True)]
     x = jnp.array([p.transform.inverse(float(model.values[p.label])) for p in space.free])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import equinox as eqx
 import jax
@@ -11,8 +10,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.directions import Identifiability, errors_of
-from calibration.identifiability import CLEAR, Spread, spread
+from calibration.directions import Identifiability
+from calibration.identifiability import CLEAR, Spread
 from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
@@ -22,24 +21,11 @@ from jaxhydro.model import Model
 from jaxhydro.response import decay_cycles
 from jaxhydro.statics import natural_modes
 
-if TYPE_CHECKING:
-    from calibration.fit import Fit
-
-
 LOST = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
 
 
-def estimates(fit: Fit, tests: Sequence[TestFit]) -> dict[str, Estimate]:
-    """The fitted parameters: a standard deviation where the records determine them, none where not."""
-    problem, products = fit.problem, fit.products
-    assert products is not None, "nothing has been minimised yet"
-    ridge, width = np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
-    uncertainty = spread(products, fit.weight, *errors_of(fit, tests), ridge, width)
-    return verdicts(problem.space, problem.model, np.asarray(fit.unknowns.shared), uncertainty)
-
-
-def verdicts(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread) -> dict[str, Estimate]:
-    """`estimates` of free parameters at coordinates, from the covariance of these."""
+def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread) -> dict[str, Estimate]:
+    """The free parameters at coordinates: a standard deviation where the records determine them, none where not."""
     deviation = uncertainty.deviation()
     slope = slopes(space, x)
     found = {}

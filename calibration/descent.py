@@ -76,13 +76,11 @@ SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # `descend` ends by it
 
 
 class Reached(NamedTuple):
-    """Where a descent is after an iteration: the unknowns, what the objective returned beside its residuals there, the sum of
-    squares, whether it is done, and whether that is a minimum."""
+    """Where a descent is after an iteration: the unknowns, what the objective returned beside its residuals there, and whether
+    it ended there of its own."""
 
     unknowns: PyTree
     aux: PyTree
-    cost: float
-    done: bool
     settled: bool
 
 
@@ -105,7 +103,7 @@ def descend(objective: Callable, unknowns: PyTree, args: PyTree, tolerance: floa
     """
     state = _begin(objective, unknowns, args)
     last, refused, accepted = math.inf, 0, 0
-    for i in range(PATIENCE):
+    for _ in range(PATIENCE):
         unknowns, state, _ = _step(objective, unknowns, args, state)
         cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
         taken = int(state.num_accepted_steps) > accepted
@@ -113,6 +111,6 @@ def descend(objective: Callable, unknowns: PyTree, args: PyTree, tolerance: floa
         refused = 0 if taken else refused + 1
         settled = (taken and last - cost < tolerance * cost) or refused >= REFUSED
         last = cost
-        yield Reached(unknowns, state.aux, cost, settled or i == PATIENCE - 1, settled and math.isfinite(cost))
+        yield Reached(unknowns, state.aux, settled and math.isfinite(cost))
         if settled:
             return

@@ -15,16 +15,18 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.formatting import number, percent
-from calibration.identifiability import CLEAR, VAGUE, memory, spread
+from calibration.identifiability import CLEAR, VAGUE, Spread, memory, spread
 from calibration.information import collinearity, deviations, eliminated, inverse, principal, varimax, within
-from calibration.parameters import slopes
+from calibration.parameters import ParameterSpace, slopes
 from calibration.result import TestFit
 from calibration.statements import Collinear, Combination, Direction, Fix, Parameters, listed
 from jaxhydro.environment import DOFS
+from jaxhydro.model import Model
 
 if TYPE_CHECKING:
     from calibration.fit import Fit
 
+Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # products, weight, variance, inflation: see `spread`
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
 NAMED = 0.5 * CLEAR  # a parameter that a direction leaves uncertain by less than this is not named in it
 
@@ -143,19 +145,31 @@ def errors_of(fit: Fit, tests: Sequence[TestFit]) -> tuple[np.ndarray, np.ndarra
 
 def identifiability_of(fit: Fit, tests: Sequence[TestFit]) -> Identifiability:
     """The statement on a finished fit; `tests` are its records as `series_of` gives them."""
-    space, products, x = fit.problem.space, fit.products, np.asarray(fit.unknowns.shared)
-    assert products is not None, "nothing has been minimised yet"
-    variance, inflation = errors_of(fit, tests)
-    information = eliminated(products, fit.weight, variance, inflation, len(x))
-    ridge, width = np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
-    posterior = spread(products, fit.weight, variance, inflation, ridge, width).covariance[: len(x), : len(x)]
-    values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
-    units = tuple(fit.problem.model.about(label).unit for label in space.labels)
+    return uncertainty_of(fit, tests)[1]
+
+
+def uncertainty_of(fit: Fit, tests: Sequence[TestFit]) -> tuple[Spread, Identifiability]:
+    """`identifiability_of`, and the covariance of all unknowns that it rests on."""
+    assert fit.products is not None, "nothing has been minimised yet"
+    parts = (fit.products, fit.weight, *errors_of(fit, tests))
     released = [str(record.degree_of_freedom) for record in fit.records]
     counts = [(dof, released.count(dof)) for dof in dict.fromkeys(released)]
     source = listed([f"{n} {dof} decay{'' if n == 1 else 's'}" for dof, n in counts])
+    x, ridge, width = np.asarray(fit.unknowns.shared), np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
+    return stated(fit.problem.space, fit.problem.model, x, parts, ridge, width, source)
+
+
+def stated(
+    space: ParameterSpace, model: Model, x: np.ndarray, parts: Parts, ridge: np.ndarray, width: np.ndarray, source: str
+) -> tuple[Spread, Identifiability]:
+    """Covariance and statement at coordinates (p,); `parts`, `ridge` and `width` are the arguments of `spread`."""
+    found = spread(*parts, ridge, width)
+    values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
+    units = tuple(model.about(label).unit for label in space.labels)
     bound = [p.label for p, c in zip(space.free, x, strict=True) if p.transform.at_bound(float(c))]
-    return identifiability(Parameters(space.labels, values, slopes(space, x), units), information, posterior, source, bound)
+    parameters = Parameters(space.labels, values, slopes(space, x), units)
+    posterior = found.covariance[: len(x), : len(x)]
+    return found, identifiability(parameters, eliminated(*parts, len(x)), posterior, source, bound)
 
 
 def family(label: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, series_of, strays
 from calibration.descent import descend
-from calibration.directions import identifiability_of
+from calibration.directions import uncertainty_of
 from calibration.identifiability import VAGUE
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record
@@ -227,7 +227,8 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
     space, x = fit.problem.space, fit.unknowns.shared
     model = space.model(fit.problem.model, x)
     tests = series_of(fit.problem, fit.records, fit.unknowns)
-    parameters, found = estimates(fit, tests), identifiability_of(fit, tests)
+    uncertainty, found = uncertainty_of(fit, tests)
+    parameters = estimates(space, fit.problem.model, np.asarray(x), uncertainty)
     lost = strays(tests, declared)
     held = [record for record in campaign.used("holdout") if record.kind == "decay"]
     if held:
@@ -261,8 +262,8 @@ def pose(model: Model, campaign: Campaign, records: Sequence[Record], space: Par
     # a model that starts with periods far too long would step too far for the true ones
     step = min([step, *(dominant_period(record) / STEPS_PER_PERIOD for record in records)])
     data = gather(records, model, step)
-    moves = any(label.startswith(("mooring.", "stiffness.")) for label in space.labels)
-    return Problem(model, data, space, campaign.manifest.zero is not None, None if moves else equilibrium(model))
+    rest = None if space.moves_equilibrium else equilibrium(model)
+    return Problem(model, data, space, campaign.manifest.zero is not None, rest)
 
 
 def run(fit: Fit) -> None:

@@ -39,6 +39,11 @@ class ParameterSpace(NamedTuple):
         return tuple(p.label for p in self.free)
 
     @property
+    def moves_equilibrium(self) -> bool:
+        """Whether the platform's static equilibrium depends on them."""
+        return any(label.startswith(NEVER) for label in self.labels)
+
+    @property
     def start(self) -> Float[Array, " p"]:
         """Coordinates of the starting values."""
         return jnp.array([p.transform.inverse(p.start) for p in self.free])

@@ -10,19 +10,16 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.conclusion import remarks, verdicts
+from calibration.conclusion import estimates, remarks
 from calibration.descent import descend
-from calibration.directions import Identifiability, identifiability
+from calibration.directions import Identifiability, stated
 from calibration.fit import Interrupted, Progress, space_of
-from calibration.identifiability import VAGUE, Spread, memory, spread
-from calibration.information import eliminated
-from calibration.parameters import slopes
+from calibration.identifiability import VAGUE, Spread, memory
 from calibration.result import BandError, Calibration, TestFit
 from calibration.runs import KINDS, runs
 from calibration.sea_residuals import Objective, SeaProblem, condensed_in_waves, pose_in_waves
 from calibration.seas import Options, SeaTest, compare, moving_channels, sea_step, with_diffraction
 from calibration.seas_results import in_bands
-from calibration.statements import Parameters
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.platform import build
@@ -102,16 +99,8 @@ class SeaFit:
         variance = np.array([float(np.mean(g**2)) for g in groups]) * total / max(total - used, 1.0)
         inflation = np.array([1.0 if bands else memory(g) for g, bands in zip(groups, self.problem.in_bands)])
         parts = (self.products[None], np.ones((1, len(groups))), variance[None], inflation[None])
-        found = spread(*parts, ridge, self.width)
-        space, x = self.problem.space, np.asarray(self.x)
-        values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
-        units = tuple(self.problem.model.about(label).unit for label in space.labels)
-        bound = [p.label for p, c in zip(space.free, x, strict=True) if p.transform.at_bound(float(c))]
-        said = identifiability(
-            Parameters(space.labels, values, slopes(space, x), units), eliminated(*parts, len(x)), found.covariance,
-            "the tests in waves", bound,
-        )  # fmt: skip
-        return found, said
+        space, model = self.problem.space, self.problem.model
+        return stated(space, model, np.asarray(self.x), parts, ridge, self.width, "the tests in waves")
 
 
 def calibrate_in_waves(
@@ -174,7 +163,7 @@ def _conclude(campaign: Campaign, declared: Model, fit: SeaFit, options: Options
     problem = fit.problem
     model = problem.space.model(problem.model, fit.x)
     uncertainty, known = fit.identifiability()
-    parameters = verdicts(problem.space, problem.model, np.asarray(fit.x), uncertainty)
+    parameters = estimates(problem.space, problem.model, np.asarray(fit.x), uncertainty)
     after, before = (compare(campaign, one, options) for one in (model, declared))
     tests = [_test(*pair) for pair in zip(after.tests, before.tests, strict=True)]
     notes = remarks(campaign, parameters, known, KINDS)

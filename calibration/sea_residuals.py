@@ -163,7 +163,6 @@ def pose_in_waves(
     objective: Objective = "bands",
 ) -> SeaProblem:
     """The fixed part of a calibration of `model` to the tests marked `fit` of runs; `step` (s) is the largest time step."""
-    moves = any(label.startswith(("mooring.", "stiffness.")) for label in space.labels)
     rest = equilibrium(model)
     made = []
     for run in found:
@@ -178,7 +177,7 @@ def pose_in_waves(
         pieces = tuple(piece for record in fitted for piece in _pieces(run, record, scale))
         made.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, taken.steps))
     points = jnp.asarray(model.hull.extremities())
-    return SeaProblem(model, tuple(made), None if moves else rest, points, space, from_rest, objective)
+    return SeaProblem(model, tuple(made), None if space.moves_equilibrium else rest, points, space, from_rest, objective)
 
 
 def _pieces(run: Run, record: Record, scale: float) -> list[Piece]:
