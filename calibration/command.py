@@ -8,11 +8,15 @@ from typing import Any, cast
 from calibration import seas_results, tables
 from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
+from calibration.joint import calibrate_jointly
+from calibration.joint_fit import Loss
 from calibration.outputs import MOTION, RESULT, NotFinite, write_calibration
 from calibration.result import Calibration
 from calibration.runs import KINDS
 from calibration.saved import Applied, applied
 from calibration.sea_fit import calibrate_in_waves
+from calibration.sea_laws import OVERS, SeaLaws, choose_law
+from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws
 from calibration.sea_residuals import Objective
 from calibration.seas import Diverged, Options, compare
 from calibration.seas_outputs import COMPARISON, write_comparison
@@ -40,16 +44,17 @@ def load(
     return campaign
 
 
-def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campaign, bool]:
-    """`load` for a calibration, and whether it is to the tests in waves: as asked for ("decays", "waves"), else where there is
-    no decay to fit."""
+def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campaign, str]:
+    """`load` for a calibration, and to which tests it is: as asked for ("decays", "waves", "all"), else to the decays, or where
+    there is none to fit, to the tests in waves."""
 
-    def waves(campaign: Campaign) -> bool:
+    def kind(campaign: Campaign) -> str:
         kinds = {test.kind for test in campaign.manifest.tests if test.use == "fit"}
-        return tests == "waves" or (tests is None and "decay" not in kinds and bool(kinds & set(KINDS)))
+        return tests or ("waves" if "decay" not in kinds and kinds & set(KINDS) else "decays")
 
-    loaded = load(path, out, counted=lambda campaign: tables.counted(campaign, KINDS if waves(campaign) else ("decay",)))
-    return loaded, waves(loaded)
+    used = {"decays": ("decay",), "waves": KINDS, "all": ("decay", *KINDS, "static")}
+    loaded = load(path, out, counted=lambda campaign: tables.counted(campaign, used[kind(campaign)]))
+    return loaded, kind(loaded)
 
 
 def run(
@@ -57,15 +62,25 @@ def run(
     out: Path,
     figures: bool = True,
     *,
-    waves: bool = False,
+    tests: str = "decays",
     objective: Objective = "bands",
+    law: str = "constant",
+    loss: Loss = "squares",
     start: Path | None = None,
 ) -> Calibration | None:
     """Calibrate, write and print the result; of a fit that the user stops, what was reached; None if that is no number.
 
-    `waves`: to the tests in waves, by `objective`. `start` is a calibration whose values are begun from. Raises InputError, and
-    Interrupted where nothing was reached.
+    `tests`: to "decays", to those in "waves" or to "all" kinds; in waves by `objective`. `law`, of tests in waves alone: how
+    coefficients depend on the sea state, a `Law` or "choose". `loss` is that of all kinds together. `start` is a calibration
+    whose values are begun from. Raises InputError, and Interrupted where nothing was reached.
     """
+    if law != "constant" and tests != "waves":
+        raise InputError("--law", [Problem("", f"constant, where {tests} are fitted, or --tests waves", law)])
+    if loss != "squares" and tests != "all":
+        raise InputError("--loss", [Problem("", f"squares, where {tests} are fitted, or --tests all", loss)])
+    if law == "choose" and objective != "bands":
+        raise InputError("--objective", [Problem("", "bands, by which laws are chosen", objective)])
+    laws: SeaLaws | None = None
     begin: dict[str, Any] = {}
     if start is not None:
         used = applied(start, build(campaign.platform), campaign.platform.name)
@@ -73,8 +88,13 @@ def run(
         _told(used, start, campaign)
     try:
         with progress() as show:
-            if waves:
-                result = calibrate_in_waves(campaign, progress=show, objective=objective, **begin)
+            if law == "choose":
+                laws = choose_law(campaign, progress=show, **begin)
+                result = laws.chosen.calibration
+            elif tests == "all":
+                result = calibrate_jointly(campaign, progress=show, objective=objective, loss=loss, **begin)
+            elif tests == "waves":
+                result = calibrate_in_waves(campaign, progress=show, objective=objective, over=OVERS[law], **begin)
             else:
                 result = calibrate(campaign, progress=show, **begin)
     except Diverged as error:
@@ -86,6 +106,8 @@ def run(
         result = tables.unfinished(stopped.partial)
     try:
         write_calibration(result, out, figures)
+        if laws is not None:
+            write_laws(laws, out, figures)
     except NotFinite as error:
         complain(f"not converged: {error}; nothing was written")
         return None
@@ -95,6 +117,10 @@ def run(
         table("Classical analysis: x'' + p x' + q x'|x'| + w² x = 0", *damping)
     if (energies := tables.bands(result))[1]:
         table("Errors of energy in bands", *energies, left=4)
+    if laws is not None:
+        table("Laws over the sea state: error of ln(energy) in bands, root mean square", *laws_table(laws), left=1)
+        table("Coefficients of one sea alone | by the chosen law", *states_table(laws), left=1)
+        say(sentence(laws))
     warned = {str(finding) for finding in campaign.findings}
     for note in result.notes:
         if note not in warned:

@@ -59,18 +59,16 @@ def _silent(**_: Any) -> None:
 
 
 class _Region(optx.ClassicalTrustRegion):
-    """optimistix's trust region, its first damping and its cutoffs chosen for residuals relative to the motion."""
+    """optimistix's trust region, its cutoffs chosen for residuals relative to the motion."""
 
     high_cutoff: float = 0.75
     low_cutoff: float = 0.01
     high_constant: float = 2.5
     low_constant: float = 0.25
 
-    def init(self, y: PyTree, f_info_struct: Any) -> Any:
-        return eqx.tree_at(lambda s: s.step_size, super().init(y, f_info_struct), jnp.array(100.0))
-
 
 PATIENCE = 60  # iterations at most
+TRUST = 100.0  # for residuals relative to the motion
 REFUSED = 8  # refused steps in a row after which there is nowhere to go
 SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # `descend` ends by its own tolerance
 
@@ -95,13 +93,17 @@ def _step(objective: Callable, unknowns: PyTree, args: PyTree, state: Any):
     return SOLVER.step(objective, unknowns, args, {}, state, frozenset())
 
 
-def descend(objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float) -> Iterator[Reached]:
-    """Levenberg-Marquardt on the residuals that `objective(unknowns, args)` returns first, iteration by iteration.
+def descend(
+    objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float, trust: float = TRUST
+) -> Iterator[Reached]:
+    """Levenberg-Marquardt on the residuals that `objective(unknowns, args)` returns first, iteration by iteration. Its damping
+    begins as 1 / `trust`.
 
     It is done where an accepted step gains less than `tolerance` of the sum of squares, where steps are refused however short
     they are, or after `PATIENCE` iterations. One compilation serves all calls with arguments of the same shapes.
     """
     state = _begin(objective, unknowns, args)
+    state = eqx.tree_at(lambda s: s.search_state.step_size, state, jnp.asarray(trust))
     last, refused, accepted = math.inf, 0, 0
     for _ in range(PATIENCE):
         unknowns, state, _ = _step(objective, unknowns, args, state)

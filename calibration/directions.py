@@ -21,6 +21,7 @@ from calibration.parameters import ParameterSpace, slopes
 from calibration.result import TestFit
 from calibration.statements import Collinear, Combination, Direction, Fix, Parameters, listed
 from jaxhydro.environment import DOFS
+from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
 
 if TYPE_CHECKING:
@@ -173,7 +174,9 @@ def stated(
 
 
 def family(label: str) -> str:
-    """What a parameter does to the platform: inertia, damping or restoring."""
+    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on the sea."""
+    if is_exponent(label):
+        return "exponent"
     head, _, name = label.rpartition(".")
     if head == "added_mass" or name.startswith("Ca"):
         return "inertia"

@@ -1,7 +1,7 @@
 """Calibration: free parameters fitted to all decay records together by least squares."""
 
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import jax.numpy as jnp
@@ -15,7 +15,7 @@ from calibration.identifiability import VAGUE
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record
 from calibration.residuals import Data, Problem, Unknowns, condensed, dominant_period, first_guess, gather
-from calibration.result import Calibration
+from calibration.result import Calibration, TestFit
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.platform import build
@@ -172,8 +172,33 @@ def calibrate(
     Raises InputError where there is nothing to fit, Interrupted (a KeyboardInterrupt) with what was reached.
     """
     begun = clock.monotonic()
+
+    def report(stage: str, iteration: int, objective: float, fraction: float) -> None:
+        if progress is not None:
+            progress(Progress(stage, iteration, objective, fraction))
+
+    fit = prepare(campaign, free=free, start=start, report=report)
+
+    def finish() -> Calibration:
+        return conclude(campaign, fit.problem.model, fit, clock.monotonic() - begun)
+
+    try:
+        run(fit)
+    except KeyboardInterrupt:
+        fit.converged = False
+        raise Interrupted(finish() if fit.iterations else None) from None
+    return finish()
+
+
+def prepare(
+    campaign: Campaign,
+    *,
+    free: Sequence[str] | None = None,
+    start: dict[str, float] | None = None,
+    report: Callable[[str, int, float, float], None] = lambda *_: None,
+) -> Fit:
+    """A calibration to the decays before its first step. Arguments and InputError are those of `calibrate`."""
     source = str(campaign.folder / "campaign.yaml")
-    declared = build(campaign.platform)
     records = [record for record in campaign.used("fit") if record.kind == "decay"]
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
@@ -185,41 +210,33 @@ def calibrate(
             if (largest := float(np.abs(record.values[channel]).max())) > np.pi / 2:
                 where, found = f"tests, {record.id}, channel {channel}", f"{np.degrees(largest):.3g} deg"
                 raise InputError(source, [Wrong(where, "angles below 90 deg", found, "Is the unit right?")])
+    declared = build(campaign.platform)
+    labels = labels_of(campaign, declared, [str(record.degree_of_freedom) for record in records], free)
     begin = declared.with_values(start or {})
-    space = space_of(campaign, declared, begin, [str(record.degree_of_freedom) for record in records], free)
-    declared = begin
-    problem = pose(declared, campaign, records, space)
-    unknowns = Unknowns(space.start, first_guess(records, problem.data))
-
-    def report(stage: str, iteration: int, objective: float, fraction: float) -> None:
-        if progress is not None:
-            progress(Progress(stage, iteration, objective, fraction))
-
-    fit = Fit(problem, records, unknowns, report)
-
-    def finish() -> Calibration:
-        return conclude(campaign, declared, fit, clock.monotonic() - begun)
-
-    try:
-        run(fit)
-    except KeyboardInterrupt:
-        fit.converged = False
-        raise Interrupted(finish() if fit.iterations else None) from None
-    return finish()
+    problem = pose(begin, campaign, records, space_of(campaign, labels, begin))
+    return Fit(problem, records, Unknowns(problem.space.start, first_guess(records, problem.data)), report)
 
 
-def space_of(
-    campaign: Campaign, declared: Model, begin: Model, moved: Sequence[str], free: Sequence[str] | None
-) -> ParameterSpace:
-    """The free parameters, begun from another model's values: those of `declared` that `moved` motions are about, or the labels
-    and patterns asked for, with the manifest's bounds and priors. Raises InputError where there are none."""
+def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: Sequence[str] | None) -> tuple[str, ...]:
+    """The free parameters: those that `moved` motions are about, or the labels and patterns asked for. Raises InputError where
+    there are none."""
     source, wish = str(campaign.folder / "campaign.yaml"), campaign.manifest.calibrate
     labels = choose(declared, moved, wish.free if free is None else free, wish.fixed, source)
     if not labels:
         none = f"none: the platform declares nothing that acts on {', '.join(sorted(set(moved)))}"
         raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", none)])
-    priors = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
-    return parameter_space(begin, labels, dict(wish.bounds), priors, source)
+    return labels
+
+
+def space_of(
+    campaign: Campaign, labels: Sequence[str], begin: Model, priors: Mapping[str, tuple[float, float]] | None = None
+) -> ParameterSpace:
+    """Free parameters begun from a model's values, with the manifest's bounds and priors, and `priors` for others. Raises
+    InputError for what makes no sense."""
+    wish = campaign.manifest.calibrate
+    stated = {label: (prior.value, prior.standard_deviation) for label, prior in wish.priors.items()}
+    source = str(campaign.folder / "campaign.yaml")
+    return parameter_space(begin, labels, dict(wish.bounds), {**(priors or {}), **stated}, source)
 
 
 def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) -> Calibration:
@@ -230,16 +247,7 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
     uncertainty, found = uncertainty_of(fit, tests)
     parameters = estimates(space, fit.problem.model, np.asarray(x), uncertainty)
     lost = strays(tests, declared)
-    held = [record for record in campaign.used("holdout") if record.kind == "decay"]
-    if held:
-        # the coefficients stay; a record's release and its sensors' offsets are its own
-        empty = ParameterSpace(())
-        other = pose(model, campaign, held, empty)
-        judge = Fit(other, held, Unknowns(jnp.zeros(0), first_guess(held, other.data)), lambda *_: None)
-        weight = weights(held, other.data, judge.scored, judge.spread, np.ones(len(held)))
-        judge.minimise("held-out records", weight, judge.ends, 1e-4, (1.0, 1.0))
-        before = pose(declared, campaign, held, empty)
-        tests += series_of(other, held, judge.unknowns, before)
+    tests += held_out(campaign, declared, model)
     return Calibration(
         campaign.manifest.name,
         model,
@@ -253,6 +261,20 @@ def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) ->
         campaign.platform.name,
         found,
     )
+
+
+def held_out(campaign: Campaign, declared: Model, model: Model) -> list[TestFit]:
+    """The decays marked `holdout` with a calibrated model, and with that declared. The coefficients stay; releases and sensors'
+    offsets are each record's own."""
+    held = [record for record in campaign.used("holdout") if record.kind == "decay"]
+    if not held:
+        return []
+    empty = ParameterSpace(())
+    other = pose(model, campaign, held, empty)
+    judge = Fit(other, held, Unknowns(jnp.zeros(0), first_guess(held, other.data)), lambda *_: None)
+    weight = weights(held, other.data, judge.scored, judge.spread, np.ones(len(held)))
+    judge.minimise("held-out records", weight, judge.ends, 1e-4, (1.0, 1.0))
+    return series_of(other, held, judge.unknowns, pose(declared, campaign, held, empty))
 
 
 def pose(model: Model, campaign: Campaign, records: Sequence[Record], space: ParameterSpace) -> Problem:
@@ -271,7 +293,7 @@ def run(fit: Fit) -> None:
     data, records = fit.problem.data, fit.records
     period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time[:, 0])
     length = (np.asarray(fit.ends) - start) / period
-    even, cycles = np.ones(len(records)), CYCLES
+    even, cycles = np.array([record.test.weight for record in records]), CYCLES
     windows = max(1, int(np.ceil(np.log(length.max() / CYCLES) / np.log(GROWTH))))
     done = 0
     while cycles < length.max():
@@ -290,7 +312,7 @@ def run(fit: Fit) -> None:
             fit.converged = fit.minimise("noise level", weight, fit.ends, 2e-6, (0.8, 1.0), fit.samples.sum())
             return
         main = np.where(fit.scored, np.maximum(error, noise) / fit.spread, 0).sum(axis=1)
-        renewed = weights(records, data, fit.scored, fit.spread, 1 / main)
+        renewed = weights(records, data, fit.scored, fit.spread, even / main)
         settled = np.allclose(renewed / renewed.max(), weight / weight.max(), rtol=0.02)
         weight = renewed
         fit.converged = fit.minimise("sum of RMSE", weight, fit.ends, 1e-5, (0.6, 0.9))

@@ -123,6 +123,14 @@ class Test(Schema):
     wave_height: Positive | None = None
     period: Positive | None = None
     transient: NonNegative = 0.0
+    weight: Positive = 1.0
+
+
+class Period(Schema):
+    """A natural period, s, and its standard deviation."""
+
+    value: Positive
+    standard_deviation: Positive
 
 
 class Prior(Schema):
@@ -139,6 +147,7 @@ class Calibrate(Schema):
     fixed: tuple[Text, ...] = ()
     bounds: dict[str, tuple[Number, Number]] = Field(default_factory=dict)
     priors: dict[str, Prior] = Field(default_factory=dict)
+    natural_periods: dict[Motion, Period] = Field(default_factory=dict)
 
 
 class Manifest(Schema):

@@ -91,8 +91,9 @@ def model_damping(
     The force against the motion at three speeds about `position` (the equilibrium), wetted as there; with S = `shape` (6,),
     rates of surge ... yaw where that of `dof` is 1 (by default the others are 0): M = S M S, and S F(S v) = B_lin v +
     B_quad v|v|, generalised to the rate of `dof`. So p = B_lin/M and q = B_quad/M of a small decay. Radiation damping with
-    a memory is not in it. Raises KeyError for an unknown degree of freedom, ValueError for a shape without it and for
-    damping that is neither linear nor quadratic.
+    a memory is not in it: memories are at rest, so that high-passed drag counts as of fast motion, and drag that follows the
+    Keulegan-Carpenter number as of a very small one. Raises KeyError for an unknown degree of freedom, ValueError for a
+    shape without it and for damping that is neither linear nor quadratic.
     """
     if dof not in DOFS:
         raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")

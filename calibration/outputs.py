@@ -14,9 +14,11 @@ import jaxhydro
 from calibration.result import Calibration, Series, TestFit
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
+from jaxhydro.loads.sea_state_law import reference_of
 from jaxhydro.plot import for_people, unit_of
 
 RESULT, MOTION, FIGURES, REPORT = "calibration.json", "simulated.nc", "figures", "report.html"
+LAWS, TABLE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws over the sea state
 GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 _EVEN = 1e-3  # of a step: times that differ by less are the same
 
@@ -65,6 +67,9 @@ def outdated(folder: Path, temporary: Path, result: str = RESULT) -> Iterable[st
     for name in names:
         if name.endswith(".png") and (folder / FIGURES / name).is_file() and not (temporary / FIGURES / name).exists():
             yield f"{FIGURES}/{name}"
+    if result == RESULT and (folder / LAWS).is_file():
+        yield from (name for name in (LAWS, TABLE) if (folder / name).is_file())
+        yield from (f"{FIGURES}/{path.name}" for path in (folder / FIGURES).glob("sea-law-*.png"))
     report = folder / REPORT
     if report.is_file() and GENERATOR in report.read_text(encoding="utf-8", errors="replace")[:1000]:
         yield REPORT
@@ -72,7 +77,8 @@ def outdated(folder: Path, temporary: Path, result: str = RESULT) -> Iterable[st
 
 def document(calibration: Calibration) -> dict[str, Any]:
     """The content of calibration.json. See outputs.schema.json; What goes beyond it is for reports."""
-    fit = calibration.objective("fit")
+    # offsets and periods alone have no series
+    fit = calibration.objective("fit") if any(test.use == "fit" for test in calibration.tests) else 0.0
     if fit is None or not math.isfinite(fit):
         raise NotFinite("the simulated motion of a fitted test is not finite")
     parameters = {}
@@ -101,9 +107,16 @@ def document(calibration: Calibration) -> dict[str, Any]:
             "seconds": _or_null(calibration.seconds),
             "history": [_or_null(value) for value in calibration.history],
             "notes": list(calibration.notes),
+            **_laws(calibration),
         },
         "tests": {test.id: _about(test) for test in calibration.tests},
     }
+
+
+def _laws(calibration: Calibration) -> dict[str, Any]:
+    """The sea state that exponents among the parameters count from (m, s)."""
+    reference = reference_of(calibration.model.loads)
+    return {} if reference is None else {"sea_state_reference": reference._asdict()}
 
 
 def _or_null(value: float | None) -> float | None:

@@ -12,6 +12,7 @@ from jaxtyping import Array, Float
 
 from calibration.transforms import AbstractTransform, Interval, LogInterval, Scaled
 from jaxhydro.environment import DOFS
+from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem, suggest
 
@@ -59,12 +60,15 @@ class ParameterSpace(NamedTuple):
 
 def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
     """What decays in some degrees of freedom can be about: coefficients of the members, and the lumped damping and added
-    mass of those degrees of freedom. What is declared as zero is not there, and stays so."""
+    mass of those degrees of freedom. What is declared as zero is not there, and stays so; still water has no sea state, and
+    how drag depends on the motion (`drag_`) is free where it is asked for."""
     digits = {str(DOFS.index(dof) + 1) for dof in released}
     labels = []
     for label, value in model.values.items():
         lumped = label.split(".")[0] in ("linear_damping", "quadratic_damping", "added_mass")
-        if label.startswith(NEVER) or float(value) == 0 or (lumped and not digits >= set(label[-2:])):
+        if label.startswith(NEVER) or is_exponent(label) or ".drag_" in label or float(value) == 0:
+            continue
+        if lumped and not digits >= set(label[-2:]):
             continue
         labels.append(label)
     return tuple(labels)

@@ -7,7 +7,7 @@ and the optimiser sees its square root: as many rows as there are unknowns and o
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import equinox as eqx
 import jax
@@ -114,7 +114,8 @@ def first_guess(records: Sequence[Record], data: Data) -> Float[Array, "r 3*c"]:
 class Problem(eqx.Module):
     """A calibration's fixed part: the model that starts, its free parameters, and the records.
 
-    `from_rest`: measured motion counts from the static equilibrium, otherwise from the reference position.
+    `from_rest`: measured motion counts from the static equilibrium, otherwise from the reference position. `tail` (m, rad), by
+    record and channel, is where residuals cease to count by their squares (`softened`); None: nowhere.
     """
 
     model: Model
@@ -122,6 +123,7 @@ class Problem(eqx.Module):
     space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
     rest: Float[Array, "6"] | None  # None where free parameters move the equilibrium
+    tail: Float[Array, "r c"] | None = None
 
     def motion(self, x: Float[Array, " p"], own: Float[Array, " o"], record: Data) -> Float[Array, "c t"]:
         """What the sensors of one record should have read: the model's motion, and the sensors' offset."""
@@ -145,7 +147,7 @@ class Problem(eqx.Module):
         """For every record and channel [J r]^T [J r] over the samples up to `until` (s), k the unknowns and one."""
 
         def of_record(inputs):
-            own, record, until = inputs
+            own, record, until, tail = inputs
             both = jnp.concatenate([unknowns.shared, own])
             split = len(unknowns.shared)
 
@@ -155,14 +157,27 @@ class Problem(eqx.Module):
 
             def residual(z):
                 r = (self.motion(z[:split], z[split:], record) - record.measured) * (record.time <= until)
-                r = r * record.present
+                r = softened(r * record.present, None if tail is None else tail[:, None])
                 return r, r
 
             slope, r = jax.jacfwd(residual, has_aux=True)(both)
             full = jnp.concatenate([slope, r[..., None]], axis=-1)
             return jnp.einsum("ctk,ctl->ckl", full, full)
 
-        return jax.lax.map(of_record, (unknowns.own, self.data, until))
+        return jax.lax.map(of_record, (unknowns.own, self.data, until, self.tail))
+
+
+def softened(r: Float[Array, "..."], tail: Float[Array, "..."] | None) -> Float[Array, "..."]:
+    """The residual whose square is Cauchy's loss c^2 ln(1 + (r/c)^2), c the `tail`; r itself without one.
+
+    Holland and Welsch 1977, Communications in Statistics A6, 813-827, table 1.
+    """
+    if tail is None:
+        return r
+    square = (r / tail) ** 2
+    small = square < 1e-6  # the series there: log1p(u) / u is 0 / 0 at rest
+    safe = jnp.where(small, 1.0, square)
+    return r * jnp.where(small, 1 - 0.25 * square, jnp.sqrt(jnp.log1p(safe) / safe))
 
 
 def square_root(products: Float[Array, "... k k"]) -> Float[Array, "... k k"]:
@@ -196,3 +211,28 @@ def _condensed_jvp(primals, tangents):
     p = d_shared.shape[0]
     d = roots[..., :p] @ d_shared + jnp.einsum("rkl,rl->rk", roots[..., p:-1], d_own)
     return (roots[..., -1], products), (d, jnp.zeros_like(products))
+
+
+class Groups(Protocol):
+    """Residuals of the parameters alone, in groups."""
+
+    def products(self, x: Float[Array, " p"]) -> Float[Array, "g k k"]:
+        """[J r]^T [J r] of every group, k the parameters and one."""
+        ...
+
+
+@jax.custom_jvp
+def condensed_groups(
+    x: Float[Array, " p"], source: Groups, weight: Float[Array, " g"]
+) -> tuple[Float[Array, " k"], Float[Array, "g k k"]]:
+    """`condensed` of residuals that have no unknowns of their own; `weight` multiplies the squares of a group."""
+    products = source.products(x)
+    return square_root(jnp.einsum("gkl,g->kl", products, weight))[:, -1], products
+
+
+@condensed_groups.defjvp
+def _condensed_groups_jvp(primals, tangents):
+    x, source, weight = primals
+    products = source.products(x)
+    root = square_root(jnp.einsum("gkl,g->kl", products, weight))
+    return (root[:, -1], products), (root[:, :-1] @ tangents[0], jnp.zeros_like(products))

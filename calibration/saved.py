@@ -1,6 +1,7 @@
 """A written calibration.json, read back and checked."""
 
 import json
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -8,8 +9,10 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel, ConfigDict, Field
 
 from calibration.outputs import RESULT
+from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
 from jaxhydro.model import Model
-from jaxhydro.problems import InputError, Number, Problem, shown, suggest, validate
+from jaxhydro.problems import InputError, Number, Positive, Problem, shown, suggest, validate
+from jaxhydro.waves.sea_state import SeaState
 
 
 class _Open(BaseModel):
@@ -47,6 +50,13 @@ class Objective(_Open):
     holdout: Number | None = None
 
 
+class Reference(_Open):
+    """The sea state (m, s) that exponents count from."""
+
+    significant_height: Positive
+    peak_period: Positive
+
+
 class Fitted(_Open):
     """A model as it was calibrated. `error` has `use`, and channels, by test."""
 
@@ -57,6 +67,7 @@ class Fitted(_Open):
     iterations: int | None = None
     seconds: Number | None = None
     notes: list[str] = Field(default_factory=list)
+    sea_state_reference: Reference | None = None
 
 
 class About(_Open):
@@ -142,6 +153,7 @@ def applied(path: str | PathLike[str], model: Model, platform: str) -> Applied:
     Raises InputError for a file that is none, and for values that the model has no place for.
     """
     saved = read_saved(path)
+    model = _with_laws(saved, model, path)
     own = not saved.platform or saved.platform == platform
     values = {k: v for k, v in saved.values().items() if own or not k.startswith(("mooring.", "stiffness."))}
     if unknown := [label for label in values if label not in model.values]:
@@ -151,6 +163,24 @@ def applied(path: str | PathLike[str], model: Model, platform: str) -> Applied:
     vague = tuple(label for label in values if not saved.baseline.parameters[label].identifiable)
     left = tuple(label for label in saved.values() if label not in values)
     return Applied(model.with_values(values), values, vague, left, saved.campaign)
+
+
+def _with_laws(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
+    """The model with the laws over the sea state that the calibrated values have exponents of."""
+    stated = saved.baseline.sea_state_reference
+    labels = [label for label in saved.values() if is_exponent(label) and split(label)[0] in model.values]
+    if not labels:
+        return model
+    if stated is None:
+        where, found = "baseline.sea_state_reference", "nothing"
+        raise _wrong(Path(path), f"the sea state that {labels[0]} counts from", found, where)
+    reference = SeaState(stated.significant_height, stated.peak_period)
+    try:
+        loads = with_exponents(model.loads, dict.fromkeys(labels, 0.0), reference)
+        return replace(model, loads=loads)
+    except ValueError as error:
+        where = "baseline.sea_state_reference"
+        raise _wrong(Path(path), "the reference that the platform declares", str(error), where) from None
 
 
 def _wrong(path: Path, expected: str, found: str, where: str = "", hint: str = "") -> InputError:

@@ -4,47 +4,45 @@ import math
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Literal
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks
 from calibration.descent import descend
-from calibration.directions import Identifiability, stated
-from calibration.fit import Interrupted, Progress, space_of
+from calibration.directions import Identifiability, family, stated
+from calibration.fit import Interrupted, Progress, labels_of, space_of
 from calibration.identifiability import VAGUE, Spread, memory
+from calibration.residuals import condensed_groups
 from calibration.result import BandError, Calibration, TestFit
-from calibration.runs import KINDS, runs
-from calibration.sea_residuals import Objective, SeaProblem, condensed_in_waves, pose_in_waves
-from calibration.seas import Options, SeaTest, compare, moving_channels, sea_step, with_diffraction
+from calibration.runs import KINDS
+from calibration.sea_residuals import Objective, SeaProblem, look, pose_in_waves
+from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, sea_step, seas_of, with_diffraction
 from calibration.seas_results import in_bands
+from calibration.stretches import sea_state
 from jaxhydro.environment import DOFS
+from jaxhydro.loads.sea_state_law import exponent_label, is_exponent, with_exponents
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.waves.sea_state import SeaState
+
+Over = Literal["significant_height", "peak_period"]
 
 ROUNDS = 4  # times that the model's error is estimated anew
 SETTLED = 0.05  # relative change of that estimate that is none
 TOLERANCE = 1e-3  # relative decrease of the sum of squares that ends a round
+PLAIN = 1.0  # standard deviation of the prior of an exponent about 0
+FIRST = 1.0  # ... damping of the first step: logarithms of energies are far from linear in those of coefficients
 
 
 def _objective(x, args):
     """Residuals of the tests and of the prior, for optimistix."""
     problem, mean, ridge = args
-    rows, products = condensed_in_waves(x, problem)
+    rows, products = condensed_groups(x, problem, jnp.ones(len(problem.in_bands)))
     return (rows, ridge * (x - mean)), products
-
-
-@eqx.filter_jit
-def _inside(problem: SeaProblem, x):
-    return problem.inside(x)
-
-
-@eqx.filter_jit
-def _groups(problem: SeaProblem, x):
-    return problem.residuals(x)
 
 
 class SeaFit:
@@ -61,38 +59,38 @@ class SeaFit:
         self.x, self.products = start, np.zeros(0)
         self.iterations, self.converged = 0, False
         self.history: list[float] = []
-        self.error = self.left(start)
+        self.groups: list[np.ndarray] = []
+        self.error, _ = self.left()
 
-    def residuals(self, x) -> list[np.ndarray]:
-        """By group: all bands, then motion by motion."""
-        return [np.asarray(group) for group in _groups(self.problem, x)]
-
-    def left(self, x) -> float:
-        """Root mean square of what is left of an observation."""
-        return math.sqrt(sum(float(np.sum(group**2)) for group in self.residuals(x)) / self.problem.observations)
+    def left(self) -> tuple[float, bool]:
+        """Root mean square of what is left of an observation, and whether the sea reaches as far as the hull goes."""
+        groups, inside = look(self.problem, self.x)
+        self.groups = [np.asarray(group) for group in groups]
+        return math.sqrt(sum(float(np.sum(group**2)) for group in self.groups) / self.problem.observations), bool(inside)
 
     def run(self) -> None:
         """All rounds."""
         for number in range(ROUNDS):
             ridge = jnp.asarray(max(self.error, 1e-6) / self.width)
-            for i, now in enumerate(descend(_objective, self.x, (self.problem, self.mean, ridge), TOLERANCE)):
+            for i, now in enumerate(descend(_objective, self.x, (self.problem, self.mean, ridge), TOLERANCE, FIRST)):
                 self.x, self.products, self.converged = now.unknowns, np.asarray(now.aux), now.settled
                 self.iterations += 1
                 self.history.append(math.sqrt(float(self.products[:, -1, -1].sum()) / self.problem.observations))
                 share = (number + min(1.0, i / 10)) / ROUNDS
                 self.report(f"round {number + 1} in waves", self.iterations, self.history[-1], share)
-            if not bool(_inside(self.problem, self.x)):
+            before = self.error
+            self.error, inside = self.left()
+            if not inside:
                 self.problem = self.pose(self.problem.space.model(self.problem.model, self.x))
                 self.converged = False
-            before, self.error = self.error, self.left(self.x)
+                self.error, _ = self.left()
             if self.converged and abs(self.error / before - 1) < SETTLED:
                 return
 
     def identifiability(self) -> tuple[Spread, Identifiability]:
         """Covariance of the coordinates, and what it says. A motion's residual counts as many times as it is independent; bands
         once each, with the variance that is left after what the parameters and their prior took."""
-        groups = self.residuals(self.x)
-        ridge = self.error / self.width
+        groups, ridge = self.groups, self.error / self.width
         whole = self.products[:, :-1, :-1].sum(axis=0)
         used = float(np.trace(np.linalg.solve(whole + np.diag(ridge**2), whole)))
         total = sum(len(g) if bands else len(g) / memory(g) for g, bands in zip(groups, self.problem.in_bands))
@@ -111,6 +109,8 @@ def calibrate_in_waves(
     start: dict[str, float] | None = None,
     objective: Objective = "bands",
     options: Options | None = None,
+    over: Sequence[Over] = (),
+    made: Seas | None = None,
 ) -> Calibration:
     """Fit the declared model's coefficients to the tests in waves marked `fit`, all together, in their measured waves.
 
@@ -121,6 +121,9 @@ def calibrate_in_waves(
     estimated from the residuals: energies in a few bands do not determine many coefficients, and say so by their deviations.
 
     `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
+    `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of
+    exponents with a prior of 0 +- 1; every test is then simulated with the coefficients of its own measured sea state. `made`
+    are the campaign's runs and seas (`seas_of`), where they are at hand.
     Raises InputError where there is nothing to fit, Interrupted with what was reached.
     """
     begun = clock.monotonic()
@@ -130,20 +133,26 @@ def calibrate_in_waves(
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
         raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", found)])
-    declared = with_diffraction(build(campaign.platform), options).with_values(start or {})
-    moved = {dof for record in records for dof in moving_channels({k: record.values[k] for k in DOFS if k in record.values})}
-    space = space_of(campaign, declared, declared, sorted(moved), free)
+    declared = with_diffraction(build(campaign.platform), options)
+    made = seas_of(campaign, declared.environment, options) if made is None else made
+    moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
+    labels = list(labels_of(campaign, declared, moved, free))
+    if over:
+        drag = [label for label in labels if family(label) == "damping"]
+        declared = with_laws(declared, drag, over, reference_of(made, options))
+    exponents = [label for label in declared.values if is_exponent(label) and label not in labels]
+    declared = declared.with_values(start or {})
+    space = space_of(campaign, [*labels, *exponents], declared, {label: (0.0, PLAIN) for label in exponents})
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
         if progress is not None:
             progress(Progress(stage, iteration, value, fraction, "error"))
 
-    seas = runs(campaign)
-    report("seas of the wave records", 0, math.nan, 0.0)
+    report("simulating the measured seas", 0, math.nan, 0.0)
 
     def pose(model: Model) -> SeaProblem:
         return pose_in_waves(
-            model, seas, space, options, from_rest=campaign.manifest.zero is not None, scale=campaign.manifest.scale,
+            model, made, space, options, from_rest=campaign.manifest.zero is not None, scale=campaign.manifest.scale,
             step=sea_step(declared, options), objective=objective,
         )  # fmt: skip
 
@@ -154,23 +163,44 @@ def calibrate_in_waves(
         fit.converged = False
         if not fit.iterations:
             raise Interrupted(None) from None
-        raise Interrupted(_conclude(campaign, declared, fit, options, clock.monotonic() - begun)) from None
-    return _conclude(campaign, declared, fit, options, clock.monotonic() - begun)
+        raise Interrupted(_conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)) from None
+    return _conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)
 
 
-def _conclude(campaign: Campaign, declared: Model, fit: SeaFit, options: Options, seconds: float) -> Calibration:
+def reference_of(made: Seas, options: Options) -> SeaState:
+    """The geometric mean of the sea states of the tests that are fitted, to two digits."""
+    states = [sea_state(run, r, options.low, options.cutoff) for run, _ in made for r in run.records if r.use == "fit"]
+    return SeaState(*(float(f"{math.exp(value):.2g}") for value in np.log(states).mean(axis=0)))
+
+
+def with_laws(model: Model, labels: Sequence[str], over: Sequence[Over], reference: SeaState) -> Model:
+    """The model with powers of the sea state, of exponent 0, for some of its coefficients, where it has none of its own."""
+    exponents = {label: 0.0 for one in labels for kind in over if (label := exponent_label(one, kind)) not in model.values}
+    return replace(model, loads=with_exponents(model.loads, exponents, reference))
+
+
+def _conclude(
+    campaign: Campaign, declared: Model, fit: SeaFit, options: Options, made: Seas, seconds: float
+) -> Calibration:
     """Parameters with their deviations, and all tests in waves before and after."""
     problem = fit.problem
     model = problem.space.model(problem.model, fit.x)
     uncertainty, known = fit.identifiability()
     parameters = estimates(problem.space, problem.model, np.asarray(fit.x), uncertainty)
-    after, before = (compare(campaign, one, options) for one in (model, declared))
-    tests = [_test(*pair) for pair in zip(after.tests, before.tests, strict=True)]
-    notes = remarks(campaign, parameters, known, KINDS)
+    tests, warnings = tests_in_waves(campaign, declared, model, options, made)
+    notes = (*remarks(campaign, parameters, known, KINDS), *warnings)
     return Calibration(
-        campaign.manifest.name, model, parameters, tuple(tests), fit.converged, fit.iterations, seconds, tuple(fit.history),
-        (*notes, *after.notes), campaign.platform.name, known,
+        campaign.manifest.name, model, parameters, tests, fit.converged, fit.iterations, seconds, tuple(fit.history),
+        notes, campaign.platform.name, known,
     )  # fmt: skip
+
+
+def tests_in_waves(
+    campaign: Campaign, declared: Model, model: Model, options: Options, made: Seas
+) -> tuple[tuple[TestFit, ...], tuple[str, ...]]:
+    """All tests in waves with a calibrated model, and with that declared; and words of warning."""
+    after, before = (compare(campaign, one, options, made=made) for one in (model, declared))
+    return tuple(_test(*pair) for pair in zip(after.tests, before.tests, strict=True)), after.notes
 
 
 def _test(after: SeaTest, before: SeaTest) -> TestFit:

@@ -15,17 +15,19 @@ from jaxtyping import Array, Bool, Float, Int
 
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
-from calibration.residuals import square_root
+from calibration.residuals import softened
 from calibration.runs import Run
-from calibration.seas import Options, moving_channels, peak_period, sea_of, window
+from calibration.seas import Options, Seas, moving_channels, peak_period
 from calibration.seas_results import bands_of
+from calibration.stretches import stretches, walk, window
 from jaxhydro.analysis import band_weights
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
-from jaxhydro.simulate import farthest, in_irregular
+from jaxhydro.simulate import farthest
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular_sea import SupportSea
+from jaxhydro.waves.sea_state import SeaState
 
 Objective = Literal["bands", "motion", "both"]
 MARGIN = 30.0  # m that a motion may go beyond that of the declared model before its sea has to be prepared anew
@@ -56,16 +58,23 @@ class Piece(eqx.Module):
     begin: int = eqx.field(static=True)
     dof: int = eqx.field(static=True)
     test: str = eqx.field(static=True)
+    weight: float = eqx.field(static=True)  # of its residuals' squares
     names: tuple[str, ...] = eqx.field(static=True)  # of the bands
 
 
 class SeaRun(eqx.Module):
-    """One file: its sea on the clock of the time integration, and what was measured at `times` (s)."""
+    """One file, or a stretch of it: its sea on the clock of the time integration, and what was measured at `times` (s).
+
+    It starts at rest where `start` is None. `state` is its sea state where the model depends on that: stretches begin as the
+    model that the problem was posed for leaves the one before, which a test's transient forgets.
+    """
 
     sea: SupportSea
     times: Float[Array, " t"]
     step: Float[Array, ""]
     pieces: tuple[Piece, ...]
+    start: State | None
+    state: SeaState | None
     steps: int = eqx.field(static=True)
 
 
@@ -79,22 +88,21 @@ class SeaProblem(eqx.Module):
     space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
     objective: Objective = eqx.field(static=True)
+    tail: Float[Array, " g"] | None = None  # of every group, where residuals cease to count by their squares
 
     def motions(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, "t 6"], ...], Float[Array, "6"]]:
         """Position in every run at its times, and the position that was measured as zero (m, rad)."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model) if self.rest is None else self.rest
-        state = State(rest, jnp.zeros(6), model.rest().memory)
-        positions = tuple(
-            integrate(model, run.sea, state, run.times[0], run.step, run.steps, "ab4").at(run.times)[0] for run in self.runs
-        )
-        return positions, rest if self.from_rest else jnp.zeros(6)
+        at_rest = State(rest, jnp.zeros(6), model.rest().memory)
 
-    def inside(self, x: Float[Array, " p"]) -> Bool[Array, ""]:
-        """Whether the hull stays in the box that every sea was prepared for, outside which its flow is wrong."""
-        positions, _ = self.motions(x)
-        far = [farthest(one, self.points, run.sea) - run.sea.half for one, run in zip(positions, self.runs, strict=True)]
-        return (jnp.stack(far) <= 0).all()
+        def position(run: SeaRun) -> Float[Array, "t 6"]:
+            here = model if run.state is None else model.in_sea(run.state)
+            start = at_rest if run.start is None else run.start
+            return integrate(here, run.sea, start, run.times[0], run.step, run.steps, "ab4").at(run.times)[0]
+
+        positions = tuple(map(position, self.runs))
+        return positions, rest if self.from_rest else jnp.zeros(6)
 
     @property
     def observations(self) -> int:
@@ -113,23 +121,30 @@ class SeaProblem(eqx.Module):
     def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " _"], ...]:
         """In one group ln(simulated / measured energy) by test, motion and band; in others, motion by motion, simulated less
         measured over the measured standard deviation and the root of the number of samples, each about its mean."""
+        return self.look(x)[0]
+
+    def look(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
+        """`residuals`, and whether the hull stays in the box that every sea was prepared for: beyond, its flow is wrong."""
         energies, motions = [], []
         positions, base = self.motions(x)
+        far = [farthest(one, self.points, run.sea) - run.sea.half for one, run in zip(positions, self.runs, strict=True)]
         for run, position in zip(self.runs, positions, strict=True):
             for piece in run.pieces:
                 there = position[piece.begin : piece.begin + piece.measured.shape[0], piece.dof] - base[piece.dof]
                 if self.objective != "motion":  # regular waves have none
-                    energies += [jnp.log(one.of(there) / one.measured) for one in piece.energies]
+                    share = math.sqrt(piece.weight)
+                    energies += [share * jnp.log(one.of(there) / one.measured) for one in piece.energies]
                 if self.objective != "bands" or not piece.energies:
                     off = there - there.mean() - (piece.measured - piece.measured.mean())
-                    motions.append(off / (jnp.std(piece.measured) * math.sqrt(off.size)))
-        return (*([jnp.stack(energies)] if energies else []), *motions)
+                    motions.append(off * math.sqrt(piece.weight / off.size) / jnp.std(piece.measured))
+        return (*([jnp.stack(energies)] if energies else []), *motions), (jnp.stack(far) <= 0).all()
 
     def products(self, x: Float[Array, " p"]) -> Float[Array, "g k k"]:
         """[J r]^T [J r] of every group, k the parameters and one."""
 
         def both(x):
-            found = self.residuals(x)
+            tails = [None] * len(self.in_bands) if self.tail is None else self.tail
+            found = tuple(softened(r, tail) for r, tail in zip(self.residuals(x), tails, strict=True))
             return found, found
 
         slopes, residuals = jax.jacfwd(both, has_aux=True)(x)
@@ -137,23 +152,15 @@ class SeaProblem(eqx.Module):
         return jnp.stack([one.T @ one for one in full])
 
 
-@jax.custom_jvp
-def condensed_in_waves(x: Float[Array, " p"], problem: SeaProblem) -> tuple[Float[Array, " k"], Float[Array, "g k k"]]:
-    """`residuals.condensed` of tests in waves: a residual with the norm, gradient and Gauss-Newton matrix of all."""
-    products = problem.products(x)
-    return square_root(products.sum(axis=0))[:, -1], products
-
-
-@condensed_in_waves.defjvp
-def _condensed_jvp(primals, tangents):
-    products = primals[1].products(primals[0])
-    root = square_root(products.sum(axis=0))
-    return (root[:, -1], products), (root[:, :-1] @ tangents[0], jnp.zeros_like(products))
+@eqx.filter_jit
+def look(problem: SeaProblem, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
+    """`SeaProblem.look`, compiled."""
+    return problem.look(x)
 
 
 def pose_in_waves(
     model: Model,
-    found: tuple[Run, ...],
+    made: Seas,
     space: ParameterSpace,
     options: Options,
     *,
@@ -163,25 +170,26 @@ def pose_in_waves(
     objective: Objective = "bands",
 ) -> SeaProblem:
     """The fixed part of a calibration of `model` to the tests marked `fit` of runs; `step` (s) is the largest time step."""
-    rest = equilibrium(model)
-    made = []
-    for run in found:
-        fitted = [record for record in run.records if record.use == "fit"]
-        if not fitted:
-            continue
-        sea = sea_of(run, model.environment, options)
-        last = max(int(run.samples(record)[-1]) for record in fitted)
-        times = jnp.asarray(run.time[: last + 1])
-        state = State(rest, jnp.zeros(6), model.rest().memory)
-        taken = in_irregular(model, sea.sea, state, times, step, margin=MARGIN)
-        pieces = tuple(piece for record in fitted for piece in _pieces(run, record, scale))
-        made.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, taken.steps))
-    points = jnp.asarray(model.hull.extremities())
-    return SeaProblem(model, tuple(made), None if space.moves_equilibrium else rest, points, space, from_rest, objective)
+    found = []
+    for run, sea in made:
+        parts = stretches(run, run.records, model, options.low, options.cutoff)
+        fitted = [[record for record in part.records if record.use == "fit"] for part in parts]
+        last = max((i for i, records in enumerate(fitted) if records), default=-1)
+        if len(parts) == 1 and last == 0:  # no further than what is fitted
+            parts = (parts[0]._replace(end=max(int(run.samples(record)[-1]) for record in fitted[0])),)
+        for (part, taken, start), records in zip(walk(model, run, parts[: last + 1], sea.sea, step, MARGIN), fitted):
+            if records:
+                pieces = tuple(piece for record in records for piece in _pieces(run, record, scale, part.begin))
+                times = jnp.asarray(run.time[part.begin : part.end + 1])
+                # arrays, so that another state is not compiled anew
+                state = None if part.state is None else jax.tree.map(jnp.asarray, part.state)
+                found.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, start, state, taken.steps))
+    points, rest = jnp.asarray(model.hull.extremities()), None if space.moves_equilibrium else equilibrium(model)
+    return SeaProblem(model, tuple(found), rest, points, space, from_rest, objective)
 
 
-def _pieces(run: Run, record: Record, scale: float) -> list[Piece]:
-    """The motions of a test that are worth fitting, after its transient, on the run's even clock."""
+def _pieces(run: Run, record: Record, scale: float, begin: int) -> list[Piece]:
+    """The motions of a test that are worth fitting, after its transient, on the run's even clock from sample `begin` on."""
     at, whole = run.samples(record), window(run, record)
     values = {dof: np.interp(whole, at, record.values[dof]) for dof in DOFS if dof in record.values}
     period = peak_period(run, record, scale)
@@ -193,6 +201,7 @@ def _pieces(run: Run, record: Record, scale: float) -> list[Piece]:
             made = band_weights(len(whole), run.step, low, high)
             starts, taper, weight = (jnp.asarray(x) for x in (made.starts, made.window, made.weight))
             energies.append(Energy(starts, taper, weight, jnp.asarray(made.integral(values[dof])), made.first))
-        measured, begin = jnp.asarray(values[dof]), int(whole[0])
-        pieces.append(Piece(measured, tuple(energies), begin, DOFS.index(dof), record.id, tuple(limits)))
+        first, stated = int(whole[0]) - begin, record.test.weight
+        measured = jnp.asarray(values[dof])
+        pieces.append(Piece(measured, tuple(energies), first, DOFS.index(dof), record.id, stated, tuple(limits)))
     return pieces

@@ -7,7 +7,7 @@ file. Everything is SI at full scale.
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -16,11 +16,12 @@ from calibration.manifest import WAVE
 from calibration.records import Record
 from calibration.result import Series, TestFit
 from calibration.runs import Run, runs
+from calibration.stretches import stretches, walk, window
 from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem
-from jaxhydro.simulate import SEA_STEP, default_step, simulate
+from jaxhydro.simulate import SEA_STEP, default_step
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular import separated_record
 from jaxhydro.waves.irregular_sea import IrregularSea
@@ -57,6 +58,9 @@ class RunSea:
     notes: tuple[str, ...]
 
 
+Seas: TypeAlias = tuple[tuple[Run, RunSea], ...]
+
+
 @dataclass(frozen=True, eq=False)
 class SeaTest:
     """A test after its transient: measured and simulated motions and wave, and what its sea was. `peak_period` in s.
@@ -76,7 +80,7 @@ class Compared(NamedTuple):
     """What `compare` finds: tests, seas by run, and words of warning."""
 
     tests: tuple[SeaTest, ...]
-    seas: tuple[tuple[Run, RunSea], ...]
+    seas: Seas
     notes: tuple[str, ...]
     step: float
 
@@ -113,33 +117,49 @@ def sea_step(model: Model, options: Options) -> float:
     return min(SEA_STEP, default_step(model), RESOLVED / options.cutoff)
 
 
-def compare(campaign: Campaign, model: Model, options: Options, say: Callable[[str], Any] = lambda _: None) -> Compared:
-    """Simulate every run and compare, test by test. Raises InputError, and Diverged where a motion grows beyond all bounds."""
-    model, found = with_diffraction(model, options), runs(campaign)
+def seas_of(campaign: Campaign, environment: Environment, options: Options) -> Seas:
+    """The runs of a campaign and their seas. Raises InputError."""
+    return tuple((run, sea_of(run, environment, options)) for run in runs(campaign))
+
+
+def compare(
+    campaign: Campaign,
+    model: Model,
+    options: Options,
+    say: Callable[[str], Any] = lambda _: None,
+    made: Seas | None = None,
+) -> Compared:
+    """Simulate every run and compare, test by test. `made` are the runs and their seas, where those are at hand.
+
+    Raises InputError, and Diverged where a motion grows beyond all bounds.
+    """
+    model = with_diffraction(model, options)
+    made = seas_of(campaign, model.environment, options) if made is None else made
     step = sea_step(model, options)
     from_rest = campaign.manifest.zero is not None
     still = np.asarray(equilibrium(model)) if from_rest else np.zeros(6)
     notes = [] if from_rest else ["the campaign states no `zero`: motions are taken as measured from the reference position"]
-    tests, seas = [], []
-    for run in found:
-        made = sea_of(run, model.environment, options)
-        waves = made.sea.components
+    tests = []
+    for run, one in made:
+        waves = one.sea.components
         say(f"{run.file}: {waves.omega.size} waves of {run.time[-1] - run.time[0]:.0f} s, order {options.order}; simulating")
-        last = max(int(run.samples(record)[-1]) for record in run.records)
-        times = run.time[: last + 1]
+        parts = stretches(run, run.records, model, options.low, options.cutoff)
         try:
-            motion = np.asarray(simulate(model, times, made.sea, step=step).position)
+            for part, found_there, _ in walk(model, run, parts, one.sea, step):
+                motion = np.full((len(run.time), 6), np.nan)
+                motion[part.begin : part.end + 1] = there = np.asarray(found_there.response.position)
+                if not np.isfinite(there).all():
+                    first = run.time[part.begin + np.argmin(np.isfinite(there).all(axis=1))]
+                    raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
+                times = run.time[: part.end + 1]
+                wave = one.sea.gauge(times[part.begin :], run.position)
+                wave = np.concatenate([np.full(part.begin, np.nan), wave])
+                tests += [_test(run, record, motion - still, wave, campaign.manifest.scale) for record in part.records]
         except ValueError as error:
             raise Diverged(f"{run.file}: {error}") from None
-        if not np.isfinite(motion).all():
-            first = times[np.argmin(np.isfinite(motion).all(axis=1))]
-            raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
-        wave = made.sea.gauge(times, run.position)
-        tests += [_test(run, record, motion - still, wave, campaign.manifest.scale) for record in run.records]
-        seas.append((run, made))
-        notes += [*run.notes, *made.notes]
+        notes += [*run.notes, *one.notes]
     order = [record.id for record in campaign.records]
-    return Compared(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), tuple(seas), tuple(notes), step)
+    return Compared(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step)
 
 
 class Diverged(ArithmeticError):
@@ -155,13 +175,6 @@ def moving_channels(motions: Mapping[str, np.ndarray]) -> list[str]:
     angle = {name: DOFS.index(name) > 2 for name in size}
     largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
     return [name for name in size if size[name] >= MOVES * largest[angle[name]]]
-
-
-def window(run: Run, record: Record) -> np.ndarray:
-    """Indices into the run's clock of a test's samples after its transient."""
-    at = run.samples(record)
-    whole = np.arange(at[0], at[-1] + 1)
-    return whole[run.time[whole] >= record.time[0] + record.transient - 0.5 * run.step]
 
 
 def peak_period(run: Run, record: Record, scale: float) -> float:

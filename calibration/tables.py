@@ -63,6 +63,8 @@ def linear_quadratic(result: Calibration) -> Rows:
     rows = []
     for test in result.tests:
         main = test.main
+        if test.kind != "decay":
+            continue
         try:
             found = [classical(test.time, x, main.noise).fit for x in (main.measured, main.simulated)]
         except ValueError:

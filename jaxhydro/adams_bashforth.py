@@ -66,11 +66,11 @@ def _advance(y, slopes, slope, add, step):
     return y + step * (add @ slopes), slopes
 
 
-def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool):
+def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool, shown: int | None = None):
     def body(index, carry):
         y, slopes, path, taken = carry
         at, add, time, number = _row(index)
-        path = jax.lax.dynamic_update_index_in_dim(path, y, number + jnp.maximum(index - len(ROWS.time) + 1, 0), 0)
+        path = jax.lax.dynamic_update_index_in_dim(path, y[:shown], number + jnp.maximum(index - len(ROWS.time) + 1, 0), 0)
         state = y + step * (at @ slopes)
         slope = jnp.concatenate(rate(driver, start + step * time, state))
         taken = jax.lax.dynamic_update_index_in_dim(taken, state, index, 0) if keep else None
@@ -78,9 +78,14 @@ def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool)
 
     size = y.shape[0]
     taken = jnp.zeros((evaluations(capacity + 1), size)) if keep else None
-    carry = (y, jnp.zeros((MEMORY, size)), jnp.zeros((capacity + 1, size)), taken)
+    carry = (y, jnp.zeros((MEMORY, size)), jnp.zeros((capacity + 1, y[:shown].shape[0])), taken)
     _, _, path, taken = jax.lax.fori_loop(0, evaluations(count + 1), body, carry)
     return path, taken
+
+
+def direct(driver, y, start, step, count, *, rate: Rate, capacity: int, shown: int) -> Float[Array, "n _"]:
+    """As `runge_kutta.direct`."""
+    return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
 
 
 @eqx.filter_custom_jvp

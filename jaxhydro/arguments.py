@@ -56,6 +56,7 @@ class Fitted(StrEnum):
 
     decays = "decays"
     waves = "waves"
+    all = "all"
 
 
 class Objective(StrEnum):
@@ -64,6 +65,23 @@ class Objective(StrEnum):
     bands = "bands"
     motion = "motion"
     both = "both"
+
+
+class Loss(StrEnum):
+    """See `calibration.calibrate_jointly`."""
+
+    squares = "squares"
+    cauchy = "cauchy"
+
+
+class Law(StrEnum):
+    """How coefficients depend on the sea state: see `calibration.choose_law`."""
+
+    constant = "constant"
+    significant_height = "significant-height"
+    peak_period = "peak-period"
+    both = "both"
+    choose = "choose"
 
 
 class Diffraction(StrEnum):
@@ -151,7 +169,15 @@ Step = Annotated[
     float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")
 ]
 Tests = Annotated[
-    Fitted | None, typer.Option(help="Tests to fit: free decays, or those in waves.", show_default="decays where there are any")
+    Fitted | None,
+    typer.Option(
+        help="What to fit: free decays, tests in waves, or all together, static offsets and stated periods too.",
+        show_default="decays where there are any",
+    ),
 ]
 Aim = Annotated[Objective, typer.Option(help="In waves, fit energy in frequency bands, the motion itself, or both.")]
+Robust = Annotated[Loss, typer.Option(help="With --tests all: cauchy lets outliers hardly count.")]
+OverSea = Annotated[
+    Law, typer.Option(help="In waves, drag and damping as powers of the sea state; choose: the law that held-out seas prefer.")
+]
 Begin = Annotated[Path | None, typer.Option(help="A calibration.json whose coefficients are begun from.")]

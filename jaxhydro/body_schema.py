@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
+from jaxhydro.loads.high_pass_drag import FASTEST
 from jaxhydro.problems import Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
 
 Matrix3 = Float[np.ndarray, "3 3"]
@@ -171,6 +172,46 @@ class Member(Schema):
         return (stations - stations[0]) / (stations[-1] - stations[0]), sizes
 
 
+Share = Annotated[float, Field(strict=True, ge=0, le=1)]
+
+
+class ConstantDrag(Schema):
+    """The same coefficient for all motion (`jaxhydro.loads.StripDrag`, `EndDrag`)."""
+
+    law: Literal["constant"] = "constant"
+
+
+class HighPass(Schema):
+    """Slow motion feels a share of the coefficient: cut-off in Hz, 0: none (`jaxhydro.loads.HighPassDrag`)."""
+
+    law: Literal["high_pass"]
+    cutoff: Annotated[float, Field(strict=True, ge=0, le=FASTEST)]
+    low_share: Share
+
+
+class HighPassAtEnds(HighPass):
+    """The same for pontoons' vertical direction and columns' ends, there with a share of `SuctionSide`."""
+
+    suction: Share | None = None
+
+
+class KeuleganCarpenter(Schema):
+    """A power of the Keulegan-Carpenter number over `reference`, where the coefficient is as declared; `window`, s, of the
+    past that the amplitude is taken from (`jaxhydro.loads.KeuleganCarpenterDrag`)."""
+
+    law: Literal["keulegan_carpenter"]
+    exponent: Annotated[float, Field(strict=True, ge=-1, le=1)]
+    reference: Positive
+    window: Positive = 60.0
+
+
+class SuctionSide(Schema):
+    """At columns' ends where the flow leaves them, wholly or in part (`jaxhydro.loads.SuctionSideDrag`)."""
+
+    law: Literal["suction_side"]
+    suction: Share = 1.0
+
+
 class Coefficients(Schema):
     """Added mass and drag of a group of members: t transverse, z vertical of a pontoon or axial at a column's end."""
 
@@ -178,3 +219,17 @@ class Coefficients(Schema):
     Ca_z: NonNegative = 0.0
     Cd_t: NonNegative = 0.0
     Cd_z: NonNegative = 0.0
+    drag_t: ConstantDrag | HighPass | KeuleganCarpenter = Field(
+        default=ConstantDrag(),
+        discriminator="law",
+        description="a mapping with `law`: constant, high_pass or keulegan_carpenter",
+    )
+    drag_z: ConstantDrag | HighPassAtEnds | KeuleganCarpenter | SuctionSide = Field(
+        default=ConstantDrag(),
+        discriminator="law",
+        description="a mapping with `law`: constant, high_pass, keulegan_carpenter or suction_side",
+    )
+
+    def numbers(self) -> dict[str, float]:
+        """The coefficients by name."""
+        return {"Ca_t": self.Ca_t, "Ca_z": self.Ca_z, "Cd_t": self.Cd_t, "Cd_z": self.Cd_z}

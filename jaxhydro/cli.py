@@ -146,14 +146,18 @@ def calibrate(
     figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
     tests: arguments.Tests = None,
     objective: arguments.Aim = arguments.Objective.bands,
+    law: arguments.OverSea = arguments.Law.constant,
+    loss: arguments.Robust = arguments.Loss.squares,
     start: arguments.Begin = None,
 ) -> None:
     """Fit a platform's coefficients to the tests marked `fit`: calibration.json, simulated.nc, figures.
 
-    To the free decays where there are any, else to the tests in irregular and regular waves.
+    To the free decays where there are any, else to the tests in irregular and regular waves; with `--tests all` to both
+    together, to static offsets and to natural periods that the manifest states.
     """
     kind = None if tests is None else tests.value
-    _calibrate(campaign, out, figures, None, kind, objective=objective.value, start=start)
+    how = {"objective": objective.value, "law": law.value.replace("-", "_"), "loss": loss.value, "start": start}
+    _calibrate(campaign, out, figures, None, kind, **how)
 
 
 @app.command()
@@ -193,8 +197,8 @@ def _calibrate(
     _start()
     from calibration import command
 
-    loaded, waves = command.load_fitted(campaign, out, tests)
-    result = command.run(loaded, out, figures, waves=waves, **how)
+    loaded, kind = command.load_fitted(campaign, out, tests)
+    result = command.run(loaded, out, figures, tests=kind, **how)
     if result is not None and truth is not None:
         from calibration.report import write_report
         from calibration.tables import against

@@ -17,6 +17,8 @@ from jaxhydro.waves.sea import AbstractSea
 Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]
 MORE = 2  # steps, so that differences at the last one are central
+MOTION = 12  # entries of the state before the loads' memories: position and velocity
+LONG = 32  # entries of a state beyond which a forward derivative runs along with the simulation
 Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
@@ -62,15 +64,16 @@ def _by_loop(
     """A scheme as one of this package's own loops: positions and body velocities at the ends of the steps."""
     y, unravel = ravel_pytree(state)
     loop = adams_bashforth if method == "ab4" else runge_kutta
+    options: dict[str, Any] = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
     run: Any = loop.forward if adjoint == "forward" else loop.backward
-    options = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
+    if adjoint == "forward" and y.shape[0] > LONG:
+        run, options["shown"] = loop.direct, MOTION
 
     def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> tuple[Array, ...]:
         return tuple(leaf.reshape(-1) for leaf in jax.tree.leaves(driver[0].rate(time, unravel(y), driver[1])))
 
     path = run((model, sea), y, start, step, count, rate=rate, capacity=capacity, **options)
-    states = jax.vmap(unravel)(path)
-    return states.position, states.velocity
+    return path[:, :6], path[:, 6:MOTION]
 
 
 def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:

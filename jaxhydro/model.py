@@ -16,6 +16,7 @@ from jaxhydro.solve6 import accelerate
 from jaxhydro.strips import end_wetted
 from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
+from jaxhydro.waves.sea_state import SeaState
 
 
 class RigidBody(eqx.Module):
@@ -121,6 +122,11 @@ class Model(eqx.Module):
     def with_load(self, load: AbstractLoad) -> "Model":
         """This model with one more load."""
         return eqx.tree_at(lambda m: m.loads, self, (*self.loads, load))
+
+    def in_sea(self, state: SeaState) -> "Model":
+        """This model with the coefficients that it has in a sea state."""
+        loads = tuple(load.in_sea(state) for load in self.loads)
+        return self if all(a is b for a, b in zip(loads, self.loads)) else eqx.tree_at(lambda m: m.loads, self, loads)
 
     def rest(self) -> State:
         """At the reference position without motion."""

@@ -1,7 +1,9 @@
 """A platform file made into a model."""
 
 import math
+from collections.abc import Mapping
 from os import PathLike
+from typing import TypeAlias
 
 import equinox as eqx
 import jax
@@ -9,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro import platform_schema as schema
+from jaxhydro.body_schema import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
 from jaxhydro.loads import (
@@ -17,17 +20,25 @@ from jaxhydro.loads import (
     Buoyancy,
     EndDrag,
     EndInertia,
+    HighPassDrag,
+    KeuleganCarpenterDrag,
     LinearDamping,
     MooringLines,
     QuadraticDamping,
     Stiffness,
     StripDrag,
     StripInertia,
+    SuctionSideDrag,
     Weight,
 )
 from jaxhydro.loads.hydrostatics import buoyancy
+from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.model import Model, RigidBody
+from jaxhydro.problems import InputError, Problem, suggest
 from jaxhydro.strips import Member
+from jaxhydro.waves.sea_state import SeaState
+
+DragLaw: TypeAlias = ConstantDrag | HighPass | HighPassAtEnds | KeuleganCarpenter | SuctionSide
 
 
 def load_model(path_or_name: str | PathLike[str]) -> Model:
@@ -64,21 +75,82 @@ def build(platform: schema.Platform) -> Model:
         coefficients = {
             f"{group}.{name}": jnp.asarray(value)
             for group, row in platform.coefficients.items()
-            for name, value in row.model_dump().items()
+            for name, value in row.numbers().items()
         }
+        chosen = _chosen_drag(platform, hull)
         of_strips = {kind: {f"{g}.{kind}_{t}" for g, t in hull.elements.labels} for kind in ("Ca", "Cd")}
         of_ends = {kind: {f"{g}.{kind}_z" for g in hull.ends.labels} for kind in ("Ca", "Cd")}
+        of_strips["Cd"] -= {label for label, law in chosen.items() if not isinstance(law, SuctionSide)}
+        of_ends["Cd"] -= set(chosen)
 
         def pick(labels: set[str]) -> dict:
             return {label: value for label, value in coefficients.items() if label in labels}
 
-        loads += [
+        coupled = platform.drag_speed == "vector"
+        morison = (
             StripInertia(pick(of_strips["Ca"])),
-            StripDrag(pick(of_strips["Cd"]), platform.drag_speed == "vector"),
+            StripDrag(pick(of_strips["Cd"]), coupled),
             EndInertia(pick(of_ends["Ca"])),
             EndDrag(pick(of_ends["Cd"])),
-        ]
-    return Model(environment, body, hull, tuple(loads), platform.wetting, platform.diffraction, platform.directions)
+        )
+        # plain drag that other laws have taken all lines from is left out
+        loads += [load for load in morison if load.values or not chosen] + _drag(chosen, coefficients, hull, coupled)
+    all_loads = _in_seas(tuple(loads), platform)
+    return Model(environment, body, hull, all_loads, platform.wetting, platform.diffraction, platform.directions)
+
+
+def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:
+    """Loads with the laws that the platform declares for their coefficients."""
+    declared = platform.sea_state_laws
+    if declared is None:
+        return loads
+    known = [label for load in loads for label in load.values]
+    if unknown := [label for label in declared.exponents if label not in known]:
+        where = f"sea_state_laws.exponents.{unknown[0]}"
+        expected, hint = f"a coefficient ({', '.join(known)})", suggest(unknown[0], known)
+        raise InputError(platform.name, [Problem(where, expected, "another", hint)])
+    exponents = {
+        exponent_label(label, over): value
+        for label, row in declared.exponents.items()
+        for over, value in row.model_dump(exclude_none=True).items()
+    }
+    return with_exponents(loads, exponents, SeaState(**declared.reference.model_dump()))
+
+
+def _chosen_drag(platform: schema.Platform, hull: Hull) -> dict[str, DragLaw]:
+    """The laws that the platform declares for drag coefficients, by label, those of plain Morison drag left out."""
+    problems = [
+        Problem(f"coefficients.{group}.drag_z", "no suction side, which the ends of columns have", "a group of pontoons")
+        for group, row in platform.coefficients.items()
+        if group not in hull.ends.labels and getattr(row.drag_z, "suction", None) is not None
+    ]
+    if problems:
+        raise InputError(platform.name, problems)
+    rows = platform.coefficients.items()
+    laws = {f"{group}.Cd_{kind}": law for group, row in rows for kind, law in (("t", row.drag_t), ("z", row.drag_z))}
+    return {label: law for label, law in laws.items() if not isinstance(law, ConstantDrag)}
+
+
+def _drag(chosen: dict[str, DragLaw], coefficients: dict, hull: Hull, coupled: bool) -> list[AbstractLoad]:
+    """A load for every law that is chosen, on the lines of all coefficients that it is chosen for."""
+
+    def values(laws: Mapping[str, DragLaw]) -> dict:
+        found = {label: coefficients[label] for label in laws}
+        for label, law in laws.items():
+            for name, value in law.model_dump(exclude={"law", "reference", "window"}, exclude_none=True).items():
+                found[label.replace(".Cd_", f".drag_{name}_")] = jnp.asarray(value)
+        return found
+
+    loads: list[AbstractLoad] = []
+    if high := {label: law for label, law in chosen.items() if isinstance(law, HighPass)}:
+        loads.append(HighPassDrag.of(hull, values(high), coupled))
+    if powers := {label: law for label, law in chosen.items() if isinstance(law, KeuleganCarpenter)}:
+        reference = {label: law.reference for label, law in powers.items()}
+        window = {label: law.window for label, law in powers.items()}
+        loads.append(KeuleganCarpenterDrag.of(hull, values(powers), reference, window, coupled))
+    if sides := {label: law for label, law in chosen.items() if isinstance(law, SuctionSide)}:
+        loads.append(SuctionSideDrag(values(sides)))
+    return loads
 
 
 def members_of(platform: schema.Platform) -> list[Member]:

@@ -31,6 +31,7 @@ __all__ = ["Coefficients", "Inertia", "Member", "Part", "Platform", "RigidBody",
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 Matrix6 = Float[np.ndarray, "6 6"]
+Exponent = Annotated[float, Field(strict=True, ge=-3, le=3)]
 
 
 class Water(Schema):
@@ -180,6 +181,27 @@ class Hydrostatics(Schema):
         return self
 
 
+class ReferenceSea(Schema):
+    """The sea state in which coefficients are as declared: m, s."""
+
+    significant_height: Positive
+    peak_period: Positive
+
+
+class Exponents(Schema):
+    """Powers of significant height and peak period, each over the reference's, that multiply a coefficient."""
+
+    significant_height: Exponent | None = None
+    peak_period: Exponent | None = None
+
+
+class SeaStateLaws(Schema):
+    """Coefficients by label, such as column.Cd_t, that depend on the sea state (`jaxhydro.loads.SeaStateLaw`)."""
+
+    reference: ReferenceSea
+    exponents: dict[Text, Exponents]
+
+
 class Platform(Schema):
     """A platform file. `wetting`, `drag_speed`, `diffraction` and `directions` choose between
     forms of the strip loads (see the loads and `Model`)."""
@@ -203,6 +225,7 @@ class Platform(Schema):
     diffraction: Literal["maccamy_fuchs", "ramp", "none"] = "maccamy_fuchs"
     directions: Literal["body", "earth"] = "body"
     drag_speed: Literal["vector", "component"] = "vector"
+    sea_state_laws: SeaStateLaws | None = None
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:

@@ -64,19 +64,27 @@ def _step(driver, y, time, step, rate: Rate, scheme: Scheme, keep: bool):
     return y + step * (jnp.array(scheme.weights) @ slopes), stages
 
 
-def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: int, keep: bool):
-    """States at the ends of `count` steps, and if kept at the stages of each, in arrays for `capacity` steps."""
+def _march(driver, y, start, step, count, rate: Rate, scheme: Scheme, capacity: int, keep: bool, shown: int | None = None):
+    """States (their first `shown` entries) at the ends of `count` steps, and if kept at the stages of each, in arrays for
+    `capacity` steps."""
 
     def advance(index, carry):
         y, path, stages = carry
         after, at = _step(driver, y, start + step * index, step, rate, scheme, keep)
-        path = jax.lax.dynamic_update_index_in_dim(path, y, index, 0)
+        path = jax.lax.dynamic_update_index_in_dim(path, y[:shown], index, 0)
         return after, path, jax.lax.dynamic_update_index_in_dim(stages, at, index, 0) if keep else None
 
     stages = jnp.zeros((capacity + 1, len(scheme.nodes), y.shape[0])) if keep else None
-    carry = (y, jnp.zeros((capacity + 1, y.shape[0])), stages)
+    carry = (y, jnp.zeros((capacity + 1, y[:shown].shape[0])), stages)
     _, path, stages = jax.lax.fori_loop(0, count + 1, advance, carry)
     return path, stages
+
+
+def direct(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int, shown: int) -> Float[Array, "n _"]:
+    """The first `shown` entries of the path that `forward` gives; tangents run along with the simulation.
+
+    For long states (loads with memory), whose linearisations, a matrix for every evaluation, would be too large."""
+    return _march(driver, y, start, step, count, rate, scheme, capacity, False, shown)[0]
 
 
 @eqx.filter_custom_jvp

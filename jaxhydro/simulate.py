@@ -20,6 +20,7 @@ from jaxhydro.statics import equilibrium, natural_modes
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea, SupportSea
 from jaxhydro.waves.sea import AbstractSea, StillWater
+from jaxhydro.waves.sea_state import state_of
 
 SEA_STEP = 0.25  # s, in irregular seas where no step is asked for
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
@@ -66,8 +67,9 @@ def simulate(
     by name, absolute where an array) and `rate` (m/s, rad/s of surge ... yaw). `step` (s) is the largest internal step; the
     one taken divides the duration. Positions are those of the reference point, equilibrium included.
 
-    In an `IrregularSea` the default is "ab4", four-step Adams-Bashforth at 0.25 s (see `adams_bashforth`), and the sea is
-    prepared for the hull first (see `supports`). Else it is "tsit5".
+    In an `IrregularSea` the default is "ab4", four-step Adams-Bashforth at 0.25 s (see `adams_bashforth`), the sea is
+    prepared for the hull first (see `supports`), and coefficients that depend on the sea state are those of its own
+    (`Model.in_sea`). Else it is "tsit5".
 
     `method` "tsit5" is Tsitouras 5(4) with diffrax's tableau in a loop of this package, "rk4" the classical scheme
     in the same loop, "diffrax" diffrax's own solver; steps are fixed. On a decay Tsit5 at 1 s costs less than RK4 at 0.5 s and
@@ -90,7 +92,7 @@ def simulate(
     q = rest + by_name(position)
     start = State(q, model.body_velocity(q, by_name(rate)), start.memory)
     if isinstance(sea, IrregularSea):
-        return in_irregular(model, sea, start, times, limit, method, adjoint).response
+        return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, limit, method, adjoint).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / limit - 1e-9))
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)

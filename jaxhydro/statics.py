@@ -74,7 +74,11 @@ class Modes(NamedTuple):
 
 
 def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, "6 6"], Float[Array, "6 6"]]:
-    """Mass matrix with added mass, and stiffness (N/m, ...), of small motion about a position of rest."""
+    """Mass matrix with added mass, and stiffness (N/m, ...), of small motion about a position of rest.
+
+    Every load's memory stays at rest. That is exact for drag laws, whose force is of second order in the motion and the memory
+    together; a memory that a force is proportional to would add to both matrices what is not in them.
+    """
     rest = model.rest()
 
     def acceleration(q: Float[Array, "6"]) -> Float[Array, "6"]:

@@ -18,7 +18,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta"),
     ("jaxhydro.adams_bashforth", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
     ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
-    ("jaxhydro.waves.sea", "jaxhydro.waves.second_order"),
+    ("jaxhydro.waves.sea", "jaxhydro.waves.second_order", "jaxhydro.waves.sea_state"),
     ("jaxhydro.waves.irregular", "jaxhydro.waves.irregular_sea"),
     ("jaxhydro.waves",),
     ("jaxhydro.loads.base",),
@@ -47,11 +47,11 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "matrix": "*",
     "strip_inertia": {"spread"},
     "end_inertia": {"spread_ends"},
-    "strip_drag": {"REST"},
+    "drag": "*",
 }
 NUMERICS = [name for layer in LAYERS[:13] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
-    "matplotlib": {"jaxhydro.plot", "calibration.plot", "calibration.seas_plot"},
+    "matplotlib": {"jaxhydro.plot", "calibration.plot", "calibration.seas_plot", "calibration.uncertainty_plot"},
     "PIL": {"jaxhydro.plot"},
     "ruamel": {"jaxhydro.problems"},
     "yaml": set(),

@@ -13,9 +13,8 @@ from test_seas import made  # noqa: F401  (a fixture: a run of the NumPy model)
 from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaign
 from calibration.outputs import document, write_calibration
 from calibration.parameters import parameter_space
-from calibration.runs import runs
 from calibration.sea_residuals import pose_in_waves
-from calibration.seas import Options, compare, with_diffraction
+from calibration.seas import Options, compare, seas_of, with_diffraction
 from calibration.seas_results import in_bands
 from jaxhydro.analysis import band_integral, band_weights, power_spectrum
 from jaxhydro.environment import DOFS
@@ -35,10 +34,9 @@ def campaign(made):  # noqa: F811
 def problem(campaign):
     """From two drag coefficients that are off by factors; one set of shapes, so that it is compiled once."""
     model = with_diffraction(build(campaign.platform), OPTIONS).with_values(start_of(campaign))
-    return pose_in_waves(
-        model, runs(campaign), parameter_space(model, LABELS), OPTIONS, from_rest=True, scale=campaign.manifest.scale,
-        step=0.25, objective="both",
-    )  # fmt: skip
+    seas, space = seas_of(campaign, model.environment, OPTIONS), parameter_space(model, LABELS)
+    scale = campaign.manifest.scale
+    return pose_in_waves(model, seas, space, OPTIONS, from_rest=True, scale=scale, step=0.25, objective="both")
 
 
 def start_of(campaign) -> dict[str, float]:

@@ -5,11 +5,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from benchmarks.evidence.common import SHARED, TRUE, Absent, Section, cached, fingerprint, parallel, say, table
+from benchmarks.evidence.common import CACHE, SHARED, TRUE, Absent, Section, cached, fingerprint, parallel, say, table
 
 NAME = "tuned_seas"
 FOLDER = SHARED / "measured"
 STARTS = {"campaign 4": "focal-c4's release in surge", "Table 1": "the paper's Table 1"}
+SHOWN = ("column.Cd_t", "linear_damping.B11")
 MENDED = 0.3  # of the energy in a band: what is further off after tuning is said not to be mended
 
 
@@ -20,33 +21,57 @@ def decays() -> dict[str, float]:
     return {label: p.value for label, p in calibrate(load_campaign(FOLDER / "focal-c4")).parameters.items()}
 
 
+def start_of(key: str, name: str) -> dict[str, float]:
+    """Coefficients that a calibration begins from."""
+    sideways = {"linear_damping.B22": TRUE["linear_damping.B11"], "linear_damping.B44": TRUE["linear_damping.B55"]}
+    return cached(NAME, key, "decays") if name == "campaign 4" else TRUE | sideways
+
+
+def bands_of(found: Any) -> dict[str, Any]:
+    """Test -> use, and channel -> band -> errors before and after."""
+    return {
+        test.id: {"use": test.use} | {
+            channel: {band: [one.before, one.after] for band, one in row.items()} for channel, row in test.bands.items()
+        } for test in found.tests
+    }  # fmt: skip
+
+
 def tuned(key: str, name: str) -> dict[str, Any]:
     """One calibration in waves."""
     from calibration import calibrate_in_waves, load_campaign
 
-    sideways = {"linear_damping.B22": TRUE["linear_damping.B11"], "linear_damping.B44": TRUE["linear_damping.B55"]}
-    start = cached(NAME, key, "decays") if name == "campaign 4" else TRUE | sideways
-    campaign = load_campaign(FOLDER / "focal-c2")
-    found = calibrate_in_waves(campaign, start=start)
+    found = calibrate_in_waves(load_campaign(FOLDER / "focal-c2"), start=start_of(key, name))
     assert found.identifiability is not None
     return {
         "parameters": {
             label: {"start": p.start, "value": p.value, "deviation": p.standard_deviation, "unit": p.unit}
             for label, p in found.parameters.items()
         },
-        "bands": {
-            test.id: {"use": test.use} | {
-                channel: {band: [one.before, one.after] for band, one in row.items()} for channel, row in test.bands.items()
-            } for test in found.tests
-        },
+        "bands": bands_of(found),
         "relative": {test.id: {s.channel: s.relative for s in test.series if s.scored} for test in found.tests},
         "said": list(found.identifiability.sentences()), "history": list(found.history), "converged": found.converged,
         "seconds": found.seconds,
     }  # fmt: skip
 
 
+def laws(key: str, folder: Path) -> dict[str, Any]:
+    """Constants and powers of Hs from Table 1, every sea alone; figures are drawn into a folder."""
+    from calibration import choose_law, load_campaign
+    from calibration.sea_laws_outputs import document, laws_table, sentence, states_table
+    from calibration.sea_laws_plot import coefficient
+    from jaxhydro.plot import save, style
+
+    campaign, start = load_campaign(FOLDER / "focal-c2"), start_of(key, "Table 1")
+    found = choose_law(campaign, laws=("constant", "significant_height"), start=start)
+    with style():
+        for label in SHOWN:
+            save(coefficient(found, label), folder / f"{NAME}-{label}.png")
+    return {"document": document(found), "laws": laws_table(found), "states": states_table(found), "said": sentence(found),
+            "bands": {law.name: bands_of(law.calibration) for law in found.laws}}  # fmt: skip
+
+
 def run(figures: Path, processes: int) -> Section:
-    """Both starts, side by side."""
+    """Both starts, side by side; then laws."""
     if not (FOLDER / "focal-c2").is_dir():
         raise Absent("../shared/measured has no focal-c2")
     key = fingerprint(FOLDER / "focal-c4", FOLDER / "focal-c2", Path(__file__))
@@ -57,7 +82,37 @@ def run(figures: Path, processes: int) -> Section:
         results[name] = found
     results = {name: results[name] for name in STARTS}
     text, short = words(results)
-    return Section("Coefficients tuned to seas, and what tuning cannot mend", text, (), short)
+    folder = CACHE / NAME / key
+    found = cached(NAME, key, "laws", partial(laws, key, folder))
+    drawn = tuple(path for label in SHOWN if (path := folder / f"{NAME}-{label}.png").is_file())
+    return Section("Coefficients tuned to seas, and what tuning cannot mend", text + words_of_laws(found), drawn, short)
+
+
+def words_of_laws(found: dict[str, Any]) -> str:
+    """What depends on the sea."""
+    heads, rows = found["laws"]
+    states, of_states = found["states"]
+    bands = found["bands"]
+    tests = list(next(iter(bands.values())))
+    each = [(id, law) for id in tests for law in bands]
+    compared = [
+        [f"{channel}, {band.split('_')[0]}", *(f"{100 * bands[law][id][channel][band][1]:+.0f} %" for id, law in each)]
+        for channel in ("surge", "heave", "pitch") for band in ("low_frequency", "wave_frequency")
+    ]  # fmt: skip
+    use = {id: ", held out" if bands[law][id]["use"] == "holdout" else "" for id, law in each}
+    names = [f"{id}{use[id]}: {law.replace('_', ' ')}" for id, law in each]
+    return f"""
+**Coefficients that depend on the sea** (`jaxhydro calibrate ../shared/measured/focal-c2 --tests waves --law choose`, here of
+constants and powers of Hs, begun from Table 1). {found['said']}.
+
+{table(list(heads), [list(row) for row in rows])}
+Error of energies:
+
+{table(["Energy of", *names], compared)}
+Every sea alone | by the chosen law; in brackets what the sea does not determine:
+
+{table(list(states), [list(row) for row in of_states])}
+"""
 
 
 def words(results: dict[str, dict[str, Any]]) -> tuple[str, tuple[str, ...]]:

@@ -11,6 +11,7 @@ from jaxtyping import Array, Bool, Float
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull, Wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
+from jaxhydro.waves.sea_state import SeaState
 
 
 class Parameter(NamedTuple):
@@ -104,6 +105,10 @@ class AbstractLoad(eqx.Module):
     def rest(self) -> Any:
         """Its memory before t = 0; None where it has none (not `()`: diffrax cannot carry it)."""
         return None
+
+    def in_sea(self, state: SeaState) -> "AbstractLoad":
+        """The load as it is in a sea state; itself where it does not depend on that."""
+        return self
 
     @abc.abstractmethod
     def about(self, label: str) -> Parameter:

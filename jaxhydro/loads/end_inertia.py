@@ -1,6 +1,7 @@
 """Inertia and dynamic pressure at the ends of columns."""
 
 import math
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -10,11 +11,15 @@ from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.strips import Ends
 
 
-def spread_ends(ends: Ends, values: dict[str, Float[Array, ""]], symbol: str) -> Float[Array, " m"]:
-    """Coefficients `group.symbol_z` by end."""
+def spread_ends(
+    ends: Ends, values: Mapping[str, Float[Array, ""]], symbol: str, missing: float | None = None
+) -> Float[Array, " m"]:
+    """Coefficients `group.symbol_z` by end; `missing` where there is none. KeyError if that is None."""
     if not ends.labels:
         return jnp.zeros(len(ends.label))
-    return jnp.stack([jnp.asarray(values[f"{group}.{symbol}_z"]) for group in ends.labels])[jnp.asarray(ends.label)]
+    labels = [f"{group}.{symbol}_z" for group in ends.labels]
+    stacked = jnp.stack([jnp.asarray(values[x] if missing is None else values.get(x, missing)) for x in labels])
+    return stacked[jnp.asarray(ends.label)]
 
 
 class EndInertia(AbstractLoad):

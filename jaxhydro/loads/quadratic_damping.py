@@ -6,8 +6,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.drag import REST
 from jaxhydro.loads.matrix import assemble, place, unit
-from jaxhydro.loads.strip_drag import REST
 
 
 class QuadraticDamping(AbstractLoad):

@@ -3,13 +3,10 @@
 from typing import Any, ClassVar
 
 import equinox as eqx
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.strip_inertia import spread
-
-REST = 1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere
+from jaxhydro.loads.drag import quadratic, strip_area
 
 
 class StripDrag(AbstractLoad):
@@ -19,7 +16,7 @@ class StripDrag(AbstractLoad):
     Structures, chapter 6). A is the area that faces the direction: diameter or side height times length for t, plan width
     times length for z. |u| is the length of the transverse vector, which couples the two directions (OpenFAST's law, the
     default), or with `coupled=False` that of the direction's own component, which only makes sense for rectangular
-    sections.
+    sections. Strips whose coefficient is not in `values` have another law.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -32,10 +29,5 @@ class StripDrag(AbstractLoad):
         return Parameter("-", f"{way} drag coefficient of {group}, on {area} area", 0.0, 30.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        flow = now.strip_flow
-        area = now.over_strips(spread(now.hull.elements, self.values, "Cd")) * now.strip_shape.facing
-        square = flow.relative**2
-        if self.coupled:
-            square = square.sum(axis=0)
-        force = 0.5 * now.environment.density * area * jnp.sqrt(square + REST) * flow.relative
-        return Action(strip_force=force)
+        area = strip_area(now, self.values)
+        return Action(strip_force=quadratic(now.environment.density, area, now.strip_flow.relative, self.coupled))

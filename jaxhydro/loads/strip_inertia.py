@@ -10,11 +10,15 @@ from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.strips import Elements
 
 
-def spread(elements: Elements, values: Mapping[str, Float[Array, ""]], symbol: str) -> Float[Array, "2 e"]:
-    """Coefficients `group.symbol_t`, `group.symbol_z` by direction and element."""
+def spread(
+    elements: Elements, values: Mapping[str, Float[Array, ""]], symbol: str, missing: float | None = None
+) -> Float[Array, "2 e"]:
+    """Coefficients `group.symbol_t`, `group.symbol_z` by direction and element; `missing` where there is none. KeyError if
+    that is None."""
     if not elements.labels:
         return jnp.zeros((2, 0))
-    stacked = jnp.stack([jnp.asarray(values[f"{group}.{symbol}_{kind}"]) for group, kind in elements.labels])
+    labels = [f"{group}.{symbol}_{kind}" for group, kind in elements.labels]
+    stacked = jnp.stack([jnp.asarray(values[x] if missing is None else values.get(x, missing)) for x in labels])
     return stacked[jnp.asarray(elements.label)]
 
 

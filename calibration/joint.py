@@ -1,0 +1,134 @@
+"""Calibration to tests of all kinds together: decays, tests in waves, static offsets and natural periods."""
+
+import time as clock
+from collections.abc import Callable, Sequence
+from typing import get_args
+
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.conclusion import estimates, remarks, strays
+from calibration.fit import Interrupted, Progress, held_out, labels_of, prepare, run, space_of
+from calibration.joint_fit import JointFit, Kind, Loss, Sources
+from calibration.result import Calibration
+from calibration.runs import KINDS
+from calibration.sea_fit import tests_in_waves
+from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
+from calibration.seas import Options, Seas, moving_channels, sea_step, seas_of, with_diffraction
+from calibration.still import pose_offsets, pose_periods
+from jaxhydro.environment import DOFS
+from jaxhydro.model import Model
+from jaxhydro.platform import build
+from jaxhydro.problems import InputError, Problem
+
+
+def calibrate_jointly(
+    campaign: Campaign,
+    *,
+    kinds: Sequence[Kind] = get_args(Kind),
+    free: Sequence[str] | None = None,
+    progress: Callable[[Progress], None] | None = None,
+    start: dict[str, float] | None = None,
+    objective: Objective = "bands",
+    loss: Loss = "squares",
+    options: Options | None = None,
+) -> Calibration:
+    """Fit the declared model's coefficients to all that a campaign has of some `kinds`, together.
+
+    Decays and tests in waves as `calibrate` and `calibrate_in_waves` take them (`objective` is the latter's); static tests
+    marked `fit` with a `degree_of_freedom`, in which an unknown force holds that motion where it is, by the motions that go
+    with it; the natural periods that the manifest states. Each kind weighs by its own error, estimated from what is left of it,
+    times the `weight` of a test (see `JointFit`). The decays are fitted first, alone: the rest begins there. With `loss`
+    "cauchy" residuals beyond some standard deviations hardly count (outliers, stretches that the model cannot follow).
+
+    `free` and `start` as in `calibrate`. Raises InputError where there is nothing to fit, Interrupted with what was reached.
+    """
+    begun = clock.monotonic()
+    options = Options() if options is None else options
+    source = str(campaign.folder / "campaign.yaml")
+    if unknown := [kind for kind in kinds if kind not in get_args(Kind)]:
+        raise ValueError(f"kinds: expected some of {', '.join(get_args(Kind))}, found {unknown[0]!r}")
+
+    def report(stage: str, iteration: int, value: float, fraction: float, name: str = "error") -> None:
+        if progress is not None:
+            progress(Progress(stage, iteration, value, fraction, name))
+
+    fitted = campaign.used("fit")
+    decays = [record for record in fitted if record.kind == "decay" and "decays" in kinds]
+    waves = [record for record in fitted if record.kind in KINDS and "waves" in kinds]
+    held = [r for r in fitted if r.kind == "static" and r.degree_of_freedom is not None and "offsets" in kinds]
+    stated_periods = campaign.manifest.calibrate.natural_periods if "periods" in kinds else {}
+    if not (decays or waves or held or stated_periods):
+        expected = f"at least one test marked `use: fit`, or a natural period, among {', '.join(kinds)}"
+        raise InputError(source, [Problem("tests", expected, "none")])
+    declared = with_diffraction(build(campaign.platform), options)
+    moved = {str(record.degree_of_freedom) for record in [*decays, *held]} | set(stated_periods)
+    for record in waves:
+        moved |= set(moving_channels({k: record.values[k] for k in DOFS if k in record.values}))
+    labels = labels_of(campaign, declared, sorted(moved), free)
+    begin = declared.with_values(start or {})
+    space = space_of(campaign, labels, begin)
+    from_rest, scale = campaign.manifest.zero is not None, campaign.manifest.scale
+    fit = None
+    x = space.start
+    if decays:
+        def first(stage: str, iteration: int, value: float, fraction: float) -> None:
+            report(stage, iteration, value, 0.3 * fraction, "J")
+
+        fit = prepare(campaign, free=labels, start=start, report=first)
+        run(fit)
+        x = fit.unknowns.shared
+    made: Seas = seas_of(campaign, declared.environment, options) if waves else ()
+    reached = space.model(begin, x)
+
+    def problem_in_waves(model: Model) -> SeaProblem:
+        step = sea_step(declared, options)
+        return pose_in_waves(model, made, space, options, from_rest=from_rest, scale=scale, step=step, objective=objective)
+
+    sources = Sources(
+        None if fit is None else fit.problem,
+        problem_in_waves(reached) if waves else None,
+        pose_offsets(begin, held, space, from_rest) if held else None,
+        pose_periods(begin, stated_periods, space, scale) if stated_periods else None,
+    )
+    later = 0.3 if decays else 0.0
+
+    def now(stage: str, iteration: int, value: float, share: float) -> None:
+        report(stage, iteration, value, later + (1 - later) * share)
+
+    joint = JointFit(sources, fit, space, x, now, loss, problem_in_waves)
+    counted = {"decays": decays, "tests in waves": waves, "static offsets": held, "natural periods": stated_periods}
+    words = ", ".join(f"{len(found)} {name}" for name, found in counted.items() if found)
+
+    def finish() -> Calibration:
+        return _conclude(campaign, begin, joint, options, made, words, clock.monotonic() - begun)
+
+    try:
+        joint.run()
+    except KeyboardInterrupt:
+        joint.converged = False
+        raise Interrupted(finish() if joint.iterations else None) from None
+    return finish()
+
+
+def _conclude(
+    campaign: Campaign, declared: Model, joint: JointFit, options: Options, made: Seas, words: str, seconds: float
+) -> Calibration:
+    """Parameters with their deviations, and all tests before and after."""
+    x = np.asarray(joint.unknowns.shared)
+    model = joint.space.model(declared, joint.unknowns.shared)
+    spread, known = joint.uncertainty(words)
+    parameters = estimates(joint.space, declared, x, spread)
+    tests = list(joint.tests)
+    lost = strays(tests, declared)
+    notes: tuple[str, ...] = ()
+    if tests:
+        tests += held_out(campaign, declared, model)
+    if made:
+        in_waves, notes = tests_in_waves(campaign, declared, model, options, made)
+        tests += in_waves
+    said = remarks(campaign, parameters, known, ("decay", *KINDS, "static"))
+    return Calibration(
+        campaign.manifest.name, model, parameters, tuple(tests), joint.converged and not lost, joint.iterations, seconds,
+        tuple(joint.history), (*lost, *said, *notes), campaign.platform.name, known,
+    )  # fmt: skip

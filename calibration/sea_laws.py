@@ -1,0 +1,170 @@
+"""Coefficients that depend on the sea: sea state by sea state, and as laws, of which seas held out choose one."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.directions import Identifiability
+from calibration.fit import Progress
+from calibration.result import Calibration
+from calibration.sea_fit import Over, calibrate_in_waves
+from calibration.seas import Options, Seas, seas_of
+from calibration.stretches import sea_state
+from jaxhydro.loads.sea_state_law import coefficients, exponent_label, is_exponent, reference_of, split
+from jaxhydro.platform import build
+from jaxhydro.problems import InputError, Problem
+from jaxhydro.waves.sea_state import SeaState
+
+Law = Literal["constant", "significant_height", "peak_period", "both"]
+OVERS: Mapping[str, tuple[Over, ...]] = {
+    "constant": (),
+    "significant_height": ("significant_height",),
+    "peak_period": ("peak_period",),
+    "both": ("significant_height", "peak_period"),
+}
+CLOSE = 0.02  # of the held-out error, by which a law with more exponents has to be better to be chosen
+
+
+@dataclass(frozen=True, eq=False)
+class LawFit:
+    """A law's calibration, and the root mean square of ln(simulated / measured energy) in the bands of the fitted tests and of
+    tests that it was not fitted to."""
+
+    name: str
+    calibration: Calibration
+    fitted: float
+    held_out: float
+
+    def exponents(self) -> dict[str, float]:
+        """Label -> value of the exponents."""
+        return {label: one.value for label, one in self.calibration.parameters.items() if is_exponent(label)}
+
+    def coefficient(self, label: str, state: SeaState) -> tuple[float, float]:
+        """A coefficient in a sea state, and the standard deviation of its logarithm."""
+        calibration = self.calibration
+        value = float(coefficients(calibration.model.in_sea(state).loads)[label])
+        known = calibration.identifiability
+        assert known is not None
+        reference = reference_of(calibration.model.loads)
+        logs = {} if reference is None else {
+            exponent_label(label, over): math.log(now / then) for over, now, then in zip(state._fields, state, reference)
+        }  # fmt: skip
+        return value, _deviation(known, label, logs)
+
+
+def _deviation(known: Identifiability, label: str, logs: Mapping[str, float]) -> float:
+    """Standard deviation of ln c0 + sum of exponents times logarithms."""
+    parameters = known.parameters
+    row = np.zeros(len(parameters.labels))
+    for i, name in enumerate(parameters.labels):
+        if name == label:
+            row[i] = parameters.slope[i] / parameters.value[i]
+        elif name in logs:
+            row[i] = parameters.slope[i] * logs[name]
+    return float(np.sqrt(max(row @ known.covariance @ row, 0.0)))
+
+
+@dataclass(frozen=True, eq=False)
+class OneSea:
+    """A test in irregular waves: what it is used for, its measured sea state, and the calibration to it alone."""
+
+    id: str
+    use: str
+    state: SeaState
+    calibration: Calibration
+
+
+@dataclass(frozen=True, eq=False)
+class SeaLaws:
+    """Laws in the order asked for, calibrations sea by sea, and the tests that judged: held out, or left out one by one."""
+
+    laws: tuple[LawFit, ...]
+    seas: tuple[OneSea, ...]
+    judged_by: tuple[str, ...]
+    left_out: bool
+
+    @property
+    def chosen(self) -> LawFit:
+        """The law with the least held-out error; an earlier one that is as good to 2 % is preferred."""
+        least = min(law.held_out for law in self.laws)
+        return next(law for law in self.laws if law.held_out <= (1 + CLOSE) * least)
+
+    def labels(self) -> list[str]:
+        """The coefficients that any of the laws lets depend on the sea state."""
+        return list(dict.fromkeys(split(label)[0] for law in self.laws for label in law.exponents()))
+
+
+def choose_law(
+    campaign: Campaign,
+    *,
+    laws: Sequence[Law] = get_args(Law),
+    free: Sequence[str] | None = None,
+    start: dict[str, float] | None = None,
+    options: Options | None = None,
+    progress: Callable[[Progress], None] | None = None,
+) -> SeaLaws:
+    """Drag and damping coefficients sea state by sea state, as constants, and as powers of the sea state: `LawFit` of each.
+
+    Every law is fitted to the tests in irregular waves marked `fit` and judged by those marked `holdout`; where none is, by the
+    fitted ones left out in turn. The energies in bands are the objective. Arguments are those of `calibrate_in_waves`; the laws
+    start where the constants ended, whose values also are the middle of the priors sea by sea. Raises InputError where there
+    are too few tests to judge, Interrupted (of the calibration under way).
+    """
+    options = Options() if options is None else options
+    source = str(campaign.folder / "campaign.yaml")
+    fitted, held = ([r.id for r in campaign.used(use) if r.kind == "irregular"] for use in ("fit", "holdout"))
+    if len(fitted) < (2 if held else 3):
+        expected = "two tests in irregular waves marked `fit` and one `holdout`, or three marked `fit`"
+        raise InputError(source, [Problem("tests", expected, f"{len(fitted)} and {len(held)}")])
+    made = seas_of(campaign, build(campaign.platform).environment, options)
+    count = len(laws) * (1 if held else 1 + len(fitted)) + len(fitted) + len(held)
+    done = 0
+
+    def one(name: str, uses: Mapping[str, str], begin: dict[str, float] | None, over: tuple[Over, ...] = ()) -> Calibration:
+        nonlocal done
+
+        def report(now: Progress) -> None:
+            if progress is not None:
+                progress(replace(now, stage=f"{name}: {now.stage}", fraction=(done + now.fraction) / count))
+
+        used, seas = with_uses(campaign, made, uses)
+        found = calibrate_in_waves(used, free=free, start=begin, options=options, over=over, made=seas, progress=report)
+        done += 1
+        return found
+
+    found: list[LawFit] = []
+    for name in laws:
+        begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
+        whole = one(name, {}, begin, OVERS[name])
+        judged = [error(whole, held)]
+        if not held:
+            judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, OVERS[name]), [id]) for id in fitted]
+        found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
+    values = {k: p.value for k, p in found[0].calibration.parameters.items() if not is_exponent(k)}
+    seas = []
+    for id in [*fitted, *held]:
+        alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
+        record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)
+        state = sea_state(run, record, options.low, options.cutoff)
+        seas.append(OneSea(id, record.use, state, one(f"{id} alone", alone, values)))
+    return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held)
+
+
+def error(calibration: Calibration, tests: Sequence[str]) -> float:
+    """Root mean square of ln(simulated / measured energy) over the bands of tests."""
+    bands = [band for test in calibration.tests if test.id in tests for row in test.bands.values() for band in row.values()]
+    return float(np.sqrt(np.mean([math.log1p(max(band.after, -0.999999)) ** 2 for band in bands])))
+
+
+def with_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:
+    """The campaign and its runs with tests used otherwise, id -> use; runs without a test left are left out."""
+
+    def changed(records: Sequence[Any]) -> tuple[Any, ...]:
+        return tuple(replace(record, use=uses.get(record.id, record.use)) for record in records)
+
+    runs = ((replace(run, records=tuple(r for r in changed(run.records) if r.use != "ignore")), sea) for run, sea in made)
+    return replace(campaign, records=changed(campaign.records)), tuple((run, sea) for run, sea in runs if run.records)

@@ -1,0 +1,92 @@
+"""What the drag laws share: the quadratic force, and which lines of the hull a law is for. No load by itself.
+
+A line is a strip's direction or an end's axis (see `Hull`): strips' first directions, their second ones, then ends.
+"""
+
+from collections.abc import Iterable, Mapping
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.hull import Hull
+from jaxhydro.loads.base import Instant, Parameter
+from jaxhydro.loads.end_inertia import spread_ends
+from jaxhydro.loads.strip_inertia import spread
+
+REST = 1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere
+COEFFICIENT = Parameter("-", "{way} drag coefficient of {group}, on {area} area", 0.0, 30.0)
+SUCTION = Parameter("-", "share of the drag of the ends of {group} that moves to where the flow leaves them", 0.0, 1.0)
+
+Values = Mapping[str, Float[Array, ""]]
+
+
+def quadratic(
+    density: float | Float[Array, ""], area: Float[Array, "... k"], relative: Float[Array, "... k"], coupled: bool = False
+) -> Float[Array, "... k"]:
+    """1/2 rho Cd A |u| u (N), `area` Cd A (m2), `relative` u (m/s); `coupled`: |u| of the vector that the first axis holds."""
+    square = relative**2
+    if coupled:
+        square = square.sum(axis=0)
+    return 0.5 * density * area * jnp.sqrt(square + REST) * relative
+
+
+def one_sided(
+    density: float | Float[Array, ""],
+    area: Float[Array, " m"],
+    relative: Float[Array, " m"],
+    outward: Float[Array, " m"],
+    suction: Float[Array, " m"],
+) -> Float[Array, " m"]:
+    """1/2 rho Cd A (|w| w + s n w^2) (N) along the axis, `area` Cd A (m2), w `relative` (m/s), n `outward` (1 or -1)."""
+    return quadratic(density, area, relative) + 0.5 * density * area * suction * outward * relative**2
+
+
+def of_strips(now: Instant, values: Values, symbol: str, missing: float) -> Float[Array, "2 n"]:
+    """Parameters `group.symbol_t`, `group.symbol_z` by direction and strip; `missing` where a group has none."""
+    return now.over_strips(spread(now.hull.elements, values, symbol, missing))
+
+
+def of_ends(now: Instant, values: Values, symbol: str, missing: float) -> Float[Array, " m"]:
+    """Parameters `group.symbol_z` by end; `missing` where a group has none."""
+    return spread_ends(now.hull.ends, values, symbol, missing)
+
+
+def strip_area(now: Instant, values: Values) -> Float[Array, "2 n"]:
+    """Cd A (m2) of strips by direction, A what the flow along it sees; 0 where `values` has no coefficient."""
+    return of_strips(now, values, "Cd", 0.0) * now.strip_shape.facing
+
+
+def end_area(now: Instant, values: Values) -> Float[Array, " m"]:
+    """Cd A (m2) of ends, A the wet area of the face; 0 where `values` has no coefficient."""
+    return of_ends(now, values, "Cd", 0.0) * (np.pi * now.hull.ends.radius**2) * now.end_flow.wet
+
+
+def lines_of(hull: Hull, labels: Iterable[str], both: bool = False) -> tuple[int, ...]:
+    """Lines whose drag coefficient is among `labels`, in order; `both`: and the other directions of their strips."""
+    known, elements = set(labels), hull.elements
+    names = [f"{group}.Cd_{kind}" for group, kind in elements.labels]
+    strips = np.array([[names[row[e]] in known for e in hull.strips.element] for row in elements.label], bool)
+    strips = strips.reshape(2, len(hull.strips.element))
+    if both:
+        strips = strips | strips[::-1]
+    wide = np.asarray(hull.ends.radius) > 0
+    ends = [bool(wide[i]) and f"{hull.ends.labels[k]}.Cd_z" in known for i, k in enumerate(hull.ends.label)]
+    return tuple(map(int, np.flatnonzero(np.concatenate([strips.reshape(-1), np.array(ends, bool)]))))
+
+
+def on_all(some: Float[Array, " k"], lines: tuple[int, ...], count: int) -> Float[Array, " l"]:
+    """What some lines have, on all of them: 0 on the others. A gather: scatters are slow on a CPU."""
+    place = np.full(count, len(lines))
+    place[list(lines)] = np.arange(len(lines))
+    return jnp.concatenate([some, jnp.zeros(1)])[place]
+
+
+def about(label: str, more: Mapping[str, Parameter]) -> Parameter:
+    """What a drag law's parameter means: `group.Cd_t`, `group.Cd_z`, or of the same form one of `more`, whose meanings have
+    {way}, {group} and {area} to be filled in."""
+    group, symbol = label.rsplit(".", 1)
+    name, kind = symbol.rsplit("_", 1)
+    found = COEFFICIENT if name == "Cd" else more[name]
+    way, area = ("transverse", "projected") if kind == "t" else ("vertical or axial", "plan or end")
+    return found._replace(meaning=found.meaning.format(way=way, group=group, area=area))

@@ -1,0 +1,86 @@
+"""Drag in which slow and fast motion have coefficients of their own."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.hull import Hull
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.drag import (
+    SUCTION,
+    about,
+    end_area,
+    lines_of,
+    of_ends,
+    of_strips,
+    on_all,
+    one_sided,
+    quadratic,
+    strip_area,
+)
+
+# A first-order filter faster than this is no filter in waves, and at 0.25 s leaves what Adams-Bashforth can follow (0.19 Hz).
+FASTEST = 0.15  # Hz
+
+PARAMETERS = {
+    "drag_cutoff": Parameter("Hz", "frequency above which {group} has its whole {way} drag coefficient", 0.0, FASTEST),
+    "drag_low_share": Parameter("-", "share of the {way} drag coefficient of {group} that slow motion feels", 0.0, 1.0, 1.0),
+    "drag_suction": SUCTION,
+}
+
+
+class HighPassDrag(AbstractLoad):
+    """f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u - m, dm/dt = 2 pi fc u'.
+
+    u is the water's relative velocity, u' the same high-passed at the cut-off fc: gain 1/(1 + (fc/f)^2)^0.5, ahead by
+    atan(fc/f). Fast motion has the coefficient Cd, slow motion r Cd. r = 1 is plain Morison drag whatever fc, and so is
+    fc = 0 whatever r. The memory m is the low-passed velocity of every strip's direction and end that has this law.
+
+    OpenFAST HydroDyn's velocity filter: AxVnCOff and AxFDLoFSc on ends (Morison.f90, subroutine Morison_CalcOutput), VnCOffA,
+    VnCOffB, FDLoFScA, FDLoFScB on the faces of rectangular members (subroutine GetDistDrag_Rec, pull request 2895). There it
+    goes step by step, u'_k = exp(-2 pi fc dt) (u'_{k-1} + u_k - u_{k-1}) (subroutine Morison_UpdateDiscState): this is the
+    limit dt -> 0. HydroDyn's members take |.| of the component (`coupled=False`); of the filtered vector, and so for circles,
+    it is ours. So is `drag_suction` being a number: 0 and 1 are AxFDMod (see `SuctionSideDrag`; it goes with u' and u alike).
+
+    In a harmonic motion of gain G it takes r + (1 - r) G^3 of the energy that plain drag takes. Where slow and fast motion
+    mix it can, for a while, give energy back.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    lines: tuple[int, ...] = eqx.field(static=True)
+    coupled: bool = eqx.field(static=True, default=True)
+    source: ClassVar[str] = "OpenFAST HydroDyn, Morison.f90, Morison_UpdateDiscState and GetDistDrag_Rec, pull request 2895"
+
+    @classmethod
+    def of(cls, hull: Hull, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "HighPassDrag":
+        """The law on the lines of a hull whose drag coefficients are in `values`."""
+        return cls(dict(values), lines_of(hull, values), coupled)
+
+    def rest(self) -> Float[Array, " k"]:
+        return jnp.zeros(len(self.lines))
+
+    def about(self, label: str) -> Parameter:
+        return about(label, PARAMETERS)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        values, hull, density = self.values, now.hull, now.environment.density
+        relative = hull.join(now.strip_flow.relative, now.end_flow.relative)
+        fast = relative - on_all(memory, self.lines, relative.shape[0])
+        of_strip, of_end = (find(now, values, "drag_cutoff", 0.0) for find in (of_strips, of_ends))
+        own = jnp.array(self.lines, dtype=int)
+        rate = 2 * math.pi * (hull.join(of_strip, of_end) * fast)[own]
+        fast_strip, fast_end = hull.split(fast)
+
+        area, share = strip_area(now, values), of_strips(now, values, "drag_low_share", 1.0)
+        slow = quadratic(density, area, now.strip_flow.relative, self.coupled)
+        strip_force = share * slow + (1 - share) * quadratic(density, area, fast_strip, self.coupled)
+
+        area, share = end_area(now, values), of_ends(now, values, "drag_low_share", 1.0)
+        side = (hull.ends.outward, of_ends(now, values, "drag_suction", 0.0))
+        slow = one_sided(density, area, now.end_flow.relative, *side)
+        end_force = share * slow + (1 - share) * one_sided(density, area, fast_end, *side)
+        return Action(strip_force=strip_force, end_force=end_force, memory_rate=rate)

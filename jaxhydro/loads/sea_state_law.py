@@ -1,0 +1,115 @@
+"""Coefficients that depend on the sea state."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.waves.sea_state import SeaState
+
+OVER = {"significant_height": "Hs", "peak_period": "Tp"}
+LARGEST = 3.0  # of an exponent, either way
+
+
+class SeaStateLaw(AbstractLoad):
+    """c = c0 (Hs/Hs0)^a (Tp/Tp0)^b in place of coefficients c0 of a load, in the sea state that it is in.
+
+    A power of the sea state's scale is how drag coefficients are commonly laid out against the Keulegan-Carpenter number,
+    itself proportional to Hs in a given basin (Sarpkaya and Isaacson 1981, Mechanics of Wave Forces on Offshore Structures,
+    chapter 3); the exponents are empirical. In still water, and in a sea that is not known, c = c0: that is what it is in the
+    `reference` sea state. All exponents 0 give the load itself.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    load: AbstractLoad
+    reference: SeaState = eqx.field(static=True)
+    logs: dict[str, Float[Array, ""]]  # Hs, Tp -> ln(Hs/Hs0), ln(Tp/Tp0)
+    source: ClassVar[str] = "Sarpkaya and Isaacson 1981, chapter 3 (dependence on KC); the power law is empirical"
+
+    @classmethod
+    def of(cls, load: AbstractLoad, exponents: Mapping[str, Any], reference: SeaState) -> "SeaStateLaw":
+        """A load with exponents, label (see `exponent_label`) -> value, for some of its coefficients."""
+        added = {label: jnp.asarray(value, float) for label, value in exponents.items()}
+        return cls({**load.values, **added}, load, reference, {symbol: jnp.zeros(()) for symbol in OVER.values()})
+
+    def rest(self) -> Any:
+        return self.load.rest()
+
+    def about(self, label: str) -> Parameter:
+        if label in self.load.values:
+            return self.load.about(label)
+        base, symbol = split(label)
+        height, period = self.reference
+        scale = f"{height:.3g} m" if symbol == "Hs" else f"{period:.3g} s"
+        return Parameter("-", f"exponent of {base} in {symbol}/{scale}", -LARGEST, LARGEST)
+
+    def in_sea(self, state: SeaState) -> "SeaStateLaw":
+        logs = [jnp.log(now / then) for now, then in zip(state, self.reference, strict=True)]
+        return eqx.tree_at(lambda law: law.logs, self, dict(zip(OVER.values(), logs, strict=True)))
+
+    def present(self) -> dict[str, Float[Array, ""]]:
+        """The load's coefficients in the present sea state."""
+        found = {label: self.values[label] for label in self.load.values}
+        for label in self.values.keys() - found.keys():
+            base, symbol = split(label)
+            found[base] = found[base] * jnp.exp(self.values[label] * self.logs[symbol])
+        return found
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        return eqx.tree_at(lambda load: load.values, self.load, self.present()).act(now, memory)
+
+
+def exponent_label(label: str, over: str) -> str:
+    """The exponent's label of a coefficient over "significant_height" or "peak_period"."""
+    return f"{label}.{OVER[over]}_exponent"
+
+
+def split(label: str) -> tuple[str, str]:
+    """The coefficient, and Hs or Tp, of an exponent's label."""
+    base, _, last = label.rpartition(".")
+    return base, last.removesuffix("_exponent")
+
+
+def is_exponent(label: str) -> bool:
+    """Whether a parameter's label is that of an exponent."""
+    return label.endswith(tuple(f".{symbol}_exponent" for symbol in OVER.values()))
+
+
+def coefficients(loads: tuple[AbstractLoad, ...]) -> dict[str, Float[Array, ""]]:
+    """The parameters of loads by label, those of laws as they are in the present sea state."""
+    return {k: v for load in loads for k, v in (load.present() if isinstance(load, SeaStateLaw) else load.values).items()}
+
+
+def reference_of(loads: tuple[AbstractLoad, ...]) -> SeaState | None:
+    """The reference of the laws among loads; None where there are none."""
+    return next((load.reference for load in loads if isinstance(load, SeaStateLaw)), None)
+
+
+def with_exponents(
+    loads: tuple[AbstractLoad, ...], exponents: Mapping[str, Any], reference: SeaState
+) -> tuple[AbstractLoad, ...]:
+    """Loads, those with coefficients that have exponents replaced by their laws; a law's own are kept, as long as its
+    reference is the same. Raises KeyError for an exponent of no load's coefficient, ValueError for another reference."""
+    left, found = dict(exponents), []
+    if not all(math.isfinite(x) and x > 0 for x in reference):
+        raise ValueError(f"reference: expected a significant height and a peak period above 0, found {reference}")
+    for load in loads:
+        mine = {label: left.pop(label) for label in list(left) if split(label)[0] in load.values}
+        if not mine:
+            found.append(load)
+        elif not isinstance(load, SeaStateLaw):
+            found.append(SeaStateLaw.of(load, mine, reference))
+        elif load.reference != reference:
+            raise ValueError(f"expected the reference {load.reference} of the law that is there, found {reference}")
+        else:
+            kept = {label: value for label, value in load.values.items() if label not in load.load.values}
+            base = eqx.tree_at(lambda inner: inner.values, load.load, {k: load.values[k] for k in load.load.values})
+            found.append(SeaStateLaw.of(base, kept | mine, reference))
+    if left:
+        known = ", ".join(label for load in loads for label in load.values)
+        raise KeyError(f"no coefficient {split(next(iter(left)))[0]!r}; there are: {known}")
+    return tuple(found)

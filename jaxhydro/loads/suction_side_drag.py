@@ -1,0 +1,35 @@
+"""Drag on the ends of columns where the water leaves them."""
+
+from typing import Any, ClassVar
+
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.drag import SUCTION, about, end_area, of_ends, one_sided
+
+
+class SuctionSideDrag(AbstractLoad):
+    """f = 1/2 rho Cd A (|w| w + s n w^2) on an end, w the water's velocity relative to it and n its outward side, on the axis.
+
+    s = 0 is `EndDrag`; s = 1 is nothing where the flow meets the end and twice that drag where it leaves it, where flow
+    separates: OpenFAST HydroDyn's AxFDMod = 1 (Morison.f90, subroutine Morison_CalcOutput, external hydrodynamic joint loads;
+    user documentation, HydroDyn input files, axial coefficients; its AxCd is twice this Cd). The half-way house is ours: it
+    makes the choice a parameter. The force has a mean in a motion that has none, outward, and takes energy out at any s.
+
+    Members have the same law in HydroDyn (FDMod = 2, OpenFAST pull request 2895), with the flow at the middle of their four
+    faces. With that of the axis, which strips have here, one of two opposite faces always carries the whole drag: that is
+    `StripDrag` with `coupled=False`, so there is no such law for strips.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "OpenFAST HydroDyn, Morison.f90, Morison_CalcOutput, AxFDMod; pull request 2895"
+
+    def about(self, label: str) -> Parameter:
+        return about(label, {"drag_suction": SUCTION})
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        suction = of_ends(now, self.values, "drag_suction", 0.0)
+        force = one_sided(
+            now.environment.density, end_area(now, self.values), now.end_flow.relative, now.hull.ends.outward, suction
+        )
+        return Action(end_force=force)

@@ -1,0 +1,37 @@
+"""A sea state in two numbers."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from jaxhydro.waves.components import Components
+
+SMOOTHED = 0.005  # Hz, half the width over which a spectrum is averaged
+
+
+class SeaState(NamedTuple):
+    """Significant height 4 m0^0.5 (m) and peak period (s)."""
+
+    significant_height: float
+    peak_period: float
+
+
+def peak_period(frequency: np.ndarray, density: np.ndarray) -> float:
+    """Tp = sum S^4 / sum f S^4 (s), steadier than the highest of a spectrum's estimates.
+
+    Young 1995, Ocean Engineering 22, 669-686, equation (3), of the density averaged over 0.01 Hz. `frequency` (n,) in Hz is
+    even, `density` (n,) in any unit.
+    """
+    edges = np.searchsorted(frequency, np.add.outer((-SMOOTHED, SMOOTHED), frequency) + np.array([[-1e-9], [1e-9]]))
+    summed = np.concatenate([[0.0], np.cumsum(density)])
+    mean = (summed[edges[1]] - summed[edges[0]]) / (edges[1] - edges[0])
+    weight = (mean / mean.max()) ** 4
+    return float(weight.sum() / (weight * frequency).sum())
+
+
+def state_of(waves: Components) -> SeaState:
+    """The sea state of components on even frequencies."""
+    power, frequency = 0.5 * np.asarray(waves.amplitude) ** 2, np.asarray(waves.omega) / (2 * np.pi)
+    if not power.sum() > 0:
+        raise ValueError("expected a sea with waves, found amplitudes of 0 only")
+    return SeaState(4 * float(power.sum()) ** 0.5, peak_period(frequency, power))

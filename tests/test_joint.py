@@ -1,0 +1,207 @@
+"""Calibration to decays, waves, offsets and periods together: each residual against another way, coefficients found back."""
+
+import json
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from test_sea_laws import HULL, OPTIONS, STEP, rows
+
+import jaxhydro as jh
+from calibration import load_campaign
+from calibration.joint import calibrate_jointly
+from calibration.parameters import parameter_space
+from calibration.residuals import softened
+from calibration.seas import seas_of, with_diffraction
+from calibration.still import held_at, natural_period, pose_offsets, pose_periods
+from calibration.stretches import stretches, walk
+from jaxhydro.environment import DOFS
+from jaxhydro.loads.stiffness import Stiffness
+from jaxhydro.platform import build
+from jaxhydro.problems import InputError
+
+LABELS = ("column.Ca_t", "column.Cd_t", "pontoon.Ca_z", "pontoon.Cd_z", "linear_damping.B11")
+FACTORS = (0.8, 1.5, 1.2, 0.6, 1.6)
+NOISE = {"surge": 0.02, "heave": 0.005, "pitch": 2e-4}
+SEA, HELD = 500.0, 4.0  # s, m
+CHANNELS = ("surge", "heave", "pitch")
+
+
+def manifest(model: jh.Model) -> dict:
+    channels = {name: {"column": name, "unit": "rad" if name == "pitch" else "m"} for name in CHANNELS}
+    modes = jh.natural_modes(model)
+    periods = {dof: {"value": modes.of(dof), "standard_deviation": 0.01 * modes.of(dof)} for dof in ("surge", "pitch")}
+    decays = [{"id": f"{d}-decay", "kind": "decay", "degree_of_freedom": d, "file": f"{d}.csv"} for d in ("surge", "heave")]
+    return {
+        "name": "all kinds", "platform": "platform.yaml", "channels": {"time": {"column": "t", "unit": "s"}, **channels},
+        "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]}, "zero": {"test": "rest"}, "noise": NOISE,
+        "calibrate": {"natural_periods": periods, "free": list(LABELS)},
+        "tests": [
+            {"id": "rest", "kind": "static", "file": "rest.csv", "use": "ignore"}, *decays,
+            {"id": "held", "kind": "static", "degree_of_freedom": "surge", "file": "held.csv"},
+            {"id": "sea", "kind": "irregular", "file": "sea.csv", "transient": 100.0, "peak_period": 10.0},
+        ],
+    }  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """Every kind of test on this package's own motions, with noise."""
+    folder = tmp_path_factory.mktemp("kinds")
+    (folder / "platform.yaml").write_text(HULL.read_text())
+    platform = jh.load_platform(folder / "platform.yaml")
+    model = with_diffraction(build(platform), OPTIONS)
+    rest, rng = np.asarray(jh.equilibrium(model)), np.random.default_rng(5)
+    (folder / "campaign.yaml").write_text(json.dumps(manifest(model)))
+
+    def write(name: str, time, positions, wave=None) -> None:
+        motion = [positions[:, DOFS.index(d)] - rest[DOFS.index(d)] + rng.normal(0, NOISE[d], len(time)) for d in CHANNELS]
+        (folder / name).write_text(rows(time, np.stack([np.zeros(len(time)) if wave is None else wave, *motion])))
+
+    for dof, released, duration in (("surge", 6.0, 500.0), ("heave", 2.0, 150.0)):
+        time = np.arange(0.0, duration, STEP)
+        write(f"{dof}.csv", time, np.asarray(jh.free_decay(model, {dof: released}, time).position))
+    time = np.arange(0.0, 60.0, STEP)
+    still = np.tile(np.asarray(held_at(model, 0, rest[0] + HELD)), (len(time), 1))
+    write("held.csv", time, still)
+    write("rest.csv", time, np.tile(rest, (len(time), 1)))
+    environment = jh.Environment(1025.0, 200.0)
+    band = {"low": 0.05, "cutoff": 0.18, "seed": 2}
+    waves = jh.spectrum_components(lambda w: jh.jonswap(w, 5.0, 10.0, 3.3), SEA, environment, **band)
+    time = np.arange(0.0, SEA, STEP)
+    wave = jh.IrregularSea(waves, environment).gauge(time)
+    write("sea.csv", time, np.tile(rest, (len(time), 1)) + np.sin(time)[:, None], wave)
+    first = load_campaign(folder)
+    ((run, sea),) = seas_of(first, environment, OPTIONS)
+    (part,) = stretches(run, run.records, model, OPTIONS.low, OPTIONS.cutoff)
+    write("sea.csv", time, np.asarray(next(iter(walk(model, run, (part,), sea.sea, 0.25))).found.response.position), wave)
+    return load_campaign(folder)
+
+
+@pytest.fixture(scope="module")
+def model(campaign):
+    return build(campaign.platform)
+
+
+def test_a_motion_held_by_a_force(model) -> None:
+    """The other five forces vanish; a body on a matrix of springs rests where the matrix says."""
+    rest = np.asarray(jh.equilibrium(model))
+    found = held_at(model, 0, jnp.asarray(rest[0] + HELD))
+    force = np.asarray(model.force_at_rest(found))
+    assert found[0] == pytest.approx(rest[0] + HELD) and abs(found[4] - rest[4]) > 1e-4
+    assert np.abs(force[1:]).max() < 1e-9 * float(model.body.mass) * 9.81 and abs(force[0]) > 1e5
+    stiff = {"C11": 1e5, "C15": -2e6, "C51": -2e6, "C55": 3e9, "C33": 4e6, "C22": 1e5, "C44": 3e9, "C66": 1e9}
+    values = {f"stiffness.{k}": jnp.asarray(v) for k, v in stiff.items()}
+    body = eqx.tree_at(lambda m: m.loads, model, (Stiffness(values, jnp.zeros(6), "stiffness"),))
+    assert float(held_at(body, 0, jnp.asarray(3.0))[4]) == pytest.approx(2e6 * 3 / 3e9, rel=1e-9)
+    slope = jax.jacfwd(lambda v: held_at(body, 0, v))(jnp.asarray(3.0))
+    assert float(slope[4]) == pytest.approx(2e6 / 3e9, rel=1e-9)
+
+
+@pytest.mark.parametrize("dof", ["surge", "heave", "pitch"])
+def test_a_natural_period_and_its_slope(model, dof: str) -> None:
+    """`natural_modes`, by another package's eigenvalues; the slope by differences."""
+    assert float(natural_period(model, DOFS.index(dof))) == pytest.approx(jh.natural_modes(model).of(dof), rel=1e-9)
+    label = "pontoon.Ca_z" if dof == "heave" else "column.Ca_t"
+    value = float(model.values[label])
+
+    def period(v):
+        return natural_period(model.with_values({label: v}), DOFS.index(dof))
+
+    slope = jax.jit(jax.jacfwd(period))(jnp.asarray(value))
+    h = 1e-3 * value
+    rough = (jh.natural_modes(model.with_values({label: value + h})).of(dof)
+             - jh.natural_modes(model.with_values({label: value - h})).of(dof)) / (2 * h)  # fmt: skip
+    assert float(slope) == pytest.approx(rough, rel=1e-4)
+
+
+def test_residuals_of_offsets_and_periods(campaign, model) -> None:
+    """At the truth the noise's, off it what is declared; their Gauss-Newton matrices against differences."""
+    space = parameter_space(model, LABELS)
+    record = campaign.record("held")
+    offsets = pose_offsets(model, [record], space, from_rest=True)
+    assert np.abs(np.asarray(offsets.residuals(space.start))).max() < 1e-3
+    assert len(offsets.compared) == 2  # heave and pitch
+    periods = pose_periods(model, campaign.manifest.calibrate.natural_periods, space, campaign.manifest.scale)
+    assert_allclose(np.asarray(periods.residuals(space.start)), 0.0, atol=1e-9)
+    x = space.start + 0.2
+    for source in (offsets, periods):
+        found = np.asarray(source.products(x))[0]
+        slopes = [(np.asarray(source.residuals(x + d)) - np.asarray(source.residuals(x - d))) / 2e-4 for d in 1e-4 * np.eye(5)]
+        full = np.stack([*slopes, np.asarray(source.residuals(x))], axis=1)
+        assert_allclose(found, full.T @ full, rtol=1e-3, atol=1e-6 * max(np.abs(full.T @ full).max(), 1e-12))
+
+
+def test_cauchy_s_loss() -> None:
+    """Squares for small residuals, c^2 ln(1 + (r/c)^2) for all, and a slope that is finite at rest."""
+    r = jnp.array([-50.0, -1e-9, 0.0, 1e-4, 0.7, 3.0, 1e5])
+    assert_allclose(softened(r, jnp.asarray(2.0)) ** 2, 4.0 * np.log1p((np.asarray(r) / 2) ** 2), rtol=1e-9, atol=1e-30)
+    slope = jax.vmap(jax.grad(lambda x: softened(x, jnp.asarray(2.0))))(r)
+    assert np.isfinite(np.asarray(slope)).all() and float(slope[2]) == 1.0 and 0 < float(slope[-1]) < 1e-3
+    assert softened(r, None) is r
+
+
+@pytest.fixture(scope="module")
+def start(model) -> dict[str, float]:
+    return {label: factor * float(model.values[label]) for label, factor in zip(LABELS, FACTORS)}
+
+
+@pytest.fixture(scope="module")
+def fitted(campaign, start):
+    said = []
+    return calibrate_jointly(campaign, start=start, options=OPTIONS, progress=said.append), said
+
+
+def test_coefficients_are_found_back(fitted, model) -> None:
+    """By all kinds together, within three of their deviations and 5 %; every kind is said, and every test judged."""
+    result, said = fitted
+    assert result.converged
+    for label in LABELS:
+        one, true = result.parameters[label], float(model.values[label])
+        assert one.identifiable, label
+        assert abs(one.value - true) < min(3 * one.standard_deviation, 0.05 * true) + 0.01 * true, label
+    assert {test.id for test in result.tests} == {"surge-decay", "heave-decay", "sea"}
+    assert result.identifiability.source == "2 decays, 1 tests in waves, 1 static offsets, 2 natural periods"
+    stages = {now.stage for now in said}
+    assert any(stage.startswith("first") for stage in stages) and "round 1" in stages
+    (sea,) = [test for test in result.tests if test.id == "sea"]
+    assert max(abs(band.after) for row in sea.bands.values() for band in row.values()) < 0.1
+
+
+def test_periods_alone(campaign, start, model) -> None:
+    """Two stated periods tell two added masses, and nothing of damping."""
+    result = calibrate_jointly(campaign, kinds=("periods",), start=start, options=OPTIONS)
+    fitted = jh.natural_modes(result.model)
+    for dof in ("surge", "pitch"):
+        assert fitted.of(dof) == pytest.approx(jh.natural_modes(model).of(dof), rel=0.01)
+    assert not result.parameters["column.Cd_t"].identifiable and result.tests == ()
+
+
+def test_outliers_hardly_count(campaign, start, model) -> None:
+    """A decay with a stretch of nonsense in it: squares follow it, Cauchy's loss does not."""
+    from dataclasses import replace
+
+    record = campaign.record("surge-decay")
+    values = {k: v.copy() for k, v in record.values.items()}
+    values["surge"][200:260] += 3.0
+    broken = replace(campaign, records=tuple(replace(r, values=values) if r.id == record.id else r for r in campaign.records))
+    options = {"kinds": ("decays",), "free": ("column.Cd_t", "column.Ca_t"), "options": OPTIONS}
+    begin = {k: v for k, v in start.items() if k in options["free"]}
+    off = {}
+    for loss in ("squares", "cauchy"):
+        result = calibrate_jointly(broken, loss=loss, start=begin, **options)
+        off[loss] = abs(result.parameters["column.Cd_t"].value / float(model.values["column.Cd_t"]) - 1)
+    assert off["cauchy"] < 0.05 < off["squares"]
+
+
+def test_messages(campaign) -> None:
+    with pytest.raises(ValueError, match="found 'seas'"):
+        calibrate_jointly(campaign, kinds=("seas",))
+    from dataclasses import replace
+
+    none = replace(campaign, records=())
+    with pytest.raises(InputError, match="natural period"):
+        calibrate_jointly(none, kinds=("decays", "waves"))

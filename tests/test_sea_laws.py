@@ -1,0 +1,268 @@
+"""Coefficients that depend on the sea state: stretches of a stepped run, laws fitted, judged, written and read back."""
+
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from test_seas import HULL
+
+import jaxhydro as jh
+from calibration import calibrate_in_waves, load_campaign
+from calibration.fit import Progress
+from calibration.outputs import write_calibration
+from calibration.saved import applied
+from calibration.sea_fit import reference_of, with_laws
+from calibration.sea_laws import LawFit, choose_law, error, with_uses
+from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws
+from calibration.seas import Options, compare, seas_of, with_diffraction
+from calibration.stretches import sea_state, stretches, walk
+from jaxhydro.environment import DOFS
+from jaxhydro.loads.sea_state_law import reference_of as reference_of_loads
+from jaxhydro.platform import build
+from jaxhydro.problems import InputError
+from jaxhydro.waves.sea_state import SeaState
+
+OPTIONS = Options(order=1, diffraction="none", cutoff=0.2)
+HEIGHTS, LENGTH, STEP = (2.5, 5.0, 7.5), 400.0, 0.5  # m, s, s
+LABELS = ("column.Cd_t",)
+TRUE = {"column.Cd_t.Hs_exponent": -0.8}
+HEADS = "t,w,surge,heave,pitch"
+
+
+def document() -> dict:
+    channels = {"time": {"column": "t", "unit": "s"}, "surge": {"column": "surge", "unit": "m"},
+                "heave": {"column": "heave", "unit": "m"}, "pitch": {"column": "pitch", "unit": "rad"}}  # fmt: skip
+    tests = [
+        {"id": f"sea-{i + 1}", "kind": "irregular", "file": "sea.csv", "window": [i * LENGTH, (i + 1) * LENGTH - STEP],
+         "transient": 80.0, "peak_period": 10.0, "use": "holdout" if i == 1 else "fit"} for i in range(len(HEIGHTS))
+    ]  # fmt: skip
+    return {"name": "stepped", "platform": "platform.yaml", "channels": channels, "zero": {"window": [0.0, 15.0]},
+            "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]}, "tests": tests}  # fmt: skip
+
+
+def stepped() -> tuple[np.ndarray, np.ndarray]:
+    """A wave record, still for its first 20 s, whose height is stepped."""
+    environment = jh.Environment(1025.0, 200.0)
+    spectrum = {"low": 0.05, "cutoff": 0.18, "seed": 2, "amplitudes": "deterministic"}
+    waves = jh.spectrum_components(lambda w: jh.jonswap(w, 1.0, 10.0, 3.3), len(HEIGHTS) * LENGTH, environment, **spectrum)
+    time = np.arange(0.0, len(HEIGHTS) * LENGTH, STEP)
+    wave = jh.IrregularSea(waves, environment).gauge(time)
+    height = np.interp(time, *zip((0, 0), (20, 0), *((i * LENGTH + s, h) for i, h in enumerate(HEIGHTS) for s in (50, 390))))
+    return time, wave * height
+
+
+def rows(time: np.ndarray, columns: np.ndarray) -> str:
+    return "\n".join([HEADS, *(f"{t:.1f}," + ",".join(f"{x:.9g}" for x in row) for t, row in zip(time, columns.T))]) + "\n"
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """Motions of this package in a sea of three heights, with a drag that falls as the height grows."""
+    folder = tmp_path_factory.mktemp("stepped")
+    (folder / "platform.yaml").write_text(HULL.read_text())
+    (folder / "campaign.yaml").write_text(json.dumps(document()))
+    time, wave = stepped()
+    (folder / "sea.csv").write_text(rows(time, np.stack([wave, *(np.sin(time + k) for k in range(3))])))
+    first = load_campaign(folder)
+    model = with_diffraction(build(first.platform), OPTIONS)
+    made = seas_of(first, model.environment, OPTIONS)
+    true = with_laws(model, LABELS, ("significant_height",), reference_of(made, OPTIONS)).with_values(TRUE)
+    ((run, sea),) = made
+    motion = np.zeros((len(time), 6))
+    for part, found, _ in walk(true, run, stretches(run, run.records, true, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25):
+        motion[part.begin : part.end + 1] = np.asarray(found.response.position)
+    motion -= np.asarray(jh.equilibrium(model))
+    (folder / "sea.csv").write_text(rows(time, np.stack([wave, *(motion[:, DOFS.index(d)] for d in HEADS.split(",")[2:])])))
+    return load_campaign(folder)
+
+
+@pytest.fixture(scope="module")
+def made(campaign):
+    return seas_of(campaign, build(campaign.platform).environment, OPTIONS)
+
+
+def test_stretches_of_a_run(campaign, made) -> None:
+    """One, for a model whose coefficients are constant; else one for every test, with its own sea state, each from where the
+    one before it was: with an exponent of 0 the motion is that of the whole run."""
+    ((run, sea),) = made
+    model = with_diffraction(build(campaign.platform), OPTIONS)
+    options = (OPTIONS.low, OPTIONS.cutoff)
+    (whole,) = stretches(run, run.records, model, *options)
+    assert whole.state is None and [r.id for r in whole.records] == ["sea-1", "sea-2", "sea-3"]
+    law = with_laws(model, LABELS, ("significant_height", "peak_period"), reference_of(made, OPTIONS))
+    parts = stretches(run, run.records, law, *options)
+    assert [part.begin for part in parts] == [0, 800, 1600] and parts[1].end >= parts[2].begin
+    for i, part in enumerate(parts):
+        seen = run.wave[int((i * LENGTH + 80) / STEP) : int((i + 1) * LENGTH / STEP)]
+        assert part.state.significant_height == pytest.approx(4 * np.std(seen), rel=0.02)
+        assert part.state.peak_period == pytest.approx(10.0, rel=0.15)  # 32 waves
+        assert part.state == sea_state(run, part.records[0], *options)
+    one = next(iter(walk(model, run, (whole,), sea.sea, 0.25))).found.response.position
+    for part, found, start in walk(law, run, parts, sea.sea, 0.25):
+        assert (start is None) == (part.begin == 0)
+        there = np.asarray(one[part.begin : part.end + 1])
+        assert_allclose(np.asarray(found.response.position), there, atol=2e-3 * np.abs(there).max())
+
+
+def start_of(campaign) -> dict[str, float]:
+    return {"column.Cd_t": 2.0 * float(build(campaign.platform).values["column.Cd_t"])}
+
+
+@pytest.fixture(scope="module")
+def fitted(campaign, made):
+    return calibrate_in_waves(
+        campaign, free=LABELS, start=start_of(campaign), options=OPTIONS, over=("significant_height",), made=made
+    )
+
+
+def expected_of(campaign, laws_reference: SeaState, state: SeaState) -> float:
+    true = float(build(campaign.platform).values["column.Cd_t"])
+    return true * (state.significant_height / laws_reference.significant_height) ** -0.8
+
+
+def test_a_law_is_found_back(campaign, fitted) -> None:
+    """Exponent and coefficient of the drag that made the records, from two seas; the third, held out, is met too."""
+    exponent = fitted.parameters["column.Cd_t.Hs_exponent"]
+    assert exponent.value == pytest.approx(-0.8, abs=0.1) and exponent.identifiable
+    law = LawFit("significant_height", fitted, error(fitted, ["sea-1", "sea-3"]), error(fitted, ["sea-2"]))
+    assert law.fitted < 0.05 and law.held_out < 0.1
+    state = SeaState(4.0, 10.0)
+    value, deviation = law.coefficient("column.Cd_t", state)
+    assert value == pytest.approx(expected_of(campaign, reference(law), state), rel=0.05) and 0 < deviation < 0.3
+
+
+@pytest.fixture(scope="module")
+def calls() -> list[tuple]:
+    return []
+
+
+@pytest.fixture(scope="module")
+def found(campaign, fitted, calls):
+    """`choose_law` with calibrations that are not made anew: constants that are off in other seas, and one sea alone."""
+    model = with_diffraction(build(campaign.platform), OPTIONS)
+
+    def fake(used, *, free, start, options, over, made, progress):
+        uses = {r.id: r.use for r in used.records}
+        calls.append((uses, dict(start), over, [r.id for run, _ in made for r in run.records]))
+        progress(Progress("round 1 in waves", 1, 0.5, 0.5, "error"))
+        if over:
+            return fitted
+        alone = list(uses.values()).count("fit") == 1
+        one = replace(fitted.parameters["column.Cd_t"], value=1.0 if alone else 1.5)
+        worse = [replace(t, bands={c: {k: v._replace(after=-0.4) for k, v in row.items()} for c, row in t.bands.items()})
+                 for t in fitted.tests]  # fmt: skip
+        return replace(fitted, model=model, parameters={"column.Cd_t": one}, tests=tuple(worse))
+
+    said = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("calibration.sea_laws.calibrate_in_waves", fake)
+        laws = choose_law(
+            campaign, laws=("constant", "significant_height"), free=LABELS, options=OPTIONS, start=start_of(campaign),
+            progress=said.append,
+        )  # fmt: skip
+    return laws, said
+
+
+def test_what_is_fitted_and_what_judges(campaign, found, calls) -> None:
+    """Constants from the start, a law from where they ended, every sea alone; the sea held out chooses."""
+    laws, said = found
+    assert laws.judged_by == ("sea-2",) and not laws.left_out and laws.chosen.name == "significant_height"
+    assert laws.laws[0].held_out == pytest.approx(-np.log(0.6))
+    uses, starts, overs, there = zip(*calls, strict=True)
+    assert overs == ((), ("significant_height",), (), (), ())
+    assert starts[0] == start_of(campaign) and starts[1:] == ({"column.Cd_t": 1.5},) * 4
+    assert uses[:2] == ({"sea-1": "fit", "sea-2": "holdout", "sea-3": "fit"},) * 2
+    assert [[id for id, use in row.items() if use == "fit"] for row in uses[2:]] == [["sea-1"], ["sea-3"], ["sea-2"]]
+    assert there[1] == ["sea-1", "sea-2", "sea-3"] and there[4] == ["sea-2"]
+    assert {sea.id: sea.use for sea in laws.seas} == {"sea-1": "fit", "sea-3": "fit", "sea-2": "holdout"}
+    fractions = [now.fraction for now in said]
+    assert fractions == sorted(fractions) and 0.8 < fractions[-1] <= 1
+    jobs = ["constant", "significant_height", "sea-1 alone", "sea-3 alone", "sea-2 alone"]
+    assert [now.stage.split(":")[0] for now in said] == jobs
+
+
+def test_seas_left_out_in_turn(campaign, fitted) -> None:
+    """Where none is held out, every fitted sea judges the fit to the others."""
+    every = replace(campaign, records=tuple(replace(r, use="fit") for r in campaign.records))
+    left = []
+
+    def fake(used, *, over, **_):
+        left.append((over, [r.id for r in used.records if r.use == "holdout"]))
+        return fitted
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("calibration.sea_laws.calibrate_in_waves", fake)
+        laws = choose_law(every, laws=("constant", "significant_height"), options=OPTIONS)
+    assert laws.left_out and laws.judged_by == ("sea-1", "sea-2", "sea-3") and laws.chosen.name == "constant"
+    assert [held for over, held in left if over] == [[], ["sea-1"], ["sea-2"], ["sea-3"]]
+
+
+@pytest.mark.validate
+def test_the_law_that_made_the_records_is_chosen(campaign) -> None:
+    """With all calibrations made: by the sea in the middle that is held out, and every sea alone has the law's coefficient."""
+    laws = choose_law(
+        campaign, laws=("constant", "significant_height"), free=LABELS, options=OPTIONS, start=start_of(campaign)
+    )
+    plain, law = laws.laws
+    assert laws.chosen is law and law.held_out < 0.1 * plain.held_out and law.fitted < 0.1 * plain.fitted
+    for sea in laws.seas:
+        expected = expected_of(campaign, reference(law), sea.state)
+        assert law.coefficient("column.Cd_t", sea.state)[0] == pytest.approx(expected, rel=0.05)
+        assert sea.calibration.parameters["column.Cd_t"].value == pytest.approx(expected, rel=0.15)
+
+
+def reference(law: LawFit) -> SeaState:
+    found = reference_of_loads(law.calibration.model.loads)
+    assert found is not None
+    return found
+
+
+def test_what_is_written_and_used_again(campaign, found, tmp_path) -> None:
+    """A table, a figure, and a calibration.json whose exponents another model takes on."""
+    laws, _ = found
+    write_calibration(laws.chosen.calibration, tmp_path, figures=False)
+    write_laws(laws, tmp_path)
+    written = json.loads((tmp_path / "sea_laws.json").read_text())
+    assert written["chosen"] == "significant_height" and set(written["sea_states"]) == {"sea-1", "sea-2", "sea-3"}
+    lines = list(csv.DictReader((tmp_path / "coefficients.csv").open()))
+    assert len(lines) == 3 * 3 and {line["source"] for line in lines} == {"this sea alone", "constant", "significant_height"}
+    assert (tmp_path / "figures" / "sea-law-column.Cd_t.png").is_file()
+    model = with_diffraction(build(campaign.platform), OPTIONS)
+    used = applied(tmp_path, model, campaign.platform.name)
+    state = SeaState(4.0, 9.0)
+    expected = laws.chosen.coefficient("column.Cd_t", state)[0]
+    law = next(load for load in used.model.in_sea(state).loads if "column.Cd_t" in load.values)
+    assert float(law.present()["column.Cd_t"]) == pytest.approx(expected, rel=1e-12)
+    tests = compare(campaign, used.model, OPTIONS).tests
+    for test, fitted in zip(tests, laws.chosen.calibration.tests):
+        assert_allclose(test.fit.series[0].simulated, fitted.series[0].simulated, atol=1e-9)
+    data = json.loads((tmp_path / "calibration.json").read_text())
+    del data["baseline"]["sea_state_reference"]
+    (tmp_path / "calibration.json").write_text(json.dumps(data))
+    with pytest.raises(InputError, match="sea_state_reference"):
+        applied(tmp_path, model, campaign.platform.name)
+    write_calibration(laws.laws[0].calibration, tmp_path, figures=False)
+    assert not (tmp_path / "sea_laws.json").exists() and not list((tmp_path / "figures").glob("sea-law-*"))
+
+
+def test_words(found) -> None:
+    laws, _ = found
+    heads, lines = laws_table(laws)
+    assert len(heads) == 5 and lines[1][-1] == "chosen" and lines[1][1] == "1"
+    heads, lines = states_table(laws)
+    assert len(heads) == 4 and lines[0][0] == "column.Cd_t"
+    assert "power of Hs" in sentence(laws)
+
+
+def test_messages(campaign, made) -> None:
+    fewer, seas = with_uses(campaign, made, {"sea-1": "ignore"})
+    assert [r.id for run, _ in seas for r in run.records] == ["sea-2", "sea-3"]
+    with pytest.raises(InputError, match="1 and 1"):
+        choose_law(fewer, laws=("constant",), options=OPTIONS)
+    none, seas = with_uses(campaign, made, dict.fromkeys(("sea-1", "sea-2", "sea-3"), "ignore"))
+    assert seas == ()
+    with pytest.raises(InputError, match="at least one test in waves"):
+        calibrate_in_waves(replace(none), options=OPTIONS)
