@@ -15,6 +15,7 @@ from calibration.runs import KINDS
 from calibration.sea_fit import tests_in_waves
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, moving_channels, sea_step, seas_of, with_diffraction
+from calibration.statements import listed
 from calibration.still import pose_offsets, pose_periods
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
@@ -97,8 +98,8 @@ def calibrate_jointly(
         report(stage, iteration, value, later + (1 - later) * share)
 
     joint = JointFit(sources, fit, space, x, now, loss, problem_in_waves)
-    counted = {"decays": decays, "tests in waves": waves, "static offsets": held, "natural periods": stated_periods}
-    words = ", ".join(f"{len(found)} {name}" for name, found in counted.items() if found)
+    counts = {"decay{}": decays, "test{} in waves": waves, "static offset{}": held, "natural period{}": stated_periods}
+    words = listed([f"{len(there)} {name.format('s' * (len(there) != 1))}" for name, there in counts.items() if there])
 
     def finish() -> Calibration:
         return _conclude(campaign, begin, joint, options, made, words, clock.monotonic() - begun)

@@ -140,8 +140,9 @@ def choose_law(
     for name in laws:
         begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
         whole = one(name, {}, begin, OVERS[name])
-        judged = [error(whole, held)]
-        if not held:
+        if held:
+            judged = [error(whole, held)]
+        else:
             judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, OVERS[name]), [id]) for id in fitted]
         found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
     values = {k: p.value for k, p in found[0].calibration.parameters.items() if not is_exponent(k)}
