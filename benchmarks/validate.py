@@ -16,7 +16,10 @@ import time
 from pathlib import Path
 
 from benchmarks.evidence import (
+    classical_bias,
     common,
+    coverage,
+    global_search,
     measured,
     measured_waves,
     openfast,
@@ -30,7 +33,10 @@ from benchmarks.evidence import (
 from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
 
 PAGE = ROOT / "docs" / "validation.md"
-SECTIONS = ("seeds", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas", "starts", "study")
+SECTIONS = (
+    "seeds", "coverage", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas", "classical_bias",
+    "starts", "global_search", "study",
+)  # fmt: skip
 INTRO = """\
 # Validation
 
@@ -47,6 +53,12 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return starts.run(options.starts, options.processes, figures)
     if name == "measured_waves":
         return measured_waves.run(figures, options.processes)
+    if name == "classical_bias":
+        return classical_bias.run(figures, options.processes)
+    if name == "coverage":
+        return coverage.run(figures, options.processes)
+    if name == "global_search":
+        return global_search.run(figures, options.processes)
     if name == "tuned_seas":
         return tuned_seas.run(figures, options.processes)
     plain = {"periods": periods, "openfast": openfast, "openfast_waves": openfast_waves,

@@ -1,16 +1,27 @@
-"""Fits a jaxhydro model to measurements: `load_campaign`, then `calibrate`, or `calibrate_in_waves`."""
+"""Fits a jaxhydro model to measurements: `load_campaign`, then `calibrate`, `calibrate_in_waves`, or `search` first."""
 
+from calibration.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
 from calibration.campaign import Campaign, load_campaign
 from calibration.candidates import decay_information, effective_noise, expected_information, rank_tests
 from calibration.classical import classical, equivalent_damping
 from calibration.directions import Identifiability, identifiability_of
 from calibration.fit import Interrupted, Progress, calibrate
+from calibration.joint import calibrate_jointly
+from calibration.likelihood import Likelihood, likelihood
 from calibration.model_damping import drag_coefficient, model_damping, motion_shape
+from calibration.profile import Profile, profile
 from calibration.result import Calibration, Estimate, Series, TestFit
+from calibration.sampling import Samples, sample
 from calibration.sea_fit import calibrate_in_waves
+from calibration.sea_laws import SeaLaws, choose_law
+from calibration.search import Found, SearchInterrupted, search
+from calibration.searches import Budget
 
 __all__ = [
-    "Calibration", "Campaign", "Estimate", "Identifiability", "Interrupted", "Progress", "Series", "TestFit", "calibrate",
-    "calibrate_in_waves", "classical", "decay_information", "drag_coefficient", "effective_noise", "equivalent_damping",
-    "expected_information", "identifiability_of", "load_campaign", "model_damping", "motion_shape", "rank_tests",
+    "Bootstrap", "Budget", "Calibration", "Campaign", "Estimate", "Found", "Identifiability", "Interrupted",
+    "Likelihood", "Profile", "Progress", "Samples", "SeaLaws", "SearchInterrupted", "Series", "TestFit",
+    "bootstrap_blocks", "bootstrap_repeats", "calibrate", "calibrate_in_waves", "calibrate_jointly", "choose_law",
+    "classical", "decay_information", "drag_coefficient", "effective_noise", "equivalent_damping",
+    "expected_information", "identifiability_of", "likelihood", "load_campaign", "model_damping", "motion_shape",
+    "profile", "rank_tests", "sample", "search",
 ]  # fmt: skip

@@ -18,6 +18,8 @@ from calibration.sea_fit import calibrate_in_waves
 from calibration.sea_laws import OVERS, SeaLaws, choose_law
 from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws
 from calibration.sea_residuals import Objective
+from calibration.search import SearchInterrupted, search
+from calibration.searches import Budget
 from calibration.seas import Diverged, Options, compare
 from calibration.seas_outputs import COMPARISON, write_comparison
 from jaxhydro.console import complain, progress, say, table
@@ -67,12 +69,16 @@ def run(
     law: str = "constant",
     loss: Loss = "squares",
     start: Path | None = None,
+    method: str | None = None,
+    seed: int = 0,
+    seconds: float = 60.0,
 ) -> Calibration | None:
     """Calibrate, write and print the result; of a fit that the user stops, what was reached; None if that is no number.
 
     `tests`: to "decays", to those in "waves" or to "all" kinds; in waves by `objective`. `law`, of tests in waves alone: how
     coefficients depend on the sea state, a `Law` or "choose". `loss` is that of all kinds together. `start` is a calibration
-    whose values are begun from. Raises InputError, and Interrupted where nothing was reached.
+    whose values are begun from; `method` a global search of the decays' coefficients that finds them, from a `seed` and in so
+    many CPU `seconds`. Raises InputError, and Interrupted where nothing was reached.
     """
     if law != "constant" and tests != "waves":
         raise InputError("--law", [Problem("", f"constant, where {tests} are fitted, or --tests waves", law)])
@@ -80,12 +86,17 @@ def run(
         raise InputError("--loss", [Problem("", f"squares, where {tests} are fitted, or --tests all", loss)])
     if law == "choose" and objective != "bands":
         raise InputError("--objective", [Problem("", "bands, by which laws are chosen", objective)])
+    if method is not None and (start is not None or tests == "waves"):
+        expected = "no --start beside it" if start is not None else "decays to search with"
+        raise InputError("--method", [Problem("", expected, method)])
     laws: SeaLaws | None = None
     begin: dict[str, Any] = {}
     if start is not None:
         used = applied(start, build(campaign.platform), campaign.platform.name)
         begin = {"start": used.values}
         _told(used, start, campaign)
+    if method is not None:
+        begin = {"start": _searched(campaign, method, seed, seconds)}
     try:
         with progress() as show:
             if law == "choose":
@@ -130,6 +141,22 @@ def run(
     if not result.converged:
         complain("not converged: the results are marked so")
     return result
+
+
+def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> dict[str, float]:
+    """Where a global search ends; stopped by the user, where it has got to."""
+    try:
+        with progress() as show:
+            found = search(campaign, method=method, seed=seed, budget=Budget(seconds), progress=show)
+    except ValueError as error:
+        raise InputError("--method", [Problem("", "a search that can be run", str(error))]) from None
+    except SearchInterrupted as stopped:
+        if stopped.partial is None:
+            raise
+        found = stopped.partial
+    spent = f"{found.simulations:.0f} simulations, {found.seconds:.0f} s CPU ({found.ended})"
+    say(f"Search by {found.method}: J {found.objective:.4g}, {spent}")
+    return found.values
 
 
 def simulate_campaign(

@@ -121,7 +121,7 @@ class JointFit:
             variance = np.maximum(spare * np.array([_mean_square(g, self.loss) for g in groups]), least)
             found["waves"] = Errors(variance, np.array([1.0 if b else memory(g) for g, b in zip(groups, bands)]))
         if sources.offsets is not None:
-            r = np.asarray(eqx.filter_jit(sources.offsets.residuals)(x))
+            r = np.asarray(_offsets(sources.offsets, x))
             least_offset = max(2.0 * _mean_square(r, self.loss), LEAST["offsets"] ** 2)
             found["offsets"] = Errors(np.array([least_offset]), np.ones(1))
         if sources.periods is not None:
@@ -238,6 +238,11 @@ class JointFit:
         x = np.asarray(self.unknowns.shared)
         return stated(self.space, model, x, (products, parts[0], parts[1], parts[2]), ridge, self.width, source)
 
+
+
+@eqx.filter_jit
+def _offsets(source: OffsetProblem, x: Float[Array, " p"]) -> Float[Array, " n"]:
+    return source.residuals(x)
 
 
 def _mean_square(residual: np.ndarray, loss: Loss) -> float:

@@ -74,6 +74,15 @@ class Loss(StrEnum):
     cauchy = "cauchy"
 
 
+class Method(StrEnum):
+    """See `calibration.search`."""
+
+    multistart = "multistart"
+    cma_es = "cma-es"
+    ga = "ga"
+    de = "de"
+
+
 class Law(StrEnum):
     """How coefficients depend on the sea state: see `calibration.choose_law`."""
 
@@ -180,4 +189,9 @@ Robust = Annotated[Loss, typer.Option(help="With --tests all: cauchy lets outlie
 OverSea = Annotated[
     Law, typer.Option(help="In waves, drag and damping as powers of the sea state; choose: the law that held-out seas prefer.")
 ]
+GlobalSearch = Annotated[
+    Method | None, typer.Option(help="Search the decays' coefficients within their bounds first, wherever the platform begins.")
+]
+SearchSeed = Annotated[int, typer.Option(help="Of the search.", min=0)]
+SearchSeconds = Annotated[float, typer.Option(help="CPU time of the search, s.", min=1.0)]
 Begin = Annotated[Path | None, typer.Option(help="A calibration.json whose coefficients are begun from.")]

@@ -148,6 +148,9 @@ def calibrate(
     objective: arguments.Aim = arguments.Objective.bands,
     law: arguments.OverSea = arguments.Law.constant,
     loss: arguments.Robust = arguments.Loss.squares,
+    method: arguments.GlobalSearch = None,
+    search_seed: arguments.SearchSeed = 0,
+    search_seconds: arguments.SearchSeconds = 60.0,
     start: arguments.Begin = None,
 ) -> None:
     """Fit a platform's coefficients to the tests marked `fit`: calibration.json, simulated.nc, figures.
@@ -156,7 +159,8 @@ def calibrate(
     together, to static offsets and to natural periods that the manifest states.
     """
     kind = None if tests is None else tests.value
-    how = {"objective": objective.value, "law": law.value.replace("-", "_"), "loss": loss.value, "start": start}
+    how: dict[str, Any] = {"objective": objective.value, "law": law.value.replace("-", "_"), "loss": loss.value, "start": start}
+    how |= {"method": None if method is None else method.value, "seed": search_seed, "seconds": search_seconds}
     _calibrate(campaign, out, figures, None, kind, **how)
 
 

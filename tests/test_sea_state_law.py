@@ -86,9 +86,8 @@ def test_the_sea_state_of_components(height: float, period: float, seed: int | N
     """Height and peak period of a JONSWAP sea by its components: deterministic amplitudes, and Rayleigh's."""
     environment = jh.Environment(1025.0, 200.0)
     amplitudes = "deterministic" if seed is None else "rayleigh"
-    waves = jh.spectrum_components(
-        lambda w: jh.jonswap(w, height, period), 3600.0, environment, low=0.03, cutoff=0.5, seed=seed or 0, amplitudes=amplitudes
-    )
+    options = {"low": 0.03, "cutoff": 0.5, "seed": seed or 0, "amplitudes": amplitudes}
+    waves = jh.spectrum_components(lambda w: jh.jonswap(w, height, period), 3600.0, environment, **options)
     state = state_of(waves)
     assert state.significant_height == pytest.approx(height, rel=0.02 if seed is None else 0.15)
     assert state.peak_period == pytest.approx(period, rel=0.03 if seed is None else 0.08)

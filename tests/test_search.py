@@ -1,0 +1,240 @@
+"""Global searches: the coefficients of a simulated decay from a far start; seeds, budgets, stops, bad input."""
+
+import dataclasses
+import math
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from test_calibration import SHIP, SHIP_TRUE, model_of, roll_decay, write
+
+import jaxhydro as jh
+from calibration import load_campaign
+from calibration.campaign import Campaign
+from calibration.fit import Fit, Progress, run
+from calibration.residuals import Unknowns, first_guess
+from calibration.search import Found, SearchInterrupted, posed, search
+from calibration.searches import CMAES, METHODS, AbstractSearch, Budget, DifferentialEvolution, Genetic, MultiStart, Task
+from calibration.searches.base import BAD, even
+from calibration.searches.objective import coordinates, ranges
+from jaxhydro.problems import InputError
+
+NOISE, OFFSET = 2e-4, 3e-3  # rad
+# one size of batch, CMA-ES's apart: less to compile
+_METHODS: tuple[AbstractSearch, ...] = (
+    MultiStart(starts=33), CMAES(), Genetic(population=33), DifferentialEvolution(population=11),
+)  # fmt: skip
+CHOSEN = {method.name: method for method in _METHODS}
+ENOUGH = Budget(seconds=60.0, simulations=3000.0, objective=0.005)  # the noise alone is 0.002
+LABELS = list(SHIP_TRUE)
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    """A noisy roll decay of a body without members, its sensor off by OFFSET."""
+    time, roll = roll_decay(12.0, 30.0)
+    noisy = roll + OFFSET + NOISE * np.random.default_rng(3).standard_normal(len(time))
+    tests = {"roll": ({"kind": "decay", "degree_of_freedom": "roll", "use": "fit"}, time, {"roll": noisy})}
+    # the declared values are far from the truth, and not in the middle of what is searched
+    document = SHIP | {"added_mass": {"A44": 60.0}, "linear_damping": {"B44": 12.0}, "quadratic_damping": {"B44": 5.0}}
+    return load_campaign(write(tmp_path_factory.mktemp("ship"), document, tests, noise={"roll": NOISE}))
+
+
+@pytest.fixture(scope="module")
+def truth(campaign: Campaign) -> float:
+    """J of the true coefficients, releases fitted."""
+    problem, records = posed(campaign)
+    x = jnp.array([p.transform.inverse(SHIP_TRUE[p.label]) for p in problem.space.free])
+    fit = Fit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
+    run(fit)
+    return fit.objective()
+
+
+@pytest.fixture(scope="module")
+def found(campaign: Campaign) -> dict[str, Found]:
+    """Every method once."""
+    return {name: search(campaign, method=method, seed=1, budget=ENOUGH) for name, method in CHOSEN.items()}
+
+
+@pytest.mark.parametrize("name", CHOSEN)
+def test_every_method_finds_the_coefficients(name: str, found: dict[str, Found], truth: float) -> None:
+    one = found[name]
+    assert one.method == name and one.ended == "reached" and truth < one.objective <= ENOUGH.objective
+    assert set(one.values) == set(SHIP_TRUE)
+    period = [jh.natural_modes(model_of(SHIP, values)).of("roll") for values in (one.values, SHIP_TRUE)]
+    assert period[0] == pytest.approx(period[1], rel=2e-3)
+    assert one.values["quadratic_damping.B44"] == pytest.approx(SHIP_TRUE["quadratic_damping.B44"], rel=0.2)
+
+
+@pytest.mark.parametrize("name", CHOSEN)
+def test_the_history_falls_and_ends_where_the_search_did(name: str, found: dict[str, Found]) -> None:
+    one, history = found[name], found[name].history
+    assert (np.diff(history.objective) <= 0).all() and history.objective[-1] == one.objective
+    assert (np.diff(history.simulations) >= 0).all() and history.simulations[-1] == one.simulations
+    assert (np.diff(history.seconds) >= 0).all() and history.seconds[-1] == one.seconds
+    assert history.until(one.objective) == (history.simulations[-2], history.seconds[-2])
+    assert history.until(0.5 * one.objective) is None
+
+
+@pytest.mark.parametrize("name", CHOSEN)
+def test_the_same_seed_gives_the_same_search_and_leaves_others_chance_alone(name: str, campaign: Campaign) -> None:
+    def state() -> np.ndarray:
+        return np.random.get_state()[1].copy()  # noqa: NPY002
+
+    budget, before = Budget(math.inf, 400.0), state()
+    one, same, other = (search(campaign, method=CHOSEN[name], seed=seed, budget=budget) for seed in (7, 7, 8))
+    assert one.values == same.values and one.objective == same.objective and one.simulations == same.simulations
+    assert one.values != other.values
+    np.testing.assert_array_equal(state(), before)
+
+
+@pytest.mark.parametrize("name", CHOSEN)
+def test_a_budget_of_simulations_is_kept_to_within_a_batch(name: str, campaign: Campaign) -> None:
+    one = search(campaign, method=CHOSEN[name], seed=2, budget=Budget(math.inf, 400.0))
+    assert one.ended == "budget" and 400 <= one.simulations < 400 + 36
+
+
+def test_a_budget_of_seconds_ends_a_search(campaign: Campaign) -> None:
+    one = search(campaign, method=CHOSEN["de"], seed=2, budget=Budget(1.0))
+    assert one.ended == "budget" and 1.0 <= one.seconds < 2.0
+
+
+def test_multi_start_settles_where_the_truth_is(campaign: Campaign, truth: float) -> None:
+    said: list[Progress] = []
+    one = search(campaign, method=MultiStart(starts=33, finalists=1), seed=3, progress=said.append)
+    assert one.ended == "settled" and one.objective == pytest.approx(truth, rel=1e-3)
+    assert said[-1].stage == "start 1 of 1: noise level" and said[-1].objective == one.objective
+    model = jh.build(campaign.platform).with_values(one.values)  # what `calibrate(start=...)` begins from
+    assert jh.natural_modes(model).of("roll") == pytest.approx(jh.natural_modes(model_of(SHIP, SHIP_TRUE)).of("roll"), rel=1e-3)
+
+
+def test_ctrl_c_gives_what_was_reached(campaign: Campaign) -> None:
+    said: list[Progress] = []
+
+    def stop(p: Progress) -> None:
+        said.append(p)
+        if sum(math.isfinite(p.objective) for p in said) == 2:
+            raise KeyboardInterrupt
+
+    for name in CHOSEN:
+        said.clear()
+        with pytest.raises(SearchInterrupted) as caught:
+            search(campaign, method=CHOSEN[name], seed=1, progress=stop)
+        partial = caught.value.partial
+        assert partial is not None and partial.ended == "interrupted" and math.isfinite(partial.objective)
+        assert set(partial.values) == set(SHIP_TRUE)
+        assert all(p.stage and 0 <= p.fraction <= 1 for p in said)
+
+
+def test_ctrl_c_before_anything_is_reached(campaign: Campaign) -> None:
+    def stop(_: Progress) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(SearchInterrupted) as caught:
+        search(campaign, method=CHOSEN["de"], progress=stop)
+    assert caught.value.partial is None
+
+
+def test_j_is_the_contracts_and_free_of_offsets(campaign: Campaign) -> None:
+    problem, records = posed(campaign)
+    x = jnp.array([p.transform.inverse(SHIP_TRUE[p.label]) for p in problem.space.free])
+    fit = Fit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
+    run(fit)
+    at = np.asarray(fit.unknowns.shared)[None]
+    task = Task(problem, records, fit.unknowns.own, Budget())
+    # its prior keeps the fit's offset from the mean residual by next to nothing
+    assert task.simulate(at)[0] == pytest.approx(fit.objective(), rel=1e-6)
+    moved = fit.unknowns.own.at[0, 2].add(1.0)
+    assert Task(problem, records, moved, Budget()).simulate(at)[0] == pytest.approx(fit.objective(), rel=1e-6)
+
+
+def test_a_simulation_without_a_number_counts_as_a_bad_one(campaign: Campaign) -> None:
+    problem, records = posed(campaign)
+    task = Task(problem, records, first_guess(records, problem.data), Budget())
+    task.batch = 7
+    x = np.array(problem.space.start)
+    values = task.simulate(np.array([x, x * np.nan] * 5))  # two batches, the second one padded
+    assert (values[1::2] == BAD).all() and (values[::2] == values[0]).all() and values[0] < BAD
+    assert task.best == values[0] and task.simulations == 10
+    bad = Task(problem, records, first_guess(records, problem.data) * np.nan, Budget())
+    assert bad.simulate(x[None])[0] == BAD and math.isinf(bad.best)
+
+
+def test_descents_that_are_lost_are_given_up(campaign: Campaign) -> None:
+    """A release that is no number makes every descent's simulations none: the search ends without an answer, and says so."""
+    record = dataclasses.replace(campaign.records[0], values={"roll": campaign.records[0].values["roll"] * np.nan})
+    with pytest.raises(ValueError, match="expected enough for one simulation"):
+        search(dataclasses.replace(campaign, records=(record,)), method=MultiStart(starts=33, finalists=2))
+
+
+def test_points_of_the_cube_are_shares_of_logarithmic_ranges(campaign: Campaign) -> None:
+    problem, _ = posed(campaign, factor=10.0)
+    for share in (0.0, 0.25, 0.5, 1.0):
+        values = problem.space.values(jnp.asarray(coordinates(problem.space, np.full((1, 3), share))[0]))
+        for label, value in values.items():
+            declared = float(problem.model.values[label])
+            assert float(value) == pytest.approx(declared * 100 ** (share - 0.5), rel=1e-4)
+
+
+def test_ranges_keep_to_what_is_given_and_what_is_physical(campaign: Campaign) -> None:
+    model = jh.build(campaign.platform)
+    given = {"added_mass.A44": (20.0, 40.0)}
+    assert ranges(model, LABELS, given, 10.0, "x") == given | {
+        "linear_damping.B44": pytest.approx((1.2, 120.0)), "quadratic_damping.B44": pytest.approx((0.5, 50.0)),
+    }  # fmt: skip
+    with pytest.raises(InputError, match="expected bounds to search between") as caught:
+        ranges(model.with_values({"linear_damping.B44": 0.0}), LABELS, given, 10.0, "x")
+    assert [p.where for p in caught.value.problems] == ["calibrate.bounds.linear_damping.B44"]
+
+
+def test_batches_are_even() -> None:
+    assert [even(n) for n in (1, 11, 36, 45, 64, 99, 165)] == [1, 11, 36, 23, 32, 33, 33]
+    found = {name: method().together(11) for name, method in METHODS.items()}
+    assert found == {"multistart": 32, "cma-es": 11, "ga": 33, "de": 33}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"method": "cmaes"}, "method: expected one of multistart, cma-es, ga, de, found 'cmaes'. Did you mean 'cma-es'?"),
+        ({"seed": -1}, "seed: expected a whole number from 0, found -1"),
+        ({"seed": 1.5}, "seed: expected a whole number from 0, found 1.5"),
+        ({"budget": Budget(0.0)}, "budget: expected seconds and simulations above 0, found 0.0"),
+        ({"budget": Budget(math.nan)}, "budget: expected seconds and simulations above 0, found nan"),
+        ({"budget": Budget(math.inf), "method": "ga"}, "budget: expected a limit, as ga does not end of its own"),
+        ({"factor": 1.0}, "factor: expected a number above 1, found 1.0"),
+        ({"method": "cma-es", "free": ["added_mass.A44"]}, "cma-es: expected two coefficients or more, found 1"),
+    ],
+)
+def test_bad_options_are_told(options: dict, words: str, campaign: Campaign) -> None:
+    with pytest.raises(ValueError) as caught:
+        search(campaign, **options)
+    assert words in str(caught.value)
+
+
+def test_options_of_a_method_are_above_zero() -> None:
+    for make, words in (
+        (lambda: MultiStart(starts=0), "multistart: expected starts above 0, found 0"),
+        (lambda: CMAES(step=-0.1), "cma-es: expected step above 0, found -0.1"),
+    ):
+        with pytest.raises(ValueError) as caught:
+            make()
+        assert words in str(caught.value)
+
+
+def test_a_missing_package_is_told(campaign: Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(ValueError, match="expected the package pymoo") as caught:
+        search(campaign, method="ga")
+    assert "jaxhydro[search]" in str(caught.value)
+
+
+def test_nothing_to_search_is_told(campaign: Campaign) -> None:
+    bare = {key: value for key, value in SHIP.items() if key not in ("added_mass", "linear_damping", "quadratic_damping")}
+    for changed, words in (
+        ({"records": ()}, "at least one decay test marked"),
+        ({"platform": jh.Platform.model_validate(bare)}, "at least one free parameter"),
+    ):
+        with pytest.raises(InputError) as caught:
+            search(dataclasses.replace(campaign, **changed))
+        assert words in str(caught.value)
