@@ -51,9 +51,8 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
 }
 NUMERICS = [name for layer in LAYERS[:13] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
-    "matplotlib": {
-        "jaxhydro.plot", *(f"calibration.{name}" for name in ("plot", "seas_plot", "sea_laws_plot", "uncertainty_plot")),
-    },  # fmt: skip
+    "matplotlib": {"jaxhydro.plot"}
+    | {f"calibration.{name}" for name in ("plot", "seas_plot", "sea_laws_plot", "uncertainty_plot")},
     "PIL": {"jaxhydro.plot"},
     "ruamel": {"jaxhydro.problems"},
     "yaml": set(),

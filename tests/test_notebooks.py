@@ -10,6 +10,7 @@ import pytest
 
 FOLDER = Path(__file__).resolve().parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+LONG = ("03_sea_state_dependent_damping",)  # several calibrations in waves: minutes, short as they are
 SHORT = {"MPLBACKEND": "Agg", "JAXHYDRO_NOTEBOOK_DURATION": "720"}  # s
 
 
@@ -21,7 +22,11 @@ def test_notebooks_are_numbered() -> None:
     assert NOTEBOOKS and all(path.stem[:2].isdigit() and path.stem[2] == "_" for path in NOTEBOOKS)
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=[pytest.mark.validate] if path.stem in LONG else []) for path in NOTEBOOKS],
+    ids=lambda path: path.stem,
+)
 def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
     """Its code in one plain process, as it stands."""
     script = tmp_path / f"{path.stem}.py"

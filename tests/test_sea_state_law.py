@@ -73,7 +73,7 @@ def test_exponents_added_to_what_is_there(models) -> None:
     law = next(load for load in more if isinstance(load, SeaStateLaw) and label in load.values)
     assert float(law.values[exponent_label("column.Cd_t", "peak_period")]) == 1.0
     assert with_exponents(plain.loads, {}, REFERENCE) == plain.loads
-    with pytest.raises(KeyError, match="no coefficient 'colunm.Cd_t'"):
+    with pytest.raises(KeyError, match=r"no coefficient 'colunm\.Cd_t'"):
         with_exponents(plain.loads, {exponent_label("colunm.Cd_t", "peak_period"): 0.0}, REFERENCE)
     with pytest.raises(ValueError, match="expected the reference"):
         with_exponents(laws.loads, {label: 0.0}, SeaState(5.0, 10.0))
