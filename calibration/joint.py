@@ -121,7 +121,7 @@ def _conclude(
     spread, known = joint.uncertainty(words)
     parameters = estimates(joint.space, declared, x, spread)
     tests = list(joint.tests)
-    lost = strays(tests, declared)
+    lost = strays(tests, declared) if joint.loss == "squares" else []  # outliers are no sign of a wrong model
     notes: tuple[str, ...] = ()
     if tests:
         tests += held_out(campaign, declared, model)
