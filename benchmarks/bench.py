@@ -1,6 +1,6 @@
 """Speed as ratios in one run: against plain NumPy, finite differences and population searches.
 
-    python -m benchmarks.bench [--quick] [--only decay|sea|fit] [--budget SECONDS] [--out FILE]
+    python -m benchmarks.bench [--quick] [--only decay|sea|fit] [--budget SECONDS] [--searches DE ...] [--out FILE]
 
 writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
 contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run, `--only` a part; these write only where
@@ -24,6 +24,7 @@ from benchmarks.bench_timing import Row, pin
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.md"
 HEADINGS = ("what", "result", "goal", "prototype")
+SEARCHES = ["DE", "GA", "CMA-ES"]
 PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "pymoo")
 
 
@@ -68,6 +69,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a smoke run of a minute, its numbers worth nothing")
     parser.add_argument("--budget", type=float, help="CPU seconds for each population search (300; quick: 0.3)")
+    parser.add_argument("--searches", nargs="+", choices=SEARCHES, default=SEARCHES, help="population searches to compare with")
     parser.add_argument("--only", choices=("decay", "sea", "fit"), help="one part of the three")
     parser.add_argument("--out", type=Path, help="file to write (benchmarks/results.md; quick or a part: none)")
     arguments = parser.parse_args()
@@ -88,7 +90,7 @@ def main() -> None:
     parts = {
         "decay": lambda: bench_decay.measure(arguments.quick),
         "sea": lambda: bench_sea.measure(arguments.quick),
-        "fit": lambda: bench_fit.measure(budget, arguments.quick),
+        "fit": lambda: bench_fit.measure(budget, arguments.quick, arguments.searches),
     }
     for more, said in chain.from_iterable(part() for name, part in parts.items() if arguments.only in (None, name)):
         rows += more
@@ -96,7 +98,9 @@ def main() -> None:
         for row in more:
             console.print(f"{row.what}: {row.result}", style="dim", highlight=False)
     options = (" --quick" if arguments.quick else "") + (f" --only {arguments.only}" if arguments.only else "")
-    options += f" --budget {budget:g}" if arguments.only in (None, "fit") else ""
+    if arguments.only in (None, "fit"):
+        options += f" --budget {budget:g}"
+        options += "" if arguments.searches == SEARCHES else f" --searches {' '.join(arguments.searches)}"
     begun = [
         f"{datetime.date.today().isoformat()}, `python -m benchmarks.bench{options}`. Process CPU time on one core, "
         "contestants in turns, medians; ratios are medians over turns. Compilation is apart everywhere.",

@@ -9,7 +9,7 @@ their populations are simulated in batches.
 import dataclasses
 import itertools
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -63,7 +63,7 @@ def descend(problem: Problem, records) -> Descent:
     return Descent(fit, seconds, whole, sum(parts), (near + 1, ends[near] - begun, sum(parts[: near + 1])))
 
 
-def measure(budget: float, quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
+def measure(budget: float, quick: bool, searches: Sequence[str] = tuple(SEARCHES)) -> Iterator[tuple[list[Row], list[str]]]:
     """Least squares, then each population search until within a hundredth of its J, or `budget` seconds of CPU."""
     campaign = load_campaign(CAMPAIGN)
     some = tuple(record for record in campaign.records if record.id == "heave-1" or not quick)
@@ -80,7 +80,7 @@ def measure(budget: float, quick: bool) -> Iterator[tuple[list[Row], list[str]]]
     turns = contest(contestants, 2 if quick else 5)
     budgeted = Budget(budget, objective=CLOSE * target)
     found = {
-        name: search(Task(problem, records, fit.unknowns.own, budgeted), METHODS[name.lower()](), SEED) for name in SEARCHES
+        name: search(Task(problem, records, fit.unknowns.own, budgeted), METHODS[name.lower()](), SEED) for name in searches
     }
     yield report(first, again, target, turns["one"].median, turns["batch"].over(turns["one"]) / BATCH, found)
 
