@@ -92,8 +92,10 @@ def run(
     laws: SeaLaws | None = None
     begin: dict[str, Any] = {}
     if start is not None:
-        used = applied(start, build(campaign.platform), campaign.platform.name)
-        begin = {"start": used.values}
+        declared = build(campaign.platform)
+        used = applied(start, declared, campaign.platform.name)
+        # still water has no sea state: exponents of a law are begun from in waves only
+        begin = {"start": {k: v for k, v in used.values.items() if k in declared.values or tests == "waves"}}
         _told(used, start, campaign)
     if method is not None:
         begin = {"start": _searched(campaign, method, seed, seconds)}

@@ -24,6 +24,7 @@ from calibration.seas_results import in_bands
 from calibration.stretches import sea_state
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import exponent_label, is_exponent, with_exponents
+from jaxhydro.loads.sea_state_law import reference_of as law_reference
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
@@ -139,9 +140,11 @@ def calibrate_in_waves(
     labels = list(labels_of(campaign, declared, moved, free))
     if over:
         drag = [label for label in labels if family(label) == "damping"]
-        declared = with_laws(declared, drag, over, reference_of(made, options))
+        declared = with_laws(declared, drag, over, law_reference(declared.loads) or reference_of(made, options))
     exponents = [label for label in declared.values if is_exponent(label) and label not in labels]
-    declared = declared.with_values(start or {})
+    # exponents of a law that is not asked for are left out
+    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not is_exponent(label)}
+    declared = declared.with_values(begin)
     space = space_of(campaign, [*labels, *exponents], declared, {label: (0.0, PLAIN) for label in exponents})
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
