@@ -326,20 +326,17 @@ def sea() -> jh.IrregularSea:
     return jh.IrregularSea(waves, environment)
 
 
-def test_in_an_irregular_sea_by_every_scheme(sea) -> None:
-    """Adams-Bashforth, RK4 and Tsit5 agree, with both memories in the state; the laws make a difference."""
+def test_in_an_irregular_sea(sea) -> None:
+    """Adams-Bashforth and Tsit5 (whose loop is also RK4's) agree, with both memories in the state; the laws make a difference."""
     model, times = small(KEULEGAN_CARPENTER, HIGH_PASS), np.arange(0.0, 60.0, 0.5)
-    tsit5, rk4, ab4 = (
-        np.asarray(jh.simulate(model, times, sea, method=method, step=0.1).position) for method in ("tsit5", "rk4", "ab4")
-    )
+    tsit5, ab4 = (np.asarray(jh.simulate(model, times, sea, method=method, step=0.1).position) for method in ("tsit5", "ab4"))
     scale = np.abs(tsit5).max(axis=0) + 1e-3
-    assert np.abs((rk4 - tsit5) / scale).max() < 1e-4
     assert np.abs((ab4 - tsit5) / scale).max() < 1e-3
     plain = np.asarray(jh.simulate(small(None, None), times, sea, method="ab4", step=0.1).position)
     assert np.abs((plain - ab4) / scale).max() > 0.01
 
 
-@pytest.mark.parametrize("method", ["tsit5", "ab4"])
+@pytest.mark.parametrize("method", ["tsit5", pytest.param("ab4", marks=pytest.mark.validate)])
 def test_gradients_through_a_memory(method: str, monkeypatch) -> None:
     """Tangents that run along = linearisations = reverse = differences, for coefficient, share, cut-off and exponent."""
     model, times = small(KEULEGAN_CARPENTER, HIGH_PASS), jnp.arange(0.0, 24.0, 0.5)
