@@ -327,7 +327,7 @@ def sea() -> jh.IrregularSea:
 
 
 def test_in_an_irregular_sea(sea) -> None:
-    """Adams-Bashforth and Tsit5 (whose loop is also RK4's) agree, with both memories in the state; the laws make a difference."""
+    """Adams-Bashforth and Tsit5, whose loop RK4 shares, agree with both memories in the state; the laws matter."""
     model, times = small(KEULEGAN_CARPENTER, HIGH_PASS), np.arange(0.0, 60.0, 0.5)
     tsit5, ab4 = (np.asarray(jh.simulate(model, times, sea, method=method, step=0.1).position) for method in ("tsit5", "ab4"))
     scale = np.abs(tsit5).max(axis=0) + 1e-3
