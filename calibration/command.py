@@ -2,6 +2,7 @@
 
 import time as clock
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -26,6 +27,11 @@ from jaxhydro.console import complain, progress, say, table
 from jaxhydro.files import check_folder
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
+
+ENDED = {
+    "settled": "ended of its own", "reached": "ended of its own", "budget": "cut off by --search-seconds",
+    "interrupted": "stopped by the user",
+}  # fmt: skip
 
 
 def load(
@@ -81,14 +87,15 @@ def run(
     many CPU `seconds`. Raises InputError, and Interrupted where nothing was reached.
     """
     if law != "constant" and tests != "waves":
-        raise InputError("--law", [Problem("", f"constant, where {tests} are fitted, or --tests waves", law)])
+        raise InputError("--law", [Problem("", f"--tests waves beside {law}", f"--tests {tests}")])
     if loss != "squares" and tests != "all":
-        raise InputError("--loss", [Problem("", f"squares, where {tests} are fitted, or --tests all", loss)])
+        raise InputError("--loss", [Problem("", f"--tests all beside {loss}", f"--tests {tests}")])
     if law == "choose" and objective != "bands":
         raise InputError("--objective", [Problem("", "bands, by which laws are chosen", objective)])
-    if method is not None and (start is not None or tests == "waves"):
-        expected = "no --start beside it" if start is not None else "decays to search with"
-        raise InputError("--method", [Problem("", expected, method)])
+    if method is not None and tests == "waves":
+        raise InputError("--method", [Problem("", "--tests decays or all, since decays are searched with", f"--tests {tests}")])
+    if method is not None and start is not None:
+        raise InputError("--method", [Problem("", "no --start beside it", f"--start {start}")])
     laws: SeaLaws | None = None
     begin: dict[str, Any] = {}
     if start is not None:
@@ -97,8 +104,10 @@ def run(
         # still water has no sea state: exponents of a law are begun from in waves only
         begin = {"start": {k: v for k, v in used.values.items() if k in declared.values or tests == "waves"}}
         _told(used, start, campaign)
+    words: tuple[str, ...] = ()
     if method is not None:
-        begin = {"start": _searched(campaign, method, seed, seconds)}
+        values, said = _searched(campaign, method, seed, seconds)
+        begin, words = {"begin": values}, (f"begun from a search: {said}",)
     try:
         with progress() as show:
             if law == "choose":
@@ -117,6 +126,7 @@ def run(
         if stopped.partial is None:
             raise
         result = tables.unfinished(stopped.partial)
+    result = replace(result, notes=(*words, *result.notes))
     try:
         write_calibration(result, out, figures)
         if laws is not None:
@@ -145,8 +155,8 @@ def run(
     return result
 
 
-def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> dict[str, float]:
-    """Where a global search ends; stopped by the user, where it has got to."""
+def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tuple[dict[str, float], str]:
+    """Where a global search ends, and what it took; stopped by the user, where it has got to."""
     try:
         with progress() as show:
             found = search(campaign, method=method, seed=seed, budget=Budget(seconds), progress=show)
@@ -156,9 +166,10 @@ def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> dic
         if stopped.partial is None:
             raise
         found = stopped.partial
-    spent = f"{found.simulations:.0f} simulations, {found.seconds:.0f} s CPU ({found.ended})"
-    say(f"Search by {found.method}: J {found.objective:.4g}, {spent}")
-    return found.values
+    spent = f"{found.simulations:.0f} simulations, {found.seconds:.0f} s CPU"
+    words = f"{found.method}, seed {seed}, J {found.objective:.4g}, {spent}; {ENDED[found.ended]}"
+    say(f"Search: {words}")
+    return found.values, words
 
 
 def simulate_campaign(

@@ -159,6 +159,7 @@ def calibrate(
     free: Sequence[str] | None = None,
     progress: Callable[[Progress], None] | None = None,
     start: dict[str, float] | None = None,
+    begin: dict[str, float] | None = None,
 ) -> Calibration:
     """Fit the declared model's coefficients to the decay records marked `fit`, all together.
 
@@ -168,7 +169,8 @@ def calibrate(
     late cycles matters. Where the fit comes down to the noise everywhere, a last pass weighs every sample by its noise, which
     is maximum likelihood. Initial position, rate and sensor offset of every record and channel are free.
 
-    `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
+    `free` are labels or patterns (the manifest's by default), `start` values in place of the platform's, where the fit begins
+    and which the vague priors are about; `begin` values where it begins, priors or not (those of a search).
     Raises InputError where there is nothing to fit, Interrupted (a KeyboardInterrupt) with what was reached.
     """
     begun = clock.monotonic()
@@ -177,7 +179,7 @@ def calibrate(
         if progress is not None:
             progress(Progress(stage, iteration, objective, fraction))
 
-    fit = prepare(campaign, free=free, start=start, report=report)
+    fit = prepare(campaign, free=free, start=start, begin=begin, report=report)
 
     def finish() -> Calibration:
         return conclude(campaign, fit.problem.model, fit, clock.monotonic() - begun)
@@ -195,6 +197,7 @@ def prepare(
     *,
     free: Sequence[str] | None = None,
     start: dict[str, float] | None = None,
+    begin: dict[str, float] | None = None,
     report: Callable[[str, int, float, float], None] = lambda *_: None,
 ) -> Fit:
     """A calibration to the decays before its first step. Arguments and InputError are those of `calibrate`."""
@@ -212,9 +215,10 @@ def prepare(
                 raise InputError(source, [Wrong(where, "angles below 90 deg", found, "Is the unit right?")])
     declared = build(campaign.platform)
     labels = labels_of(campaign, declared, [str(record.degree_of_freedom) for record in records], free)
-    begin = declared.with_values(start or {})
-    problem = pose(begin, campaign, records, space_of(campaign, labels, begin))
-    return Fit(problem, records, Unknowns(problem.space.start, first_guess(records, problem.data)), report)
+    first = declared.with_values(start or {})
+    problem = pose(first, campaign, records, space_of(campaign, labels, first))
+    x = jnp.array([p.transform.inverse((begin or {}).get(p.label, p.start)) for p in problem.space.free])
+    return Fit(problem, records, Unknowns(x, first_guess(records, problem.data)), report)
 
 
 def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: Sequence[str] | None) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, strays
 from calibration.fit import Interrupted, Progress, held_out, labels_of, prepare, run, space_of
+from calibration.formatting import number, percent, with_deviation
 from calibration.joint_fit import JointFit, Kind, Loss, Sources
 from calibration.result import Calibration
 from calibration.runs import KINDS
@@ -21,6 +22,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.statics import natural_modes
 
 
 def calibrate_jointly(
@@ -30,6 +32,7 @@ def calibrate_jointly(
     free: Sequence[str] | None = None,
     progress: Callable[[Progress], None] | None = None,
     start: dict[str, float] | None = None,
+    begin: dict[str, float] | None = None,
     objective: Objective = "bands",
     loss: Loss = "squares",
     options: Options | None = None,
@@ -42,7 +45,8 @@ def calibrate_jointly(
     times the `weight` of a test (see `JointFit`). The decays are fitted first, alone: the rest begins there. With `loss`
     "cauchy" residuals beyond some standard deviations hardly count (outliers, stretches that the model cannot follow).
 
-    `free` and `start` as in `calibrate`. Raises InputError where there is nothing to fit, Interrupted with what was reached.
+    `free`, `start` and `begin` as in `calibrate`. Raises InputError where there is nothing to fit, Interrupted with what was
+    reached.
     """
     begun = clock.monotonic()
     options = Options() if options is None else options
@@ -67,8 +71,8 @@ def calibrate_jointly(
     for record in waves:
         moved |= set(moving_channels({k: record.values[k] for k in DOFS if k in record.values}))
     labels = labels_of(campaign, declared, sorted(moved), free)
-    begin = declared.with_values(start or {})
-    space = space_of(campaign, labels, begin)
+    first_model = declared.with_values(start or {})
+    space = space_of(campaign, labels, first_model)
     from_rest, scale = campaign.manifest.zero is not None, campaign.manifest.scale
     fit = None
     x = space.start
@@ -76,11 +80,11 @@ def calibrate_jointly(
         def first(stage: str, iteration: int, value: float, fraction: float) -> None:
             report(stage, iteration, value, 0.3 * fraction, "J")
 
-        fit = prepare(campaign, free=labels, start=start, report=first)
+        fit = prepare(campaign, free=labels, start=start, begin=begin, report=first)
         run(fit)
         x = fit.unknowns.shared
     made: Seas = seas_of(campaign, declared.environment, options) if waves else ()
-    reached = space.model(begin, x)
+    reached = space.model(first_model, x)
 
     def problem_in_waves(model: Model) -> SeaProblem:
         step = sea_step(declared, options)
@@ -89,8 +93,8 @@ def calibrate_jointly(
     sources = Sources(
         None if fit is None else fit.problem,
         problem_in_waves(reached) if waves else None,
-        pose_offsets(begin, held, space, from_rest) if held else None,
-        pose_periods(begin, stated_periods, space, scale) if stated_periods else None,
+        pose_offsets(first_model, held, space, from_rest) if held else None,
+        pose_periods(first_model, stated_periods, space, scale) if stated_periods else None,
     )
     later = 0.3 if decays else 0.0
 
@@ -102,7 +106,7 @@ def calibrate_jointly(
     words = listed([f"{len(there)} {name.format('s' * (len(there) != 1))}" for name, there in counts.items() if there])
 
     def finish() -> Calibration:
-        return _conclude(campaign, begin, joint, options, made, words, clock.monotonic() - begun)
+        return _conclude(campaign, first_model, joint, options, made, words, clock.monotonic() - begun)
 
     try:
         joint.run()
@@ -129,7 +133,32 @@ def _conclude(
         in_waves, notes = tests_in_waves(campaign, declared, model, options, made)
         tests += in_waves
     said = remarks(campaign, parameters, known, ("decay", *KINDS, "static"))
+    said = (*_of_kinds(campaign, model, joint), *said)
     return Calibration(
         campaign.manifest.name, model, parameters, tuple(tests), joint.converged and not lost, joint.iterations, seconds,
         tuple(joint.history), (*lost, *said, *notes), campaign.platform.name, known,
     )  # fmt: skip
+
+
+def _of_kinds(campaign: Campaign, model: Model, joint: JointFit) -> tuple[str, ...]:
+    """How far off each kind is, periods fitted against stated, and what could not take part."""
+    said = []
+    if joint.loss != "squares":
+        said.append("residuals count by Cauchy's loss: outliers hardly do")
+    for kind, (variance, _) in joint.errors.items():
+        error = np.sqrt(variance)
+        if kind == "waves":
+            assert joint.sources.waves is not None
+            bands = [float(e) for e, b in zip(error, joint.sources.waves.in_bands, strict=True) if b]
+            said += [f"estimated error of ln(simulated / measured energy): {number(one, 2)}" for one in bands]
+        elif kind == "offsets":
+            said.append(f"estimated error of a static offset: {percent(float(error[0]))} of the motion that was held")
+    if joint.sources.periods is not None:
+        fitted, scale = natural_modes(model), campaign.manifest.scale**0.5
+        for dof, one in campaign.manifest.calibrate.natural_periods.items():
+            stated = with_deviation(one.value * scale, one.standard_deviation * scale)
+            said.append(f"natural period in {dof}: {number(fitted.of(dof), 4)} s, stated {stated} s")
+    idle = [r.id for r in campaign.used("fit") if r.kind == "static" and r.degree_of_freedom is None]
+    if idle:
+        said.append(f"static tests without a `degree_of_freedom`, the motion that was held, are left out: {', '.join(idle)}")
+    return tuple(said)

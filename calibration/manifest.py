@@ -147,7 +147,7 @@ class Calibrate(Schema):
     fixed: tuple[Text, ...] = ()
     bounds: dict[str, tuple[Number, Number]] = Field(default_factory=dict)
     priors: dict[str, Prior] = Field(default_factory=dict)
-    natural_periods: dict[Motion, Period] = Field(default_factory=dict)
+    natural_periods: dict[Text, Period] = Field(default_factory=dict)
 
 
 class Manifest(Schema):
@@ -242,6 +242,9 @@ def _other_problems(manifest: Manifest) -> Iterator[Problem]:
     for name in manifest.noise:
         if name not in measured:
             yield _unknown("noise", "a declared channel", name, measured)
+    for name in manifest.calibrate.natural_periods:
+        if name not in DOFS:
+            yield _unknown("calibrate.natural_periods", "a motion", name, DOFS)
     zero, ids = manifest.zero, [test.id for test in manifest.tests]
     if zero is not None and zero.test is not None and zero.test not in ids:
         yield _unknown("zero.test", "the id of a test", zero.test, ids)

@@ -107,8 +107,9 @@ def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tupl
     known = [label for load in loads for label in load.values]
     if unknown := [label for label in declared.exponents if label not in known]:
         where = f"sea_state_laws.exponents.{unknown[0]}"
+        known = [label for label in known if not label.startswith(("mooring.", "stiffness."))]
         expected, hint = f"a coefficient ({', '.join(known)})", suggest(unknown[0], known)
-        raise InputError(platform.name, [Problem(where, expected, "another", hint)])
+        raise InputError(platform.name, [Problem(where, expected, repr(unknown[0]), hint)])
     exponents = {
         exponent_label(label, over): value
         for label, row in declared.exponents.items()

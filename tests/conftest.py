@@ -1,10 +1,14 @@
 """Every test runs in float64, with compiled programs kept between runs where JAX_COMPILATION_CACHE_DIR says so."""
 
+import gc
 import os
 import sys
 from pathlib import Path
 
 import jax
+import pytest
+
+MAPS = 20_000
 
 # so that `benchmarks` and the tests' own helpers are found however pytest is started
 for folder in (Path(__file__).resolve().parents[1], Path(__file__).resolve().parent):
@@ -15,3 +19,14 @@ jax.config.update("jax_enable_x64", True)
 if folder_of_cache := os.environ.get("JAX_COMPILATION_CACHE_DIR"):
     jax.config.update("jax_compilation_cache_dir", folder_of_cache)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def programs_do_not_pile_up():
+    """Every compiled program is a few memory maps of the process, of which Linux allows 65530; a worker of all tests would
+    come there and crash. What was compiled comes back from the cache on disk."""
+    yield
+    maps = Path("/proc/self/maps")
+    if maps.exists() and len(maps.read_bytes().splitlines()) > MAPS:
+        jax.clear_caches()
+        gc.collect()
