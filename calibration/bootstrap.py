@@ -18,7 +18,8 @@ from jaxtyping import Array, Float
 from scipy.stats import norm
 
 from calibration.identifiability import memory
-from calibration.likelihood import LEVEL, Likelihood, inverse
+from calibration.information import inverse
+from calibration.likelihood import LEVEL, RCOND, Likelihood
 from calibration.residuals import Problem, Unknowns
 from jaxhydro.problems import InputError
 from jaxhydro.problems import Problem as Wrong
@@ -205,7 +206,7 @@ def _linear(likelihood: Likelihood, measured: np.ndarray, weight: np.ndarray) ->
     score = np.einsum("rctk,drct,drc->drk", slope, residual, weight)
     mean, ridge = map(np.asarray, (fit.prior[0], fit.ridge))
     shared = score[..., :p].sum(axis=1) + ridge**2 * (likelihood.estimate[:p] - mean)
-    step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ inverse(likelihood.hessian)
+    step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ inverse(likelihood.hessian, RCOND)
     step *= np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
     own = fit.unknowns.own
     return Unknowns(fit.unknowns.shared + step[:, :p], own + step[:, p:].reshape(-1, *own.shape))

@@ -11,7 +11,6 @@ from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, series_of, strays
 from calibration.descent import descend
 from calibration.directions import uncertainty_of
-from calibration.identifiability import VAGUE
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record
 from calibration.residuals import Data, Problem, Unknowns, condensed, dominant_period, first_guess, gather
@@ -63,9 +62,8 @@ class Fit:
     def __init__(self, problem: Problem, records: Sequence[Record], unknowns: Unknowns, report) -> None:
         self.problem, self.records, self.unknowns, self.report = problem, records, unknowns, report
         space = problem.space
-        mean = jnp.array([p.prior_mean if np.isfinite(p.prior_deviation) else s for p, s in zip(space.free, space.start)])
-        width = jnp.array([p.prior_deviation if np.isfinite(p.prior_deviation) else VAGUE for p in space.free])
-        self.prior = (mean, 1 / width)
+        mean, width = space.prior
+        self.prior = (mean, 1 / jnp.asarray(width))
         self.iterations, self.converged = 0, True
         self.history: list[float] = []
         self.ridge: np.ndarray = np.zeros(len(space.free))
@@ -100,6 +98,11 @@ class Fit:
             self.history.append(objective)
             self.report(stage, self.iterations, objective, fraction[0] + (fraction[1] - fraction[0]) * min(1.0, i / 15))
         return settled
+
+    def window(self, cycles: float) -> np.ndarray:
+        """The end (s) of the first so many cycles of the released motion, by record."""
+        data = self.problem.data
+        return np.minimum(np.asarray(data.time[:, 0]) + cycles * 2 * np.pi / np.asarray(data.pace), np.asarray(self.ends))
 
     def information(self, until) -> float:
         """How many independent observations the records stand for when the model's error, not noise, is what is left: four
@@ -301,7 +304,7 @@ def run(fit: Fit) -> None:
     windows = max(1, int(np.ceil(np.log(length.max() / CYCLES) / np.log(GROWTH))))
     done = 0
     while cycles < length.max():
-        until = np.minimum(start + cycles * period, np.asarray(fit.ends))
+        until = fit.window(cycles)
         weight = weights(records, data, fit.scored, fit.spread, even, until)
         fit.minimise(f"first {cycles:.3g} cycles", weight, until, 1e-2, (0.4 * done / windows, 0.4 * (done + 1) / windows))
         cycles, done = cycles * GROWTH, done + 1

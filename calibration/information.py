@@ -45,12 +45,13 @@ def within(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
     return np.where(np.outer(mask, mask), matrix, 0.0)
 
 
-def inverse(matrix: np.ndarray) -> np.ndarray:
-    """Pseudo-inverse of a positive semi-definite matrix, whatever the units of its rows."""
+def inverse(matrix: np.ndarray, rcond: float = 1e-13) -> np.ndarray:
+    """Pseudo-inverse of a positive semi-definite matrix, whatever the units of its rows. What is no more than `rcond` of the
+    largest, once scaled, is taken for rounding, and what is not there at all stays at zero."""
     d = np.diag(matrix)
     scale = np.where(d > 0, 1 / np.sqrt(np.where(d > 0, d, 1.0)), 0.0)
     both = np.outer(scale, scale)
-    return np.linalg.pinv(matrix * both, rcond=1e-13, hermitian=True) * both
+    return np.linalg.pinv(matrix * both, rcond=rcond, hermitian=True) * both
 
 
 def deviations(values: np.ndarray, largest: float) -> np.ndarray:

@@ -13,7 +13,7 @@ from calibration.conclusion import series_of
 from calibration.descent import descend
 from calibration.directions import Identifiability, stated
 from calibration.fit import Fit, weights
-from calibration.identifiability import VAGUE, Spread, memory
+from calibration.identifiability import Spread, memory
 from calibration.information import LEAST_VARIANCE
 from calibration.parameters import ParameterSpace
 from calibration.residuals import Problem, Unknowns, condensed, condensed_groups
@@ -88,12 +88,9 @@ class JointFit:
     ) -> None:  # fmt: skip
         self.pose = pose
         self.sources, self.decays, self.space, self.report, self.loss = sources, decays, space, report, loss
-        known = [np.isfinite(p.prior_deviation) for p in space.free]
-        self.mean = jnp.array([p.prior_mean if k else s for p, s, k in zip(space.free, space.start, known)])
-        self.width = np.array([p.prior_deviation if k else VAGUE for p, k in zip(space.free, known)])
+        self.mean, self.width = space.prior
         own = jnp.zeros((0, 0)) if decays is None else decays.unknowns.own
         self.unknowns = Unknowns(x, own)
-        self.until = None if decays is None else decays.ends
         self.history: list[float] = []
         self.iterations, self.converged = 0, False
         self.products: dict[str, np.ndarray] = {}
@@ -162,7 +159,7 @@ class JointFit:
             sources = self.sources
             if self.loss == "cauchy":
                 sources = _with_tails(sources, self.errors)
-            until = jnp.zeros(0) if self.until is None else jnp.asarray(self.until)
+            until = jnp.zeros(0) if self.decays is None else self.decays.ends
             args = (sources, self.weights, until, (self.mean, jnp.asarray(self.width)))
             for i, now in enumerate(descend(_objective, self.unknowns, args, TOLERANCE, TRUST)):
                 self.unknowns, self.converged = now.unknowns, now.settled
@@ -207,7 +204,6 @@ class JointFit:
             total += float(np.sum(n))
         return math.exp(0.5 * logs / total) if total else math.nan
 
-
     def uncertainty(self, source: str) -> tuple[Spread, Identifiability]:
         """Covariance of the coordinates, and what it says."""
         p = len(self.space.free)
@@ -237,7 +233,6 @@ class JointFit:
         model = next(one for one in self.sources if one is not None).model
         x = np.asarray(self.unknowns.shared)
         return stated(self.space, model, x, (products, parts[0], parts[1], parts[2]), ridge, self.width, source)
-
 
 
 @eqx.filter_jit

@@ -16,6 +16,7 @@ from calibration.campaign import Campaign
 from calibration.colour import Colour, Periodogram, coloured, colours, periodogram
 from calibration.fit import Fit, prepare, run
 from calibration.identifiability import assemble
+from calibration.information import inverse
 from calibration.parameters import Free
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Calibration
@@ -25,6 +26,7 @@ from jaxhydro.problems import InputError, suggest
 from jaxhydro.problems import Problem as Wrong
 
 LEVEL = 0.95
+RCOND = 1e-14  # of all unknowns together, releases that are known far better than coefficients among them
 WHITE = Colour(1.0, 0.0, 0.0, 1.0)
 
 
@@ -102,7 +104,7 @@ class Likelihood:
         section 3) with one parameter of interest. Its own prior is left out where the manifest states none.
         """
         i = self.index(label)
-        move = inverse(self.hessian)[:, i]
+        move = inverse(self.hessian, RCOND)[:, i]
         counted = np.ones(len(move))
         counted[i] = np.isfinite(self.free(label).prior_deviation)
         bread, meat = (
@@ -116,20 +118,12 @@ class Likelihood:
     def scale(self) -> float:
         """What Q is multiplied by to be -2 log likelihood on the average over all directions: n / tr(H^-1 S)."""
         meat = self.scatter + np.diag(self.prior[1])
-        return float(len(meat) / np.trace(inverse(self.hessian) @ meat))
+        return float(len(meat) / np.trace(inverse(self.hessian, RCOND) @ meat))
 
 
 def coordinates(unknowns: Unknowns) -> np.ndarray:
     """All coordinates (n,): shared, then every record's own."""
     return np.concatenate([np.asarray(unknowns.shared), np.asarray(unknowns.own).ravel()])
-
-
-def inverse(matrix: np.ndarray) -> np.ndarray:
-    """Of a positive semi-definite matrix whose rows have units of their own; what is not there at all stays at zero."""
-    scale = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    scale[np.diag(matrix) <= 0] = 0.0
-    both = np.outer(scale, scale)
-    return np.linalg.pinv(matrix * both, rcond=1e-14, hermitian=True) * both
 
 
 def reposed(campaign: Campaign, result: Calibration) -> Fit:
@@ -183,7 +177,7 @@ def likelihood_of(fit: Fit) -> Likelihood:
     size, own = len(information), slope.shape[-1] - shared
     ridge, width = np.asarray(fit.ridge) ** 2, 1 / np.asarray(fit.prior[1])
     prior = tuple(np.concatenate([x, np.zeros(size - shared)]) for x in (ridge, ridge**2 * width**2))
-    back = inverse(information + np.diag(prior[0]))
+    back = inverse(information + np.diag(prior[0]), RCOND)
     seen: dict[tuple[str, str], list[tuple[int, int, Periodogram]]] = {}
     for i, record in enumerate(fit.records):
         at = np.r_[:shared, shared + i * own : shared + (i + 1) * own]

@@ -87,11 +87,11 @@ def document(calibration: Calibration) -> dict[str, Any]:
             raise NotFinite(f"the parameter {label} is not finite")
         parameters[label] = {
             "value": float(one.value),
-            "standard_deviation": _or_null(one.standard_deviation),
+            "standard_deviation": or_null(one.standard_deviation),
             "unit": one.unit,
             "at_bound": bool(one.at_bound),
             "identifiable": bool(one.identifiable),
-            "start": _or_null(one.start),
+            "start": or_null(one.start),
             "meaning": one.meaning,
         }
     return {
@@ -101,11 +101,11 @@ def document(calibration: Calibration) -> dict[str, Any]:
         "baseline": {
             "parameters": parameters,
             "error": {test.id: _errors(test) for test in calibration.tests},
-            "objective": {"fit": fit, "holdout": _or_null(calibration.objective("holdout"))},
+            "objective": {"fit": fit, "holdout": or_null(calibration.objective("holdout"))},
             "converged": bool(calibration.converged),
             "iterations": int(calibration.iterations),
-            "seconds": _or_null(calibration.seconds),
-            "history": [_or_null(value) for value in calibration.history],
+            "seconds": or_null(calibration.seconds),
+            "history": [or_null(value) for value in calibration.history],
             "notes": list(calibration.notes),
             **_laws(calibration),
         },
@@ -119,7 +119,8 @@ def _laws(calibration: Calibration) -> dict[str, Any]:
     return {} if reference is None else {"sea_state_reference": reference._asdict()}
 
 
-def _or_null(value: float | None) -> float | None:
+def or_null(value: float | None) -> float | None:
+    """A number as JSON has it; null for what is none."""
     return float(value) if value is not None and math.isfinite(value) else None
 
 

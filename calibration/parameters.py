@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from calibration.identifiability import VAGUE
 from calibration.transforms import AbstractTransform, Interval, LogInterval, Scaled
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent
@@ -48,6 +49,13 @@ class ParameterSpace(NamedTuple):
     def start(self) -> Float[Array, " p"]:
         """Coordinates of the starting values."""
         return jnp.array([p.transform.inverse(p.start) for p in self.free])
+
+    @property
+    def prior(self) -> tuple[Float[Array, " p"], np.ndarray]:
+        """Mean and standard deviation of the coordinates: as declared, else VAGUE about where they start."""
+        declared = [math.isfinite(p.prior_deviation) for p in self.free]
+        mean = jnp.array([p.prior_mean if known else s for p, s, known in zip(self.free, self.start, declared)])
+        return mean, np.array([p.prior_deviation if known else VAGUE for p, known in zip(self.free, declared)])
 
     def values(self, x: Float[Array, " p"]) -> dict[str, Float[Array, ""]]:
         """Parameter values at coordinates."""

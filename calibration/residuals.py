@@ -6,7 +6,7 @@ only needs the products J^T J, J^T r and r^T r, so a record of thousands of samp
 and the optimiser sees its square root: as many rows as there are unknowns and one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
 
 import equinox as eqx
@@ -111,6 +111,12 @@ def first_guess(records: Sequence[Record], data: Data) -> Float[Array, "r 3*c"]:
     return jnp.asarray(own.reshape(len(records), -1))
 
 
+def shortened(record: Data, until: Float[Array, ""]) -> Data:
+    """One record of `Data` that is simulated no further than `until` (s)."""
+    needed = jnp.ceil((until - record.time[0]) / record.step - 1e-9).astype(int)
+    return eqx.tree_at(lambda d: d.count, record, jnp.minimum(record.count, jnp.maximum(needed, 1)))
+
+
 class Problem(eqx.Module):
     """A calibration's fixed part: the model that starts, its free parameters, and the records.
 
@@ -151,9 +157,7 @@ class Problem(eqx.Module):
             both = jnp.concatenate([unknowns.shared, own])
             split = len(unknowns.shared)
 
-            # no further than the window
-            needed = jnp.ceil((until - record.time[0]) / record.step - 1e-9).astype(int)
-            record = eqx.tree_at(lambda d: d.count, record, jnp.minimum(record.count, jnp.maximum(needed, 1)))
+            record = shortened(record, until)
 
             def residual(z):
                 r = (self.motion(z[:split], z[split:], record) - record.measured) * (record.time <= until)
@@ -211,6 +215,24 @@ def _condensed_jvp(primals, tangents):
     p = d_shared.shape[0]
     d = roots[..., :p] @ d_shared + jnp.einsum("rkl,rl->rk", roots[..., p:-1], d_own)
     return (roots[..., -1], products), (d, jnp.zeros_like(products))
+
+
+def group_products(
+    residuals: Callable[[Float[Array, " p"]], tuple[Float[Array, " _"], ...]],
+    x: Float[Array, " p"],
+    tails: Float[Array, " g"] | None,
+) -> Float[Array, "g k k"]:
+    """[J r]^T [J r] of every group of residuals, k the parameters and one; `softened` beyond the `tails`."""
+
+    def both(x):
+        groups = residuals(x)
+        each = [None] * len(groups) if tails is None else tails
+        found = tuple(softened(r, tail) for r, tail in zip(groups, each, strict=True))
+        return found, found
+
+    slopes, found = jax.jacfwd(both, has_aux=True)(x)
+    full = [jnp.concatenate([slope, r[:, None]], axis=1) for slope, r in zip(slopes, found, strict=True)]
+    return jnp.stack([one.T @ one for one in full])
 
 
 class Groups(Protocol):

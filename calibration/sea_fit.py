@@ -14,7 +14,7 @@ from calibration.conclusion import estimates, remarks
 from calibration.descent import descend
 from calibration.directions import Identifiability, family, stated
 from calibration.fit import Interrupted, Progress, labels_of, space_of
-from calibration.identifiability import VAGUE, Spread, memory
+from calibration.identifiability import Spread, memory
 from calibration.residuals import condensed_groups
 from calibration.result import BandError, Calibration, TestFit
 from calibration.runs import KINDS
@@ -36,7 +36,7 @@ ROUNDS = 4  # times that the model's error is estimated anew
 SETTLED = 0.05  # relative change of that estimate that is none
 TOLERANCE = 1e-3  # relative decrease of the sum of squares that ends a round
 PLAIN = 1.0  # standard deviation of the prior of an exponent about 0
-FIRST = 1.0  # ... damping of the first step: logarithms of energies are far from linear in those of coefficients
+FIRST = 1.0  # trust in a descent's first step (`descend`): logarithms of energies are far from linear in those of coefficients
 
 
 def _objective(x, args):
@@ -53,11 +53,8 @@ class SeaFit:
     def __init__(self, pose: Callable[[Model], SeaProblem], declared: Model, report: Callable[..., None]) -> None:
         self.pose, self.report = pose, report
         self.problem = problem = pose(declared)
-        free, start = problem.space.free, problem.space.start
-        known = [np.isfinite(p.prior_deviation) for p in free]
-        self.mean = jnp.array([p.prior_mean if k else s for p, s, k in zip(free, start, known)])
-        self.width = np.array([p.prior_deviation if k else VAGUE for p, k in zip(free, known)])
-        self.x, self.products = start, np.zeros(0)
+        self.mean, self.width = problem.space.prior
+        self.x, self.products = problem.space.start, np.zeros(0)
         self.iterations, self.converged = 0, False
         self.history: list[float] = []
         self.groups: list[np.ndarray] = []

@@ -3,15 +3,15 @@
 import csv
 import io
 import json
-import math
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from calibration.formatting import number, percent, with_deviation
-from calibration.outputs import FIGURES, LAWS, TABLE
-from calibration.sea_laws import LawFit, SeaLaws
+from calibration.outputs import FIGURES, LAWS, TABLE, or_null
+from calibration.result import Calibration
+from calibration.sea_laws import SeaLaws
 from calibration.tables import Rows
 from jaxhydro.files import safe_name, staged
 from jaxhydro.loads.sea_state_law import reference_of
@@ -49,26 +49,20 @@ def document(found: SeaLaws) -> dict[str, Any]:
         laws[law.name] = {
             "fitted_error": law.fitted, "held_out_error": law.held_out,
             "reference": None if reference is None else reference._asdict(),
-            "parameters": {
-                label: {"value": one.value, "standard_deviation": _known(one.standard_deviation), "unit": one.unit}
-                for label, one in law.calibration.parameters.items()
-            },
+            "parameters": _parameters(law.calibration),
         }  # fmt: skip
     seas = {
-        sea.id: {
-            "use": sea.use, **sea.state._asdict(),
-            "parameters": {
-                label: {"value": one.value, "standard_deviation": _known(one.standard_deviation), "unit": one.unit}
-                for label, one in sea.calibration.parameters.items()
-            },
-        } for sea in found.seas
-    }  # fmt: skip
+        sea.id: {"use": sea.use, **sea.state._asdict(), "parameters": _parameters(sea.calibration)} for sea in found.seas
+    }
     return {"chosen": found.chosen.name, "judged_by": list(found.judged_by), "left_out_one_by_one": found.left_out,
             "laws": laws, "sea_states": seas}  # fmt: skip
 
 
-def _known(deviation: float | None) -> float | None:
-    return deviation if deviation is not None and math.isfinite(deviation) else None
+def _parameters(calibration: Calibration) -> dict[str, Any]:
+    return {
+        label: {"value": one.value, "standard_deviation": or_null(one.standard_deviation), "unit": one.unit}
+        for label, one in calibration.parameters.items()
+    }
 
 
 def table_text(found: SeaLaws) -> str:
@@ -128,8 +122,3 @@ def sentence(found: SeaLaws) -> str:
         return f"No law does better than {NAMES[plain.name]} coefficients on {by} (error {number(plain.held_out, 3)})"
     gain = f"error {number(plain.held_out, 3)} of {NAMES[plain.name]} coefficients to {number(chosen.held_out, 3)}"
     return f"Chosen by {by}: {NAMES[chosen.name]}, {gain}"
-
-
-def label_of(law: LawFit) -> str:
-    """A law's name in legends."""
-    return NAMES[law.name]

@@ -5,7 +5,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from calibration.sea_laws import LawFit, SeaLaws
-from calibration.sea_laws_outputs import label_of
+from calibration.sea_laws_outputs import NAMES
 from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WAVE, header, stack
 from jaxhydro.waves.sea_state import SeaState
 
@@ -47,7 +47,7 @@ def coefficient(found: SeaLaws, label: str) -> Figure:
 
 
 def _name(law: LawFit, found: SeaLaws) -> str:
-    return f"{label_of(law)}{', chosen' if law is found.chosen else ''}"
+    return f"{NAMES[law.name]}{', chosen' if law is found.chosen else ''}"
 
 
 def _states(found: SeaLaws, heights: np.ndarray) -> list[SeaState]:

@@ -15,7 +15,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
-from calibration.residuals import softened
+from calibration.residuals import group_products
 from calibration.runs import Run
 from calibration.seas import Options, Seas, moving_channels, peak_period
 from calibration.seas_results import bands_of
@@ -141,15 +141,7 @@ class SeaProblem(eqx.Module):
 
     def products(self, x: Float[Array, " p"]) -> Float[Array, "g k k"]:
         """[J r]^T [J r] of every group, k the parameters and one."""
-
-        def both(x):
-            tails = [None] * len(self.in_bands) if self.tail is None else self.tail
-            found = tuple(softened(r, tail) for r, tail in zip(self.residuals(x), tails, strict=True))
-            return found, found
-
-        slopes, residuals = jax.jacfwd(both, has_aux=True)(x)
-        full = [jnp.concatenate([slope, r[:, None]], axis=1) for slope, r in zip(slopes, residuals, strict=True)]
-        return jnp.stack([one.T @ one for one in full])
+        return group_products(self.residuals, x, self.tail)
 
 
 @eqx.filter_jit

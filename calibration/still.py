@@ -1,6 +1,6 @@
 """Static offsets and natural periods against the model: residuals that need no simulation."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import equinox as eqx
@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 from calibration.manifest import Period
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
-from calibration.residuals import characteristic_length, softened
+from calibration.residuals import characteristic_length, group_products
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.statics import equilibrium, linearised
@@ -22,18 +22,6 @@ from jaxhydro.statics import equilibrium, linearised
 WIDTHS = np.array([1.0, 1.0, 1.0, 50.0, 50.0, 50.0])  # as `natural_modes` compares rotations with translations
 ALIKE = 0.7  # of a shape's largest entry: surge and sway of one period may come mixed
 NEAR = 1e-4  # of an eigenvalue, off which inverse iterations are shifted
-
-
-def _products(residuals: Callable, x: Float[Array, " p"], tail: Float[Array, "1"] | None) -> Float[Array, "1 k k"]:
-    """[J r]^T [J r], k the parameters and one, of residuals that cease to count by their squares at `tail`; None: nowhere."""
-
-    def both(x):
-        r = softened(residuals(x), tail)
-        return r, r
-
-    slope, r = jax.jacfwd(both, has_aux=True)(x)
-    full = jnp.concatenate([slope, r[:, None]], axis=1)
-    return (full.T @ full)[None]
 
 
 class OffsetProblem(eqx.Module):
@@ -64,7 +52,7 @@ class OffsetProblem(eqx.Module):
 
     def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:
         """One group."""
-        return _products(self.residuals, x, self.tail)
+        return group_products(lambda x: (self.residuals(x),), x, self.tail)
 
 
 def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"]:
@@ -126,7 +114,7 @@ class PeriodProblem(eqx.Module):
 
     def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:
         """One group."""
-        return _products(self.residuals, x, self.tail)
+        return group_products(lambda x: (self.residuals(x),), x, self.tail)
 
 
 def natural_period(model: Model, dof: int) -> Float[Array, ""]:

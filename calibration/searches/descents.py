@@ -43,12 +43,6 @@ def fit_from(problem: Problem, records: Sequence[Record], x: np.ndarray, report)
     return fit
 
 
-def window(fit: Fit, cycles: float = CYCLES) -> np.ndarray:
-    """The end (s) of the first so many cycles, by record."""
-    data = fit.problem.data
-    return np.minimum(np.asarray(data.time[:, 0]) + cycles * 2 * np.pi / np.asarray(data.pace), np.asarray(fit.ends))
-
-
 def short(fit: Fit, until: np.ndarray) -> None:
     """Least squares up to `until`, coefficients and releases free. Next to no prior: it would be the releases' error."""
     weight = weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(len(fit.records)), until)
@@ -58,7 +52,7 @@ def short(fit: Fit, until: np.ndarray) -> None:
 def judged(task: Task, x: np.ndarray) -> np.ndarray:
     """The points (n, p), the best first by J over the first window from a first guess of the releases."""
     guess = fit_from(task.problem, task.records, x[0], lambda *_: None)
-    return x[np.argsort(task.simulate(x, guess.unknowns.own, window(guess)), kind="stable")]
+    return x[np.argsort(task.simulate(x, guess.unknowns.own, guess.window(CYCLES)), kind="stable")]
 
 
 def compile_fit(task: Task) -> None:
@@ -70,7 +64,7 @@ def compile_fit(task: Task) -> None:
     with task.apart():
         fit = fit_from(task.problem, task.records, np.asarray(task.problem.space.start), stop)
         with contextlib.suppress(Stop):
-            short(fit, task.begins + 1e-3 * (window(fit) - task.begins))
+            short(fit, task.begins + 1e-3 * (fit.window(CYCLES) - task.begins))
 
 
 def releases(task: Task) -> Float[Array, "r 3*c"]:
@@ -91,7 +85,7 @@ def releases(task: Task) -> Float[Array, "r 3*c"]:
     fit = fit_from(task.problem, task.records, x[0], report)
     guess = fit.unknowns.own
     for cycles in (CYCLES, GROWTH * CYCLES):
-        short(fit, window(fit, cycles))
+        short(fit, fit.window(cycles))
     return fit.unknowns.own if bool(jnp.isfinite(fit.unknowns.own).all()) else guess
 
 

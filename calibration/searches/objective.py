@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from calibration.parameters import ParameterSpace
-from calibration.residuals import Problem
+from calibration.residuals import Problem, shortened
 from calibration.transforms import Interval, LogInterval
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError
@@ -33,9 +33,7 @@ def objectives(
     def of_point(x: Float[Array, " p"]) -> Float[Array, ""]:
         def of_record(inputs):
             own, record, weight, until = inputs
-            # no further than the window
-            needed = jnp.ceil((until - record.time[0]) / record.step - 1e-9).astype(int)
-            record = eqx.tree_at(lambda d: d.count, record, jnp.minimum(record.count, jnp.maximum(needed, 1)))
+            record = shortened(record, until)
             seen = record.present * (record.time <= until)
             samples = jnp.maximum(seen.sum(axis=-1), 1.0)
             residual = problem.motion(x, own, record) - record.measured
