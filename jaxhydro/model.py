@@ -128,12 +128,33 @@ class Model(eqx.Module):
         loads = tuple(load.in_sea(state) for load in self.loads)
         return self if all(a is b for a, b in zip(loads, self.loads)) else eqx.tree_at(lambda m: m.loads, self, loads)
 
+    def through(self, sea: AbstractSea) -> AbstractSea:
+        """The sea as the platform meets it."""
+        for load in self.loads:
+            sea = load.through(sea)
+        return sea
+
+    def stream(self) -> Float[Array, "3"] | None:
+        """Steady velocity of the water (m/s, earth axes); None: it has none."""
+        return _sum([load.stream() for load in self.loads])
+
+    def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
+        """What the motion sensors make of a position (m, rad)."""
+        for load in self.loads:
+            position = load.seen(position)
+        return position
+
+    def clock_lag(self) -> Float[Array, ""] | None:
+        """By how much (s) the clock of the motions is ahead of that of the waves; None: they are one."""
+        return _sum([load.clock_lag() for load in self.loads])
+
     def rest(self) -> State:
         """At the reference position without motion."""
         return State(jnp.zeros(6), jnp.zeros(6), tuple(load.rest() for load in self.loads))
 
     def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
         """What the loads read: the motion, and how the water moves past strips and ends."""
+        sea = self.through(sea)
         matrix = rotation(state.position[3:])
         hull = self.hull if self.directions == "body" else self.hull.turned(matrix.T)
         strips, ends, place = hull.strips, hull.ends, state.position[:3]
@@ -152,6 +173,10 @@ class Model(eqx.Module):
         away = hull.join(jnp.stack([reach, reach]), jnp.zeros(m))
         still, turning = (state.velocity @ hull.motion).reshape(2, -1)
         own, own_end = hull.split(-(still + turning * away))
+        if (stream := self.stream()) is not None:
+            passing = stream @ matrix
+            own = own + (passing[:, None, None] * strips.directions).sum(axis=0)
+            own_end = own_end + passing @ ends.axis
         extent = strips.size + strips.taper * reach
         p, q, r = state.velocity[3:]
         square = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r])
@@ -238,3 +263,9 @@ class Model(eqx.Module):
         now = self.instant(jnp.zeros(()), state, StillWater() if sea is None else sea)
         total = self.sum_of_loads(now, state.memory)
         return jnp.concatenate([now.rotation @ total.force[:3], now.rotation @ total.force[3:]])
+
+
+def _sum(parts: list[Array | None]) -> Array | None:
+    """Of those that are there."""
+    there = [part for part in parts if part is not None]
+    return sum(there[1:], there[0]) if there else None

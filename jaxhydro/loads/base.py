@@ -11,6 +11,7 @@ from jaxtyping import Array, Bool, Float
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull, Wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
+from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.sea_state import SeaState
 
 
@@ -96,7 +97,8 @@ class AbstractLoad(eqx.Module):
     """A physical phenomenon: a differentiable force law with parameters that have names, units, bounds and a null.
 
     `values` holds what may be calibrated, by label; `about` tells what a label means. A load knows nothing of batches, of the
-    model around it or of calibration.
+    model around it or of calibration. What is no force has a method of its own: `stream` and `through` for the water, `seen`
+    and `clock_lag` for the sensors.
     """
 
     values: eqx.AbstractVar[Mapping[str, Float[Array, ""]]]
@@ -110,10 +112,26 @@ class AbstractLoad(eqx.Module):
         """The load as it is in a sea state; itself where it does not depend on that."""
         return self
 
+    def stream(self) -> Float[Array, "3"] | None:
+        """Steady velocity (m/s, earth axes) that it adds to the water everywhere; None: none."""
+        return None
+
+    def through(self, sea: AbstractSea) -> AbstractSea:
+        """The sea as the platform meets it; itself where the load does not touch it."""
+        return sea
+
+    def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
+        """What the motion sensors make of a position (m, rad)."""
+        return position
+
+    def clock_lag(self) -> Float[Array, ""] | None:
+        """By how much (s) the clock of the motions is ahead of that of the waves: a motion at t is recorded at t - lag."""
+        return None
+
     @abc.abstractmethod
     def about(self, label: str) -> Parameter:
         """What the parameter `label` of this load means."""
 
-    @abc.abstractmethod
     def act(self, now: Instant, memory: Any) -> Action:
-        """The load at an instant."""
+        """The load at an instant; none where all it does is something else."""
+        return Action()
