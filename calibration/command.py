@@ -11,7 +11,7 @@ from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
 from calibration.joint import calibrate_jointly
 from calibration.joint_fit import Loss
-from calibration.outputs import MOTION, RESULT, NotFinite, write_calibration
+from calibration.outputs import DIAGNOSIS, MOTION, RESULT, NotFinite, write_calibration
 from calibration.result import Calibration
 from calibration.runs import KINDS
 from calibration.saved import Applied, applied
@@ -25,6 +25,7 @@ from calibration.seas import Diverged, Options, compare
 from calibration.seas_outputs import COMPARISON, write_comparison
 from jaxhydro.console import complain, progress, say, table
 from jaxhydro.files import check_folder
+from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 
@@ -35,7 +36,10 @@ ENDED = {
 
 
 def load(
-    path: Path, out: Path, others: tuple[str, ...] = (COMPARISON,), counted: Callable[[Campaign], str] = tables.counted
+    path: Path,
+    out: Path,
+    others: tuple[str, ...] = (COMPARISON, DIAGNOSIS),
+    counted: Callable[[Campaign], str] = tables.counted,
 ) -> Campaign:
     """The campaign, its warnings printed. Raises InputError, also where results would replace its own data, or stand beside
     those of another command."""
@@ -101,8 +105,9 @@ def run(
     if start is not None:
         declared = build(campaign.platform)
         used = applied(start, declared, campaign.platform.name)
-        # still water has no sea state: exponents of a law are begun from in waves only
-        begin = {"start": {k: v for k, v in used.values.items() if k in declared.values or tests == "waves"}}
+        # still water has no sea state: exponents of a law are begun from in waves only; effects found are not declared
+        known = [k for k in used.values if k in declared.values or (tests == "waves" and is_exponent(k))]
+        begin = {"start": {k: used.values[k] for k in known}}
         _told(used, start, campaign)
     words: tuple[str, ...] = ()
     if method is not None:
@@ -184,7 +189,7 @@ def simulate_campaign(
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{cutoff:g}")])
     begun = clock.monotonic()
-    loaded = load(campaign, check_folder(out), (RESULT, "motion.csv"), seas_results.counted)
+    loaded = load(campaign, check_folder(out), (RESULT, DIAGNOSIS, "motion.csv"), seas_results.counted)
     model, used = build(loaded.platform), None
     if calibration is not None:
         used = applied(calibration, model, loaded.platform.name)

@@ -18,6 +18,7 @@ from jaxhydro.loads.sea_state_law import reference_of
 from jaxhydro.plot import for_people, unit_of
 
 RESULT, MOTION, FIGURES, REPORT = "calibration.json", "simulated.nc", "figures", "report.html"
+DIAGNOSIS = "diagnosis.json"  # of a calibration and what it lacks
 LAWS, TABLE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws over the sea state
 GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 _EVEN = 1e-3  # of a step: times that differ by less are the same
@@ -134,12 +135,14 @@ def _errors(test: TestFit) -> dict[str, Any]:
                 "in_objective": bool(series.scored),
                 "before": _before(test, series),
             }
-    for key, name in (("bands", "after"), ("bands_before", "before")):
-        each = {channel: {k: v for k, one in row.items() if math.isfinite(v := float(getattr(one, name)))}
-                for channel, row in test.bands.items()}  # fmt: skip
-        if any(each.values()):
-            errors[key] = {channel: row for channel, row in each.items() if row}
-    return errors
+    return errors | _bands(test, "bands", "after")
+
+
+def _bands(test: TestFit, key: str, name: str) -> dict[str, Any]:
+    """Band errors of one model under `key`, where there are any that are finite."""
+    each = {channel: {k: v for k, one in row.items() if math.isfinite(v := float(getattr(one, name)))}
+            for channel, row in test.bands.items()}  # fmt: skip
+    return {key: {channel: row for channel, row in each.items() if row}} if any(each.values()) else {}
 
 
 def _error(channel: str, rmse: float, relative: float) -> dict[str, Any]:
@@ -162,6 +165,7 @@ def _about(test: TestFit) -> dict[str, Any]:
         "file": test.file,
         "duration": float(test.time[-1] - test.time[0]),
         "samples": len(test.time),
+        **_bands(test, "bands_before", "before"),  # the contract's `error` has no place for it
     }
 
 

@@ -1,34 +1,42 @@
 """One self-contained HTML page of what is in a result folder."""
 
 import base64
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from html import escape
 from os import PathLike
 from pathlib import Path
 from string import Template
 
 from calibration.formatting import number, percent, with_deviation
-from calibration.outputs import FIGURES, GENERATOR, REPORT, RESULT
+from calibration.outputs import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT
 from calibration.saved import Error, Fitted, Parameter, Saved, read_saved
+from calibration.tables import USE
 from jaxhydro.files import write_whole
 from jaxhydro.problems import InputError, Problem
 
-_USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
 _PNG = b"\x89PNG\r\n\x1a\n"
+UNCONVERGED = '<p class="warning">The fit did not converge: what follows is where it stopped, not {}.</p>'
 
 
 def write_report(folder: str | PathLike[str]) -> Path:
     """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
     folder = Path(folder)
     try:
-        there = folder.is_dir() and (folder / RESULT).is_file()
+        there = [name for name in (DIAGNOSIS, RESULT) if folder.is_dir() and (folder / name).is_file()]
     except (OSError, ValueError):
-        there = False
+        there = []
     if not there:
-        found = f"no {RESULT}" if folder.is_dir() else "no such folder"
-        raise InputError(str(folder), [Problem("", "a folder that `jaxhydro calibrate` wrote", found)])
-    saved = read_saved(folder)
-    write_whole(folder / REPORT, page(saved, folder))
+        found = f"no {RESULT} and no {DIAGNOSIS}" if folder.is_dir() else "no such folder"
+        expected = "a folder that `jaxhydro calibrate` or `jaxhydro diagnose` wrote"
+        raise InputError(str(folder), [Problem("", expected, found)])
+    if there[0] == DIAGNOSIS:
+        from calibration.discovery.page import page as diagnosis_page
+        from calibration.discovery.saved import read_diagnosis
+
+        text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS), folder)
+    else:
+        text = page(read_saved(folder / RESULT), folder)
+    write_whole(folder / REPORT, text)
     return folder / REPORT
 
 
@@ -36,16 +44,21 @@ def page(saved: Saved, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
     fitted = saved.baseline
     errors = saved.errors(str(folder / RESULT))
+    drawn = figures(images(saved, folder).values())
+    body = (
+        _state(fitted), "<h2>Tests</h2>", _tests(saved, errors), "<h2>Parameters</h2>", _parameters(fitted.parameters),
+        f"<h2>Notes</h2>{listed(fitted.notes)}" if fitted.notes else "", f"<h2>Figures</h2>{drawn}" if drawn else "",
+    )  # fmt: skip
+    return framed(saved, "Calibration", body)
+
+
+def framed(saved: Saved, what: str, body: Iterable[str]) -> str:
+    """A whole page around its parts, which are HTML."""
+    version = escape(saved.jaxhydro)
     return _PAGE.substitute(
-        generator=f'{GENERATOR} {escape(saved.jaxhydro)}">',
-        title=escape(saved.campaign),
-        version=escape(saved.jaxhydro),
-        state=_state(fitted),
-        tests=_tests(saved, errors),
-        parameters=_parameters(fitted.parameters),
-        notes=_notes(fitted.notes),
-        figures=_figures(saved, folder),
-    )
+        generator=f'{GENERATOR} {version}">', title=escape(saved.campaign), by=f"{what} by jaxhydro {version}",
+        body="\n".join(filter(None, body)),
+    )  # fmt: skip
 
 
 def _state(fitted: Fitted) -> str:
@@ -56,9 +69,7 @@ def _state(fitted: Fitted) -> str:
         lines[0] += f", <b>{number(objective.holdout, 3)}</b> over those held out"
     if fitted.iterations is not None and fitted.seconds is not None:
         lines.append(f"{fitted.iterations} iterations in {fitted.seconds:.0f} s")
-    warning = "" if fitted.converged else (
-        '<p class="warning">The fit did not converge: what follows is where it stopped, not a calibration.</p>'
-    )
+    warning = "" if fitted.converged else UNCONVERGED.format("a calibration")
     return f"{warning}<p>{'; '.join(lines)}.</p>"
 
 
@@ -70,12 +81,12 @@ def _tests(saved: Saved, errors: dict[str, dict[str, Error]]) -> str:
         length = f"{number(about.duration, 3)} s" if about and about.duration is not None else ""
         named = sorted(channels.items(), key=lambda item: not item[1].in_objective)
         for i, (name, error) in enumerate(named or [("", None)]):
-            first = [id, kind, length, _USE.get(use, use)] if i == 0 else [""] * 4
-            cells = [*first, name, *_error(error)]
+            first = [id, kind, length, USE.get(use, use)] if i == 0 else [""] * 4
+            row = [*first, name, *_error(error)]
             muted = ' class="muted"' if error is not None and not error.in_objective else ""
-            rows.append(f"<tr{muted}>{_cells(cells, 5)}</tr>")
+            rows.append(f"<tr{muted}>{cells(row, 5)}</tr>")
     heads = ["Test", "Kind", "Length", "Use", "Channel", "RMSE", "of its motion", "before"]
-    return _table(heads, rows, 5)
+    return table(heads, rows, 5)
 
 
 def _error(error: Error | None) -> list[str]:
@@ -90,40 +101,47 @@ def _parameters(parameters: dict[str, Parameter]) -> str:
     for label, one in parameters.items():
         value = with_deviation(one.value, one.standard_deviation) if one.identifiable else "not identifiable"
         flag = "at its bound" if one.at_bound else ""
-        cells = [label, one.meaning, number(one.start, 3), value, one.unit, flag]
-        rows.append(f"<tr{'' if one.identifiable else ' class=muted'}>{_cells(cells, 2, 4)}</tr>")
-    return _table(["Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit", ""], rows, 2, 4)
+        row = [label, one.meaning, number(one.start, 3), value, one.unit, flag]
+        rows.append(f"<tr{'' if one.identifiable else ' class=muted'}>{cells(row, 2, 4)}</tr>")
+    return table(["Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit", ""], rows, 2, 4)
 
 
-def _notes(notes: list[str]) -> str:
-    if not notes:
-        return ""
-    return f"<h2>Notes</h2><ul>{''.join(f'<li>{escape(note)}</li>' for note in notes)}</ul>"
+def listed(texts: Iterable[str]) -> str:
+    """A list of points."""
+    return f"<ul>{''.join(f'<li>{escape(text)}</li>' for text in texts)}</ul>"
 
 
-def _figures(saved: Saved, folder: Path) -> str:
-    """Figures in their stated order, then others that are there; only PNG files of the folder itself are taken."""
+def images(saved: Saved, folder: Path) -> dict[str, str]:
+    """Figures by name in their stated order, then others that are there; only PNG files of the folder itself are taken."""
     there = {path.name: path for path in sorted((folder / FIGURES).glob("*.png")) if path.is_file()}
     captions = {Path(figure.file).name: figure.caption for figure in saved.figures}
     names = [name for name in captions if name in there] + [name for name in there if name not in captions]
-    parts = []
+    parts = {}
     for name in names:
         content = there[name].read_bytes()
         if content.startswith(_PNG):
             data = base64.b64encode(content).decode("ascii")
             caption = escape(captions.get(name) or name)
-            parts.append(f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}'
-                         "</figcaption></figure>")  # fmt: skip
-    return f"<h2>Figures</h2><div class=figures>{''.join(parts)}</div>" if parts else ""
+            parts[name] = (f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}'
+                           "</figcaption></figure>")  # fmt: skip
+    return parts
 
 
-def _table(heads: list[str], rows: Iterable[str], first: int, last: int = 99) -> str:
+def figures(parts: Iterable[str]) -> str:
+    """Figures in two columns; nothing where there are none."""
+    together = "".join(parts)
+    return f"<div class=figures>{together}</div>" if together else ""
+
+
+def table(heads: Sequence[str], rows: Iterable[str], first: int, last: int = 99) -> str:
+    """A table of rows that are HTML; columns from `first` on, up to before `last`, are numbers."""
     head = "".join(f"<th{_right(i, first, last)}>{escape(name)}</th>" for i, name in enumerate(heads))
     return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
 
 
-def _cells(cells: list[str], first: int, last: int = 99) -> str:
-    return "".join(f"<td{_right(i, first, last)}>{escape(cell)}</td>" for i, cell in enumerate(cells))
+def cells(texts: Sequence[str], first: int, last: int = 99) -> str:
+    """The cells of a row, for columns as in `table`."""
+    return "".join(f"<td{_right(i, first, last)}>{escape(text)}</td>" for i, text in enumerate(texts))
 
 
 def _right(i: int, first: int, last: int) -> str:
@@ -145,6 +163,8 @@ h1 { font-size: 1.5rem; margin: 0 0 .2rem; } h2 { font-size: 1.1rem; margin: 2re
 .by, .muted td, figcaption { color: #6a717b; }
 .by { margin: 0 0 1.2rem; }
 .warning { background: #fbe9e7; border-left: 4px solid #d1495b; padding: .6rem .9rem; font-weight: 600; }
+.verdict { background: #eef3f8; border-left: 4px solid #4f7cac; padding: .6rem .9rem; font-size: 1.1rem; }
+.size { font-size: 1.05rem; margin: .2rem 0 .4rem; } h3 { font-size: 1rem; margin: 1.3rem 0 .2rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .92rem; }
 th, td { text-align: left; padding: .2rem .9rem .2rem 0; border-bottom: 1px solid #e4e6ea; vertical-align: top; }
@@ -160,14 +180,8 @@ figcaption { font-size: .85rem; line-height: 1.35; }
 </head>
 <body>
 <h1>$title</h1>
-<p class="by">Calibration by jaxhydro $version</p>
-$state
-<h2>Tests</h2>
-$tests
-<h2>Parameters</h2>
-$parameters
-$notes
-$figures
+<p class="by">$by</p>
+$body
 </body>
 </html>
 """)

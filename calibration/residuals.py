@@ -145,7 +145,9 @@ class Problem(eqx.Module):
         grid = integrate(
             model, StillWater(), state, record.time[0], record.step, record.capacity, count=record.count
         )
-        return (grid.at(record.time, record.dofs)[0] - base[dofs] + offset).T
+        if not model.senses:  # three motions cost less than six
+            return (grid.at(record.time, record.dofs)[0] - base[dofs] + offset).T
+        return ((model.seen(grid.at(record.time)[0]) - model.seen(base))[:, dofs] + offset).T
 
     def products(
         self, unknowns: Unknowns, until: Float[Array, " r"]

@@ -1,27 +1,32 @@
-"""A written calibration.json, read back and checked."""
+"""A written calibration.json, or what of a diagnosis.json is a calibrated model, read back and checked."""
 
 import json
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from calibration.outputs import RESULT
+from calibration.outputs import DIAGNOSIS, RESULT
 from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Number, Positive, Problem, shown, suggest, validate
 from jaxhydro.waves.sea_state import SeaState
 
+OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in one basin, not to the hull
+    "mooring.", "stiffness.", "mooring_nonlinearity.", "umbilical.", "current.", "static_offset.", "mass_properties.",
+    "sensor_reference.", "sensor_lag.", "wave_gauge_position.", "wave_reflection.",
+)  # fmt: skip
 
-class _Open(BaseModel):
+
+class Open(BaseModel):
     """Keys that are not known are taken and left alone: results may grow."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
 
-class Parameter(_Open):
+class Parameter(Open):
     """One calibrated parameter."""
 
     value: Number
@@ -33,7 +38,7 @@ class Parameter(_Open):
     meaning: str = ""
 
 
-class Error(_Open):
+class Error(Open):
     """RMSE of one channel, in m or deg, and over the standard deviation of what was measured."""
 
     rmse: Number
@@ -43,21 +48,21 @@ class Error(_Open):
     before: "Error | None" = None
 
 
-class Objective(_Open):
+class Objective(Open):
     """J over the fitted and over the held-out tests."""
 
     fit: Number
     holdout: Number | None = None
 
 
-class Reference(_Open):
+class Reference(Open):
     """The sea state (m, s) that exponents count from."""
 
     significant_height: Positive
     peak_period: Positive
 
 
-class Fitted(_Open):
+class Fitted(Open):
     """A model as it was calibrated. `error` has `use`, and channels, by test."""
 
     parameters: dict[str, Parameter]
@@ -70,7 +75,7 @@ class Fitted(_Open):
     sea_state_reference: Reference | None = None
 
 
-class About(_Open):
+class About(Open):
     """What a test was."""
 
     use: str = ""
@@ -81,41 +86,63 @@ class About(_Open):
     samples: int | None = None
 
 
-class Drawn(_Open):
+class Drawn(Open):
     """A figure, its file below the folder, and its caption."""
 
     file: str
     caption: str = ""
 
 
-class Saved(_Open):
-    """calibration.json."""
+class Saved(Open):
+    """calibration.json; of a diagnosis.json the models before and after, `augmented` the one with what was missing."""
 
     campaign: str
     jaxhydro: str
     baseline: Fitted
+    augmented: Fitted | None = None
     platform: str = ""
     tests: dict[str, About] = Field(default_factory=dict)
     figures: list[Drawn] = Field(default_factory=list)
 
-    def values(self) -> dict[str, float]:
-        """The calibrated values by label."""
-        return {label: one.value for label, one in self.baseline.parameters.items()}
+    @property
+    def best(self) -> Fitted:
+        """The model to simulate with: what was missing is in it, where it was looked for."""
+        return self.augmented or self.baseline
 
-    def errors(self, source: str) -> dict[str, dict[str, Error]]:
-        """Test -> channel -> error. Raises InputError for what is none."""
+    @property
+    def key(self) -> str:
+        """Where that model stands in the file."""
+        return "baseline" if self.augmented is None else "augmented"
+
+    def values(self) -> dict[str, float]:
+        """Its calibrated values by label."""
+        return {label: one.value for label, one in self.best.parameters.items()}
+
+    def errors(self, source: str, key: str = "baseline") -> dict[str, dict[str, Error]]:
+        """Test -> channel -> error of the baseline or the augmented model. Raises InputError for what is none."""
+        fitted: Fitted = getattr(self, key)
         return {
-            id: {name: validate(Error, value, f"{source}: baseline.error.{id}.{name}")
+            id: {name: validate(Error, value, f"{source}: {key}.error.{id}.{name}")
                  for name, value in row.items() if name not in ("use", "bands", "bands_before")}
-            for id, row in self.baseline.error.items()
+            for id, row in fitted.error.items()
         }  # fmt: skip
 
 
+S = TypeVar("S", bound=Saved)
+
+
 def read_saved(path: str | PathLike[str]) -> Saved:
-    """The result in a calibration.json, or in the folder that has one. Raises InputError with all that is wrong."""
+    """The result in a calibration.json or diagnosis.json, or in the folder that has one. Raises InputError with all that is
+    wrong."""
+    return read_as(Saved, path)
+
+
+def read_as(kind: type[S], path: str | PathLike[str]) -> S:
+    """`read_saved`, as what holds more of the file than the calibrated models."""
     path = Path(path)
     try:
-        path = path / RESULT if path.is_dir() else path
+        if path.is_dir():
+            path = path / (DIAGNOSIS if (path / DIAGNOSIS).is_file() else RESULT)
         data = json.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
         raise _wrong(path, f"a {RESULT}, as `jaxhydro calibrate` writes it", "no such file") from None
@@ -128,17 +155,17 @@ def read_saved(path: str | PathLike[str]) -> Saved:
         raise _wrong(path, f"a {RESULT} that can be read", str(getattr(error, "strerror", None) or error)) from None
     if not isinstance(data, dict):
         raise _wrong(path, "a mapping of keys to values", type(data).__name__)
-    return validate(Saved, data, str(path))
+    return validate(kind, data, str(path))
 
 
 def read_values(path: str | PathLike[str]) -> dict[str, float]:
-    """The calibrated values in a calibration.json, by label. Raises InputError."""
+    """The calibrated values in a calibration.json or diagnosis.json, by label. Raises InputError."""
     return read_saved(path).values()
 
 
 class Applied(NamedTuple):
     """A model with values of a calibration, these values, those of them that its records did not determine, and those that were
-    left: moorings are each campaign's own."""
+    left: moorings and the like are each campaign's own."""
 
     model: Model
     values: dict[str, float]
@@ -153,33 +180,54 @@ def applied(path: str | PathLike[str], model: Model, platform: str) -> Applied:
     Raises InputError for a file that is none, and for values that the model has no place for.
     """
     saved = read_saved(path)
-    model = _with_laws(saved, model, path)
+    model = fitting(saved, model, path)
     own = not saved.platform or saved.platform == platform
-    values = {k: v for k, v in saved.values().items() if own or not k.startswith(("mooring.", "stiffness."))}
+    values = {k: v for k, v in saved.values().items() if own or not k.startswith(OF_CAMPAIGN)}
     if unknown := [label for label in values if label not in model.values]:
-        expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
-        hint = suggest(unknown[0], model.values)
-        raise _wrong(Path(path), expected, ", ".join(map(shown, unknown)), "baseline.parameters", hint)
-    vague = tuple(label for label in values if not saved.baseline.parameters[label].identifiable)
+        raise no_place(saved, unknown, model, platform, path)
+    vague = tuple(label for label in values if not saved.best.parameters[label].identifiable)
     left = tuple(label for label in saved.values() if label not in values)
     return Applied(model.with_values(values), values, vague, left, saved.campaign)
 
 
+def no_place(saved: Saved, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]) -> InputError:
+    """The error of calibrated values that a model has no place for."""
+    expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
+    found, hint = ", ".join(map(shown, unknown)), suggest(unknown[0], model.values)
+    return _wrong(Path(path), expected, found, f"{saved.key}.parameters", hint)
+
+
+def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
+    """The model with what calibrated values need beyond what is declared: laws over the sea state, and the effects that a
+    diagnosis found, at their null."""
+    model = _with_laws(saved, model, path)
+    added = [label for label in saved.values() if label not in model.values]
+    if saved.augmented is None or not added:
+        return model
+    from calibration.discovery.catalogue import with_effects
+
+    try:
+        return with_effects(model, added)
+    except (KeyError, ValueError) as error:
+        said = str(error.args[0] if error.args else error)
+        raise _wrong(Path(path), "parameters of effects that this version knows", said, "augmented.parameters") from None
+
+
 def _with_laws(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     """The model with the laws over the sea state that the calibrated values have exponents of."""
-    stated = saved.baseline.sea_state_reference
+    stated = saved.best.sea_state_reference
     labels = [label for label in saved.values() if is_exponent(label) and split(label)[0] in model.values]
     if not labels:
         return model
     if stated is None:
-        where, found = "baseline.sea_state_reference", "nothing"
+        where, found = f"{saved.key}.sea_state_reference", "nothing"
         raise _wrong(Path(path), f"the sea state that {labels[0]} counts from", found, where)
     reference = SeaState(stated.significant_height, stated.peak_period)
     try:
         loads = with_exponents(model.loads, dict.fromkeys(labels, 0.0), reference)
         return replace(model, loads=loads)
     except ValueError as error:
-        where = "baseline.sea_state_reference"
+        where = f"{saved.key}.sea_state_reference"
         raise _wrong(Path(path), "the reference that the platform declares", str(error), where) from None
 
 

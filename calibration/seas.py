@@ -26,6 +26,7 @@ from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular import separated_record
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea import Stretching
+from jaxhydro.waves.second_order import KINDS, Kind
 
 MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
 INSIDE = 0.95  # of its variance, that should lie in the band
@@ -37,7 +38,8 @@ class Options:
     """How waves are made and act. Frequencies (Hz, full scale) bound the first order; diffraction None: as the platform says.
 
     In the default band: below it a sea has no first order worth the name, and what a gauge reads there is bound, or the basin's
-    own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge).
+    own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge). `kinds`
+    of pairs bind at second order.
     """
 
     order: Literal[1, 2] = 2
@@ -45,6 +47,7 @@ class Options:
     diffraction: str | None = None
     low: float = 0.03
     cutoff: float = 0.3
+    kinds: tuple[Kind, ...] = KINDS
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,11 +96,11 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     inside = float(power[(frequency >= options.low) & (frequency <= options.cutoff)].sum() / max(power.sum(), 1e-300))
     try:
         found = separated_record(run.time, run.wave, environment, position=run.position, heading=run.heading,
-                                 low=options.low, cutoff=options.cutoff, order=options.order)  # fmt: skip
+                                 low=options.low, cutoff=options.cutoff, order=options.order, kinds=options.kinds)  # fmt: skip
     except ValueError as error:
         expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
-    sea, notes = IrregularSea(found.waves, environment, options.order, options.stretching), []
+    sea, notes = IrregularSea(found.waves, environment, options.order, options.stretching, kinds=options.kinds), []
     band = f"{options.low:g} to {options.cutoff:g} Hz"
     if found.mismatch > MISMATCH:
         notes.append(f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "

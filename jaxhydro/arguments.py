@@ -21,6 +21,7 @@ EPILOG = "\n\n".join((
     "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --out sea",
     "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
     "jaxhydro calibrate my-campaign --out results",
+    "jaxhydro diagnose my-campaign --out diagnosis",
     "[bold]Formats[/bold]",
     "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
     "example to copy: `jaxhydro demo` prints where they are.",
@@ -33,6 +34,20 @@ EXAMPLES = "\n\n".join((
     "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
     "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
     "jaxhydro simulate my-campaign --calibration results/calibration.json --out seas",
+))  # fmt: skip
+
+DIAGNOSING = "\n\n".join((
+    "[bold]Examples[/bold]",
+    "jaxhydro diagnose my-campaign --out diagnosis",
+    "jaxhydro report diagnosis",
+    "jaxhydro simulate my-campaign --calibration diagnosis/diagnosis.json --out seas",
+    "[bold]What makes a good campaign[/bold]",
+    "Tests of one kind from small and large amplitudes: effects differ by how they grow. At least one test of every kind "
+    "marked `use: holdout`: without one an effect is believed on the fitted tests alone. Decays say nothing of what acts in "
+    "waves only.",
+    "[bold]What it writes[/bold]",
+    "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "
+    "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so.",
 ))  # fmt: skip
 
 
@@ -173,7 +188,10 @@ Duration = Annotated[
     float | None, typer.Option(help="Simulated time, s.", show_default="600, 3600 in a sea, or all of a record")
 ]
 Dt = Annotated[float, typer.Option("--dt", help="Time between the samples that are written, s.")]
-Calibrated = Annotated[Path | None, typer.Option("--calibration", help="A calibration.json whose values are to be used.")]
+Calibrated = Annotated[
+    Path | None,
+    typer.Option("--calibration", help="A calibration.json or diagnosis.json whose values, and effects found, are used."),
+]
 Step = Annotated[
     float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")
 ]

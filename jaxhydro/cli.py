@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 
 from jaxhydro import arguments, options, sea_options
 from jaxhydro.console import complain, say, table
-from jaxhydro.problems import InputError, Problem, shown, suggest
+from jaxhydro.problems import InputError
 
 if TYPE_CHECKING:
     from jaxhydro.model import Model
@@ -164,8 +164,31 @@ def calibrate(
     _calibrate(campaign, out, figures, None, kind, **how)
 
 
+@app.command(epilog=arguments.DIAGNOSING)
+def diagnose(
+    campaign: Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")],
+    out: Out,
+    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
+) -> None:
+    """Fit a platform's coefficients, then find what the model lacks: an effect with its name, its size and the evidence.
+
+    The declared model is fitted to the tests marked `fit`. What is left is compared with the noise; effects that could be
+    missing are scored, the best of them fitted with all coefficients free again, and kept only where the tests marked
+    `holdout` gain by it. Nothing in the campaign has to name an effect. The answer may be that nothing is missing, or that
+    something is and none of the known effects explains it.
+    """
+    out = options.results_folder(out, "diagnosis.json")
+    _start()
+    from calibration.discovery.command import diagnose_campaign
+
+    if not diagnose_campaign(campaign, out, figures):
+        raise typer.Exit(NOT_CONVERGED)
+
+
 @app.command()
-def report(folder: Annotated[Path, typer.Argument(help="A folder that `jaxhydro calibrate` wrote.")]) -> None:
+def report(
+    folder: Annotated[Path, typer.Argument(help="A folder that `jaxhydro calibrate` or `jaxhydro diagnose` wrote.")],
+) -> None:
     """Make one self-contained HTML page, report.html, of what is in a result folder."""
     from calibration.report import write_report
 
@@ -241,25 +264,9 @@ def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, how:
 
 
 def _model(platform: str, calibration: Path | None, diffraction: str | None, elements: int | None) -> "Model":
-    from jaxhydro.command import model_of
+    from jaxhydro.command import calibrated, model_of
     from jaxhydro.platform_schema import load_platform
 
     declared = load_platform(platform)
     model = model_of(declared, diffraction, elements)
-    if calibration is None:
-        return model
-    from calibration.saved import read_saved
-
-    saved, known = read_saved(calibration), model.values
-    values = saved.values()
-    if unknown := [label for label in values if label not in known]:
-        expected = f"parameters of {platform} ({', '.join(sorted(known)) or 'it has none'})"
-        hint = suggest(unknown[0], known)
-        raise InputError(str(calibration), [Problem("baseline.parameters", expected, ", ".join(map(shown, unknown)), hint)])
-    if saved.platform and saved.platform != declared.name:
-        used = f"its values are used for {declared.name!r}"
-        complain(f"warning: {calibration} is a calibration of {saved.platform!r}, and {used}")
-    say(f"Calibrated values used: {', '.join(values)}")
-    if vague := [label for label, one in saved.baseline.parameters.items() if not one.identifiable]:
-        complain(f"warning: among them the records did not determine {', '.join(vague)}")
-    return model.with_values(values)
+    return model if calibration is None else calibrated(model, platform, declared.name, calibration)

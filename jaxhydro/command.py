@@ -58,6 +58,23 @@ def model_of(platform: Platform, diffraction: str | None = None, elements: int |
     return model if diffraction is None else dataclasses.replace(model, diffraction=str(diffraction))
 
 
+def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
+    """The model with the values, laws and effects of a calibration.json or diagnosis.json. `asked` and `name` are the platform
+    as it was asked for, and its own name. Raises InputError."""
+    from calibration.saved import fitting, no_place, read_saved
+
+    saved = read_saved(source)
+    model, values = fitting(saved, model, source), saved.values()
+    if unknown := [label for label in values if label not in model.values]:
+        raise no_place(saved, unknown, model, asked, source)
+    if saved.platform and saved.platform != name:
+        complain(f"warning: {source} is a calibration of {saved.platform!r}, and its values are used for {name!r}")
+    say(f"Calibrated values used: {', '.join(values)}")
+    if vague := [label for label, one in saved.best.parameters.items() if not one.identifiable]:
+        complain(f"warning: among them the records did not determine {', '.join(vague)}")
+    return model.with_values(values)
+
+
 def finite(times: np.ndarray, position: np.ndarray) -> bool:
     """Whether a motion is all numbers; where it is not, says from when on."""
     if np.isfinite(position).all():

@@ -1,5 +1,6 @@
 """What the command line prints: tables, messages, progress. Text that comes from files is never read as markup."""
 
+import math
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -54,7 +55,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
         def note(now: Any) -> None:
             if now.stage not in stages:
                 stages.append(now.stage)
-                shown.print(Text(f"{now.stage}: iteration {now.iteration}, {now.name} = {now.objective:.4g}"), soft_wrap=True)
+                shown.print(Text(": ".join(filter(None, (now.stage, _reached(now))))), soft_wrap=True)
 
         yield note
         return
@@ -69,7 +70,11 @@ def progress() -> Iterator[Callable[[Any], None]]:
         def update(now: Any) -> None:
             nonlocal furthest
             furthest = max(furthest, now.fraction)
-            state = f"iteration {now.iteration}, {now.name} = {now.objective:.4g}"
-            bar.update(task, description=str(now.stage), completed=furthest, state=state)
+            bar.update(task, description=str(now.stage), completed=furthest, state=_reached(now))
 
         yield update
+
+
+def _reached(now: Any) -> str:
+    """Iteration and objective; nothing in a stage that has none."""
+    return f"iteration {now.iteration}, {now.name} = {now.objective:.4g}" if math.isfinite(now.objective) else ""

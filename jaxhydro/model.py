@@ -138,6 +138,11 @@ class Model(eqx.Module):
         """Steady velocity of the water (m/s, earth axes); None: it has none."""
         return _sum([load.stream() for load in self.loads])
 
+    @property
+    def senses(self) -> bool:
+        """Whether any load is about what the sensors make of a position."""
+        return any(type(load).seen is not AbstractLoad.seen for load in self.loads)
+
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
         """What the motion sensors make of a position (m, rad)."""
         for load in self.loads:
@@ -145,12 +150,16 @@ class Model(eqx.Module):
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:
-        """By how much (s) the clock of the motions is ahead of that of the waves; None: they are one."""
+        """Lag (s) of the recorded motions behind the waves: y(t - lag) is recorded at t; None: their clock is one."""
         return _sum([load.clock_lag() for load in self.loads])
 
     def rest(self) -> State:
         """At the reference position without motion."""
         return State(jnp.zeros(6), jnp.zeros(6), tuple(load.rest() for load in self.loads))
+
+    def settled(self, displacement: Float[Array, "6"]) -> tuple[Any, ...]:
+        """The loads' memories after the platform was moved slowly to a displacement (m, rad, from rest) and held there."""
+        return tuple(load.settled(displacement) for load in self.loads)
 
     def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
         """What the loads read: the motion, and how the water moves past strips and ends."""
@@ -204,7 +213,18 @@ class Model(eqx.Module):
             at_ends = [(toward_end * field[:, n:]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
             past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[n:], end_wet)
         return Instant(
-            time, state.position, matrix, state.velocity, self.environment, hull, wetted, shape, past, past_end, lines
+            time,
+            state.position,
+            matrix,
+            state.velocity,
+            self.environment,
+            hull,
+            wetted,
+            shape,
+            past,
+            past_end,
+            lines,
+            sea.drift(time),
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":

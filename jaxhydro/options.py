@@ -70,7 +70,8 @@ def releases(given: list[str]) -> dict[str, float]:
     return offsets
 
 
-RESULTS = {"motion.csv": "a simulation", "calibration.json": "a calibration", "comparison.json": "a campaign's seas"}
+RESULTS = {"motion.csv": "a simulation", "calibration.json": "a calibration", "diagnosis.json": "a diagnosis",
+           "comparison.json": "a campaign's seas"}  # fmt: skip
 
 
 def results_folder(out: Path, mine: str) -> Path:

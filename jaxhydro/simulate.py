@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -64,8 +64,9 @@ def simulate(
     """Motion of the platform at `times` (s, increasing, as recorded: any spacing).
 
     It starts at `times[0]` from the static equilibrium with the given `position` (m, rad: added to the equilibrium where given
-    by name, absolute where an array) and `rate` (m/s, rad/s of surge ... yaw). `step` (s) is the largest internal step; the
-    one taken divides the duration. Positions are those of the reference point, equilibrium included.
+    by name, as if it had been moved there slowly and held; absolute where an array) and `rate` (m/s, rad/s of surge ... yaw).
+    `step` (s) is the largest internal step; the one taken divides the duration. Positions are those of the reference
+    point, equilibrium included.
 
     In an `IrregularSea` the default is "ab4", four-step Adams-Bashforth at 0.25 s (see `adams_bashforth`), the sea is
     prepared for the hull first (see `supports`), and coefficients that depend on the sea state are those of its own
@@ -87,10 +88,11 @@ def simulate(
     irregular = isinstance(sea, IrregularSea)
     method = ("ab4" if irregular else "tsit5") if method is None else method
     limit = step if step is not None else SEA_STEP if irregular else default_step(model)
-    start = model.rest()
-    rest = equilibrium(model) if position is None or isinstance(position, Mapping) else jnp.zeros(6)
+    named = position is None or isinstance(position, Mapping)
+    memory = model.settled(by_name(position)) if named else model.rest().memory
+    rest = equilibrium(model) if named else jnp.zeros(6)
     q = rest + by_name(position)
-    start = State(q, model.body_velocity(q, by_name(rate)), start.memory)
+    start = State(q, model.body_velocity(q, by_name(rate)), memory)
     if isinstance(sea, IrregularSea):
         return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, limit, method, adjoint).response
     duration = float(times[-1] - times[0])
@@ -130,7 +132,8 @@ def in_irregular(
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion)
         found = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
-        reached = float(_farthest(found.position, jnp.asarray(points), prepared))
+        met: Any = model.through(prepared)  # with the box moved where the sea is
+        reached = float(_farthest(found.position, jnp.asarray(points), met))
         if not reached + margin > prepared.half:
             return InIrregular(found, prepared, step, steps)
         if reached > prepared.half + 10 * EXCURSION:
@@ -160,7 +163,7 @@ def free_decay(
     released = by_name(displacement)
     if bool((jnp.abs(released[3:]) > math.pi / 2).any()):
         raise ValueError(f"angles are in rad, at most pi/2 here, found {float(jnp.abs(released[3:]).max()):g}")
-    return simulate(model, times, position=equilibrium(model) + released, **options)
+    return simulate(model, times, position=dict(zip(DOFS, released)), **options)
 
 
 def by_name(values: Mapping[str, float] | Float[Array, "6"] | None) -> Float[Array, "6"]:

@@ -18,7 +18,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta"),
     ("jaxhydro.adams_bashforth", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
     ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
-    ("jaxhydro.waves.sea", "jaxhydro.waves.second_order", "jaxhydro.waves.sea_state"),
+    ("jaxhydro.waves.sea", "jaxhydro.waves.second_order", "jaxhydro.waves.sea_state", "jaxhydro.waves.envelope"),
     ("jaxhydro.waves.irregular", "jaxhydro.waves.irregular_sea"),
     ("jaxhydro.waves",),
     ("jaxhydro.loads.base",),
@@ -48,11 +48,13 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "strip_inertia": {"spread"},
     "end_inertia": {"spread_ends"},
     "drag": "*",
+    "per_dof": "*",
 }
 NUMERICS = [name for layer in LAYERS[:13] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
     "matplotlib": {"jaxhydro.plot"}
-    | {f"calibration.{name}" for name in ("plot", "seas_plot", "sea_laws_plot", "uncertainty_plot")},
+    | {f"calibration.{name}" for name in ("plot", "seas_plot", "sea_laws_plot", "uncertainty_plot")}
+    | {f"calibration.discovery.{name}" for name in ("plots", "search_plots")},
     "PIL": {"jaxhydro.plot"},
     "ruamel": {"jaxhydro.problems"},
     "yaml": set(),

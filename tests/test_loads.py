@@ -14,22 +14,45 @@ from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
+from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     LOADS,
     AbstractLoad,
     AddedMass,
     Buoyancy,
+    ChangingDrag,
+    CoulombFriction,
+    CoupledDamping,
+    CoveredEnds,
+    CubicDamping,
+    Current,
     EndDrag,
     EndInertia,
+    HiddenOscillator,
     HighPassDrag,
+    Hysteresis,
     KeuleganCarpenterDrag,
     LinearDamping,
+    MassError,
     MooringLines,
+    MooringNonlinearity,
+    NonlinearHydrostatics,
+    PowerDrag,
     QuadraticDamping,
+    RadiationMemory,
+    SensorLag,
+    SensorReference,
+    SlowDrag,
+    StaticForce,
     Stiffness,
     StripDrag,
     StripInertia,
     SuctionSideDrag,
+    Umbilical,
+    WaveDrift,
+    WaveDriftDamping,
+    WaveGaugePosition,
+    WaveReflection,
     Weight,
 )
 
@@ -84,10 +107,65 @@ def build(*members: dict, **changes) -> jh.Model:
     return jh.build(jh.Platform.model_validate(data | changes))
 
 
+FOUND = {  # what no platform file declares: effects that were found to be missing, by their labels' ends
+    "umbilical": {"stiffness": 2e4, "pull": 1e5, "mass": 4e4, "height": 12.0},
+    "coulomb_friction": {"force": 5e4, "speed": 0.01},
+    "hysteresis": {"force": 8e4, "yield_displacement": 0.3},
+    "mooring_nonlinearity": {"odd_quadratic": 800.0, "even_quadratic": -300.0, "cubic": 40.0},
+    "radiation_memory": {"strength": 3e5, "frequency": 0.5, "damping_ratio": 0.3},
+    "hidden_oscillator": {"mass": 2e5, "period": 14.0, "damping_ratio": 0.05},
+    "nonlinear_hydrostatics": {"even_quadratic": 3e4, "cubic": 5e3, "quintic": 200.0, "pitch_squared": 2e7},
+    "cubic_damping": {"coefficient": 3e4},
+    "mass_properties": {"mass": 3e5, "centre_x": 0.2, "centre_z": -0.4, "inertia_roll": 2e8},
+    "static_offset": {"force": 6e4},
+    # what changes the water that the others meet stays at its null: the sum of all is that of each alone
+    "sensor_reference": {"x": 4.0, "z": -6.0},
+    "sensor_lag": {"delay": 0.4},
+    "wave_drift": {"envelope": 2e4, "quadrature": -7e3, "frequency_weighted": 9e3},
+    "wave_drift_damping": {"coefficient": 1e4},
+    "amplitude_dependent_drag": {"exponent": -0.3},
+    "sea_state_dependent_drag": {"low_share": 1.4, "cutoff": 0.04},
+    "coupled_damping": {"B15": 3e5},
+    "covered_ends": {"share": 0.6},
+}
+
+
+def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad, ...]:
+    """The loads that no platform file declares, at their nulls."""
+    return (
+        Umbilical.null(),
+        NonlinearHydrostatics.null(),
+        MassError.null(model.body.mass, model.body.centre),
+        *(kind.null(dofs) for kind in (CoulombFriction, CubicDamping, StaticForce, MooringNonlinearity)),
+        *(kind.null(dofs) for kind in (Hysteresis, RadiationMemory, HiddenOscillator)),
+    )
+
+
+def in_water(model: jh.Model) -> jh.Model:
+    """The model with the effects of the water and the sensors at their nulls; three drag coefficients get laws of their own."""
+    taken = {"column.Cd_t": PowerDrag, "pontoon.Cd_t": SlowDrag, "pontoon.Cd_z": ChangingDrag}
+    plain = [
+        dataclasses.replace(load, values={k: v for k, v in load.values.items() if k not in taken})
+        if isinstance(load, StripDrag)
+        else load
+        for load in model.loads
+    ]
+    drag = [law.null({label: model.values[label]}) for label, law in taken.items()]
+    others = (CoupledDamping, CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
+    return model_of(model, *plain, *drag, *(kind.null() for kind in others), WaveDrift.null(DOFS), WaveDriftDamping.null())
+
+
 @cache
 def everything() -> jh.Model:
     """One of every load."""
-    return build(**EVERYTHING)
+    model = build(**EVERYTHING)
+    for load in effects(model):
+        model = model.with_load(load)
+    model = in_water(model)
+    parts = {label: label.split(".") for label in model.values}
+    return model.with_values(
+        {label: FOUND[part[0]][part[-1]] for label, part in parts.items() if part[-1] in FOUND.get(part[0], ())}
+    )
 
 
 def only(model: jh.Model, *kinds: type) -> jh.Model:
@@ -188,6 +266,7 @@ def test_gradients_at_rest_are_finite() -> None:
 
 
 DISSIPATIVE = [StripDrag, EndDrag, HighPassDrag, KeuleganCarpenterDrag, SuctionSideDrag, LinearDamping, QuadraticDamping]
+DISSIPATIVE += [CoulombFriction, CubicDamping, PowerDrag]
 
 
 @pytest.mark.parametrize("kind", DISSIPATIVE)

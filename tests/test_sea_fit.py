@@ -111,8 +111,9 @@ def test_coefficients_of_a_made_run_are_found_back(fitted) -> None:
 
 def test_what_is_written(fitted, tmp_path) -> None:
     result, _, _ = fitted
-    found = document(result)["baseline"]["error"]
-    assert set(found["sea-a"]["bands"]) == set(found["sea-a"]["bands_before"]) == {"surge", "heave", "pitch"}
+    content = document(result)
+    found = content["baseline"]["error"]
+    assert set(found["sea-a"]["bands"]) == set(content["tests"]["sea-a"]["bands_before"]) == {"surge", "heave", "pitch"}
     assert "bands" not in found["wave"]
     write_calibration(result, tmp_path / "o")
     saved = json.loads((tmp_path / "o" / "calibration.json").read_text())

@@ -2,18 +2,40 @@
 
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.changing_drag import ChangingDrag
+from jaxhydro.loads.coulomb_friction import CoulombFriction
+from jaxhydro.loads.coupled_damping import CoupledDamping
+from jaxhydro.loads.covered_ends import CoveredEnds
+from jaxhydro.loads.cubic_damping import CubicDamping
+from jaxhydro.loads.current import Current
 from jaxhydro.loads.end_drag import EndDrag
 from jaxhydro.loads.end_inertia import EndInertia
+from jaxhydro.loads.hidden_oscillator import HiddenOscillator
 from jaxhydro.loads.high_pass_drag import HighPassDrag
 from jaxhydro.loads.hydrostatics import Buoyancy
+from jaxhydro.loads.hysteresis import Hysteresis
 from jaxhydro.loads.keulegan_carpenter_drag import KeuleganCarpenterDrag
 from jaxhydro.loads.linear_damping import LinearDamping
+from jaxhydro.loads.mass_error import MassError
 from jaxhydro.loads.mooring_lines import MooringLines
+from jaxhydro.loads.mooring_nonlinearity import MooringNonlinearity
+from jaxhydro.loads.nonlinear_hydrostatics import NonlinearHydrostatics
+from jaxhydro.loads.power_drag import PowerDrag
 from jaxhydro.loads.quadratic_damping import QuadraticDamping
+from jaxhydro.loads.radiation_memory import RadiationMemory
+from jaxhydro.loads.sensor_lag import SensorLag
+from jaxhydro.loads.sensor_reference import SensorReference
+from jaxhydro.loads.slow_drag import SlowDrag
+from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.loads.strip_drag import StripDrag
 from jaxhydro.loads.strip_inertia import StripInertia
 from jaxhydro.loads.suction_side_drag import SuctionSideDrag
+from jaxhydro.loads.umbilical import Umbilical
+from jaxhydro.loads.wave_drift import WaveDrift
+from jaxhydro.loads.wave_drift_damping import WaveDriftDamping
+from jaxhydro.loads.wave_gauge_position import WaveGaugePosition
+from jaxhydro.loads.wave_reflection import WaveReflection
 from jaxhydro.loads.weight import Weight
 
 LOADS: dict[str, type[AbstractLoad]] = {
@@ -31,6 +53,28 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "high_pass_drag": HighPassDrag,
     "keulegan_carpenter_drag": KeuleganCarpenterDrag,
     "suction_side_drag": SuctionSideDrag,
+    "umbilical": Umbilical,
+    "coulomb_friction": CoulombFriction,
+    "hysteresis": Hysteresis,
+    "mooring_nonlinearity": MooringNonlinearity,
+    "radiation_memory": RadiationMemory,
+    "hidden_oscillator": HiddenOscillator,
+    "nonlinear_hydrostatics": NonlinearHydrostatics,
+    "cubic_damping": CubicDamping,
+    "mass_error": MassError,
+    "static_force": StaticForce,
+    "current": Current,
+    "sensor_reference": SensorReference,
+    "sensor_lag": SensorLag,
+    "wave_gauge_position": WaveGaugePosition,
+    "wave_reflection": WaveReflection,
+    "wave_drift": WaveDrift,
+    "wave_drift_damping": WaveDriftDamping,
+    "power_drag": PowerDrag,
+    "slow_drag": SlowDrag,
+    "changing_drag": ChangingDrag,
+    "coupled_damping": CoupledDamping,
+    "covered_ends": CoveredEnds,
 }
 
 __all__ = ["LOADS", "AbstractLoad", "Action", "Instant", "Parameter", *(load.__name__ for load in LOADS.values())]

@@ -45,7 +45,7 @@ class Instant(eqx.Module):
     `position` is surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point; `rotation` takes body to earth axes;
     `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
     same along earth axes. `wetted` and `strip_shape` say what of elements and strips is under water, `strip_flow` and
-    `end_flow` how the water moves past strips and ends.
+    `end_flow` how the water moves past strips and ends. `drift` (m2) is that of the sea: see `AbstractSea.drift`.
     """
 
     time: Float[Array, ""]
@@ -59,6 +59,7 @@ class Instant(eqx.Module):
     strip_flow: StripFlow
     end_flow: EndFlow
     lines: Lines
+    drift: Float[Array, "3"] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""
@@ -108,6 +109,10 @@ class AbstractLoad(eqx.Module):
         """Its memory before t = 0; None where it has none (not `()`: diffrax cannot carry it)."""
         return None
 
+    def settled(self, displacement: Float[Array, "6"]) -> Any:
+        """Its memory after having been moved slowly to a displacement (m, rad, from rest) and held there."""
+        return self.rest()
+
     def in_sea(self, state: SeaState) -> "AbstractLoad":
         """The load as it is in a sea state; itself where it does not depend on that."""
         return self
@@ -125,7 +130,7 @@ class AbstractLoad(eqx.Module):
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:
-        """By how much (s) the clock of the motions is ahead of that of the waves: a motion at t is recorded at t - lag."""
+        """Lag (s) of the recorded motions behind the waves: what is recorded at t is y(t - lag), the motion a lag earlier."""
         return None
 
     @abc.abstractmethod

@@ -39,6 +39,9 @@ class SeaStateLaw(AbstractLoad):
     def rest(self) -> Any:
         return self.load.rest()
 
+    def settled(self, displacement: Float[Array, "6"]) -> Any:
+        return self.load.settled(displacement)
+
     def about(self, label: str) -> Parameter:
         if label in self.load.values:
             return self.load.about(label)

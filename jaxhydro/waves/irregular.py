@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, components
 from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.second_order import elevation_spectrum
+from jaxhydro.waves.second_order import KINDS, Kind, elevation_spectrum
 
 JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
 TOLERANCE = 1e-4  # of the record in the band, by root mean square, that first and second order together may miss
@@ -111,6 +111,7 @@ def record_components(
     cutoff: float,
     order: int = 2,
     tolerance: float = TOLERANCE,
+    kinds: tuple[Kind, ...] = KINDS,
 ) -> Components:
     """`separated_record`'s waves. Raises ValueError, too, where they miss the record by more than `tolerance`."""
     found = separated_record(
@@ -123,6 +124,7 @@ def record_components(
         cutoff=cutoff,
         order=order,
         tolerance=tolerance,
+        kinds=kinds,
     )
     if found.mismatch > tolerance:
         raise ValueError(
@@ -143,6 +145,7 @@ def separated_record(
     cutoff: float,
     order: int = 2,
     tolerance: float = TOLERANCE,
+    kinds: tuple[Kind, ...] = KINDS,
 ) -> Separation:
     """Long-crested first-order waves of an elevation (m) recorded at even `times` (s) by a gauge at `position` (m, earth axes).
 
@@ -153,7 +156,8 @@ def separated_record(
 
     order 1: the record is taken for linear. order 2: eta1 = eta - eta2(eta1) within the band, iterated, by half steps where it
     does not come nearer; the best found is returned, with its mismatch. The bound low-frequency set-down and the sums above
-    `cutoff` are not asked to match: they follow. Raises ValueError for uneven times, gaps, or a band out of range.
+    `cutoff` are not asked to match: they follow. `kinds` are the pairs that bind. Raises ValueError for uneven times, gaps,
+    or a band out of range.
     """
     times, elevation = np.asarray(times, float), np.asarray(elevation, float)
     step = sampling_interval(times)
@@ -188,7 +192,7 @@ def separated_record(
     left, least = measured, np.inf  # what the best trial misses, and its norm over the record's
     while rounds < ROUNDS and least > 0.1 * tolerance and share > 1e-3:
         rounds += 1
-        second = np.asarray(_second_order(waves(trial), environment, position))[band]
+        second = np.asarray(_second_order(waves(trial), environment, position, kinds))[band]
         missed = measured - trial - second
         mismatch = float(np.linalg.norm(missed) / size)
         if mismatch < least:

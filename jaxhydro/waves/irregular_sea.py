@@ -12,9 +12,10 @@ from jaxtyping import Array, Complex, Float
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
+from jaxhydro.waves.envelope import Envelope, envelope
 from jaxhydro.waves.flow import Cylinders, Flow
-from jaxhydro.waves.sea import AbstractSea, Stretching, WaveSea, growth, stretched
-from jaxhydro.waves.second_order import bound_waves, elevation_spectrum, fold
+from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth, stretched
+from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum, fold
 from jaxhydro.waves.supports import Box, field, supports, surface, weights
 
 EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
@@ -34,7 +35,8 @@ class Clock(NamedTuple):
 
 
 class IrregularSea(AbstractSea):
-    """Components on successive harmonics of a period, with what they bind at second order where `order` is 2.
+    """Components on successive harmonics of a period, with what they bind at second order where `order` is 2: by `kinds` at
+    sums and differences of their frequencies, or at one of these alone.
 
     Stretching and `ramp` (s) are those of `WaveSea`. `flow` and `elevation` are by direct summation, for few points and
     components; simulations call `prepared`.
@@ -45,11 +47,12 @@ class IrregularSea(AbstractSea):
     order: Literal[1, 2] = eqx.field(static=True, default=1)
     stretching: Stretching = eqx.field(static=True, default="vertical")
     ramp: float = 0.0
+    kinds: tuple[Kind, ...] = eqx.field(static=True, default=KINDS)
 
     def direct(self) -> WaveSea:
         """The same sea by direct summation: exact, N components and at second order N^2 pairs at every point."""
         waves = PlaneWaves.free(self.components, self.environment)
-        bound = bound_waves(self.components, self.environment) if self.order == 2 else None
+        bound = bound_waves(self.components, self.environment, self.kinds) if self.order == 2 else None
         return WaveSea(waves, self.environment, self.ramp, self.stretching, bound)
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
@@ -60,6 +63,16 @@ class IrregularSea(AbstractSea):
 
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)
+
+    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+        return self.direct().drift(time)
+
+    def direction(self) -> Float[Array, "2"]:
+        return direction(self.components.vector(), self.components.amplitude**2)
+
+    def moved(self, distance: Float[Array, ""]) -> "IrregularSea":
+        phase = self.components.phase + distance * (self.direction() @ self.components.vector())
+        return eqx.tree_at(lambda sea: sea.components.phase, self, phase)
 
     def gauge(
         self, times: Float[np.ndarray, " t"], position: tuple[float, float] = (0.0, 0.0), order: int | None = None
@@ -72,7 +85,7 @@ class IrregularSea(AbstractSea):
             there = waves.complex_amplitude() * jnp.exp(-1j * (jnp.asarray(position) @ waves.vector()))
             spectrum[first : last + 1] = np.asarray(there)
         if order != 1 and self.order == 2:
-            spectrum += np.asarray(_elevation(waves, self.environment, jnp.asarray(position, float)))
+            spectrum += np.asarray(_elevation(waves, self.environment, jnp.asarray(position, float), self.kinds))
         omega = 2 * math.pi / float(waves.period) * np.arange(spectrum.size)
         parts = np.array_split(times, max(1, times.size * omega.size // 2_000_000))
         found = np.concatenate([(np.exp(1j * np.outer(part, omega)) @ spectrum).real for part in parts])
@@ -96,9 +109,9 @@ class IrregularSea(AbstractSea):
         low = max(-depth, float(points[2].min()) - 0.3 * excursion)
         free = float(waves.wavenumber[-1])
         box = Box(0.0, 5.0 * math.ceil(half / 5.0), 2.0 * math.floor(low / 2.0), depth)
-        found = supports(box, free, 2 * free if self.order == 2 else 0.0)
+        found = supports(box, free, 2 * free if self.order == 2 and "sum" in self.kinds else 0.0)
         size = round(float(waves.period) / clock.step)
-        highest = waves.harmonics[1] * self.order
+        highest = waves.harmonics[1] * (self.order if "sum" in self.kinds else 1)
         if abs(size * clock.step - float(waves.period)) > 1e-6 * clock.step:
             raise ValueError(f"steps of {clock.step:g} s do not divide the sea's period of {float(waves.period):g} s")
         if highest >= size:
@@ -109,7 +122,7 @@ class IrregularSea(AbstractSea):
         radius = jnp.zeros(0) if cylinders is None else cylinders.radius
         options = (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp)
         arrays = (jnp.asarray(found.table), found.spacing, jnp.asarray(middle), jnp.asarray(along), radius)
-        spectrum = _spectrum(waves, self.environment, self.order, options, *arrays)
+        spectrum = _spectrum(waves, self.environment, self.order, self.kinds, options, *arrays)
         series, fine = _series(spectrum, 2 * math.pi / float(waves.period), size, clock, self.ramp)
         wavenumber = jnp.asarray(found.wavenumber)
         return SupportSea(
@@ -125,7 +138,14 @@ class IrregularSea(AbstractSea):
             clock.nodes,
             self.stretching,
             box.half,
+            self._envelope(clock, size),
         )
+
+    def _envelope(self, clock: Clock, size: int) -> Envelope:
+        """Of the first-order waves on a clock of which `size` steps are a period."""
+        share = growth(clock.start + clock.step * jnp.arange(clock.steps + 1), self.ramp) ** 2
+        weight = (self.components.omega / MIDDLE) ** 2
+        return envelope(self.components, self.environment, weight, share, size, jnp.asarray(clock.start))
 
 
 _elevation = eqx.filter_jit(elevation_spectrum)
@@ -136,6 +156,7 @@ def _spectrum(
     waves: Components,
     environment: Environment,
     order: int,
+    kinds: tuple[Kind, ...],
     options: tuple[bool, bool, bool],
     table: Float[Array, "g r"],
     spacing: float,
@@ -173,7 +194,7 @@ def _spectrum(
     found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
     if order == 1:
         return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
-    real, imaginary = jnp.split(fold(waves, environment, sums), 2, axis=1)
+    real, imaginary = jnp.split(fold(waves, environment, sums, kinds), 2, axis=1)
     return (real + 1j * imaginary).at[first : last + 1].add(found)
 
 
@@ -211,7 +232,8 @@ class SupportSea(AbstractSea):
     `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: horizontal velocity and
     acceleration, pressure over density, what cylinders of each radius are excited by horizontally (and `Flow.tuned` for
     each); vertical velocity and acceleration, and what excites the cylinders vertically; elevation. Only times of the clock
-    may be asked for.
+    may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with the
+    group velocity.
     """
 
     environment: Environment
@@ -226,6 +248,7 @@ class SupportSea(AbstractSea):
     nodes: tuple[float, ...] = eqx.field(static=True)
     stretching: Stretching = eqx.field(static=True)
     half: float = eqx.field(static=True)  # m, of the box
+    envelope: Envelope | None = None
 
     def rows(self, time: Float[Array, ""]) -> Float[Array, "f 2*r"]:
         """Amplitudes of the supports at a time of the clock."""
@@ -273,3 +296,19 @@ class SupportSea(AbstractSea):
 
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)
+
+    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"] | None:
+        if self.envelope is None:
+            return None
+        return self.envelope.at((time + self.envelope.lead - self.start) / self.step)
+
+    def direction(self) -> Float[Array, "2"]:
+        return self.along
+
+    def moved(self, distance: Float[Array, ""]) -> "SupportSea":
+        found = eqx.tree_at(lambda sea: sea.middle, self, self.middle + distance)
+        if self.envelope is None:
+            return found
+        # at the origin is now what was at -distance, and came to where the origin was that much later
+        lead = self.envelope.lead + distance * self.envelope.slowness
+        return eqx.tree_at(lambda sea: sea.envelope.lead, found, lead)

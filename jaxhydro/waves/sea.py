@@ -15,6 +15,7 @@ from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.flow import Cylinders, Flow
 
 Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
+MIDDLE = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
 
 
 class AbstractSea(eqx.Module):
@@ -35,6 +36,23 @@ class AbstractSea(eqx.Module):
         """The elevation up to which the platform is wetted; None: still water level."""
         return self.elevation(time, points)
 
+    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"] | None:
+        """What slow second-order forces go with (m2), of first-order waves at the origin; None: nothing is known of it.
+
+        With a the complex elevation, eta = Re a: the squared envelope |a|^2; its Hilbert transform, which turns cos into sin
+        and a mean into nothing; and Re(a_w conj(a)), a_w the waves weighted by (omega / `MIDDLE`)^2. Differences of
+        frequencies only: there are no sums to be filtered out.
+        """
+        return None
+
+    def direction(self) -> Float[Array, "2"]:
+        """Unit vector along which the waves travel, by energy (earth axes)."""
+        raise NotImplementedError(f"{type(self).__name__} does not tell where its waves travel to")
+
+    def moved(self, distance: Float[Array, ""]) -> "AbstractSea":
+        """The sea `distance` (m) further along its direction: what was at x is now at x + distance."""
+        raise NotImplementedError(f"{type(self).__name__} cannot be moved along its waves")
+
 
 class StillWater(AbstractSea):
     """No waves and no current."""
@@ -44,6 +62,9 @@ class StillWater(AbstractSea):
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> None:
         return None
+
+    def moved(self, distance: Float[Array, ""]) -> "StillWater":
+        return self
 
 
 class WaveSea(AbstractSea):
@@ -108,9 +129,37 @@ class WaveSea(AbstractSea):
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)
 
+    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+        omega = self.waves.omega
+        one = self.growth(time) * self.waves.elevation * jnp.exp(1j * omega * time)
+        every = one.sum().conj()
+        sooner = jnp.sign(omega[:, None] - omega)
+        pairs = (sooner * (one[:, None] * one.conj()).imag).sum()
+        return jnp.stack([(every * every.conj()).real, pairs, (((omega / MIDDLE) ** 2 * one).sum() * every).real])
+
+    def direction(self) -> Float[Array, "2"]:
+        return direction(self.waves.vector, jnp.abs(self.waves.elevation) ** 2)
+
+    def moved(self, distance: Float[Array, ""]) -> "WaveSea":
+        way = distance * self.direction()
+
+        def on(waves: PlaneWaves) -> PlaneWaves:
+            turn = jnp.exp(1j * (way @ waves.vector))
+            return PlaneWaves(waves.omega, waves.vector, waves.elevation * turn, waves.potential * turn)
+
+        bound = None if self.bound is None else on(self.bound)
+        return WaveSea(on(self.waves), self.environment, self.ramp, self.stretching, bound)
+
     def growth(self, time: Float[Array, "..."]) -> Float[Array, "..."]:
         """Share of their full height (-) that the waves have at a time (s)."""
         return growth(time, self.ramp)
+
+
+def direction(vector: Float[Array, "2 w"], energy: Float[Array, " w"]) -> Float[Array, "2"]:
+    """Unit vector of the mean of wavenumber vectors weighted by energy; zero where there is none."""
+    mean = vector @ energy
+    square = (mean**2).sum()
+    return jnp.where(square > 0, mean / jnp.sqrt(jnp.where(square > 0, square, 1.0)), 0.0)
 
 
 def growth(time: Float[Array, "..."], ramp: Float[Array, ""] | float) -> Float[Array, "..."]:

@@ -1,0 +1,76 @@
+"""The residual taken apart: which motion, which test, which frequencies, how much above the noise."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calibration.discovery.result import Finding
+from jaxhydro.environment import DOFS
+
+if TYPE_CHECKING:
+    from calibration.discovery.search import Search, State
+
+QUIET = 1.3  # rms over noise below which nothing is said
+
+
+def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
+    """Of every motion that the tests are about, what is left."""
+    study = search.study
+    mean_square, dof = study.mean_squares(state.reached.look)
+    found = []
+    for one, squares, freedom in zip(study.series, mean_square, dof):
+        if one.channel not in search.posed.motions or not freedom.sum():
+            continue
+        ratio = math.sqrt(float((squares * freedom).sum() / freedom.sum()))
+        # noise is in all bands, what is above it in those that are looked at
+        above = max(ratio**2 - 1, 0.0) * float(freedom.sum()) / one.samples
+        rms = one.noise * math.sqrt(above + 1)
+        bands = tuple(
+            (float(a), float(b), float(math.sqrt(s))) for a, b, s, f in zip(one.low, one.high, squares, freedom) if f > 0
+        )
+        found.append(
+            Finding(one.test, one.use, one.channel, rms, one.noise, rms / one.spread, bands, _words(one, ratio, bands))
+        )
+    return tuple(found)
+
+
+def _words(one, ratio: float, bands) -> str:
+    if ratio < QUIET:
+        return "at the noise"
+    worst = max(bands, key=lambda b: b[2])
+    where = "in the mean" if worst[0] == 0 else f"from {worst[0]:.3g} to {worst[1]:.3g} Hz"
+    return f"{ratio:.1f} times the noise, most of it {where}"
+
+
+def signature(search: Search, before: State, after: State) -> tuple[float, str]:
+    """Share of what was above the noise that is left, and what is known of it."""
+    study = search.study
+    total = float(before.left.sum())
+    share = float(after.left.sum()) / total if total > 0 else 0.0
+    dof = np.array([one.dof.sum() for one in study.series])
+    excess = after.left / np.maximum(dof, 1.0)
+    if not (excess > QUIET**2 - 1).any():
+        return share, "white at the declared noise level"
+    by_motion: dict[tuple[str, str], float] = {}
+    for one, e in zip(study.series, excess):
+        kind = "decays" if one.kind == "decay" else "waves"
+        key = (one.channel, kind)
+        by_motion[key] = max(by_motion.get(key, 0.0), float(np.sqrt(e) * one.noise / one.spread))
+    rows = sorted(by_motion.items(), key=lambda item: -item[1])[:3]
+    said = ", ".join(
+        f"{channel} in {kind} ({100 * value:.0f} % of the motion)" for (channel, kind), value in rows if value > 0.005
+    )
+    mean_square, _ = study.mean_squares(after.reached.look)
+    i = int(np.argmax(after.left))
+    k = int(np.argmax(mean_square[i] * study.series[i].dof))
+    one = study.series[i]
+    where = f"largest in {one.channel} of {one.test}, {one.low[k]:.3g} to {one.high[k]:.3g} Hz"
+    return share, f"{said or 'small in every motion'}; {where}"
+
+
+def order(channel: str) -> int:
+    """Place of a motion among the degrees of freedom."""
+    return DOFS.index(channel)

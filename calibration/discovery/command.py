@@ -1,0 +1,79 @@
+"""The diagnose command, from a campaign to files and tables."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from calibration import tables as calibrations
+from calibration.command import load
+from calibration.discovery import tables, words
+from calibration.discovery.outputs import write_diagnosis
+from calibration.discovery.result import Diagnosis
+from calibration.discovery.saved import SavedDiagnosis, read_diagnosis
+from calibration.outputs import DIAGNOSIS, RESULT, NotFinite
+from calibration.runs import KINDS
+from calibration.seas import Diverged
+from calibration.seas_outputs import COMPARISON
+from jaxhydro.console import complain, progress, say, table
+
+
+def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
+    """Diagnose a campaign, write and print the result; of a search that the user stops, what was reached.
+
+    False where a fit did not converge: the result is marked so, or there is none. Raises InputError, and KeyboardInterrupt
+    where nothing was reached.
+    """
+    from calibration.discovery.search import diagnose
+
+    campaign = load(path, out, (COMPARISON, RESULT, "motion.csv"), lambda c: calibrations.counted(c, ("decay", *KINDS)))
+    try:
+        with progress() as show:
+            result = diagnose(campaign, progress=show)
+    except Diverged as error:
+        complain(f"{error}; nothing was written")
+        return False
+    except KeyboardInterrupt as stopped:
+        partial = getattr(stopped, "partial", None)
+        if not isinstance(partial, Diagnosis):
+            raise
+        result = unfinished(partial)
+    try:
+        write_diagnosis(result, out, figures)
+    except NotFinite as error:
+        complain(f"not converged: {error}; nothing was written")
+        return False
+    saved = read_diagnosis(out / DIAGNOSIS)
+    warned = {str(finding) for finding in campaign.findings}
+    show_diagnosis(saved, [note for note in saved.notes if note not in warned])
+    say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
+    if not saved.converged:
+        complain("not converged: the results are marked so")
+    return saved.converged
+
+
+def unfinished(partial: Diagnosis) -> Diagnosis:
+    """What was reached when the user stopped the search, marked as not converged."""
+    stopped = "stopped by the user before it was done: what follows is what was found until then"
+    return replace(partial, augmented=replace(partial.augmented, converged=False), notes=(stopped, *partial.notes))
+
+
+def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
+    """Print what was found, errors before and after, what was rejected, and the verdict last, where one looks first."""
+    if (rows := tables.anatomy(saved))[1]:
+        table("What the declared model, fitted, leaves over", *rows, left=4)
+    table("Coefficients, fitted before and after", *tables.coefficients(saved))
+    if (rows := tables.rejected(saved))[1]:
+        table("Tried and rejected", *rows, left=2)
+    table("Errors over the motion's standard deviation, before and after", *tables.errors(saved), left=3)
+    if (rows := tables.bands(saved))[1]:
+        table("Errors of energy in bands", *rows, left=4)
+    if (rows := tables.effects(saved))[1]:
+        table("What was found", *rows, left=2)
+    for note in notes:
+        say(f"Note: {note}")
+    say(f"\n{words.verdict(saved)}", "bold")
+    for one in saved.missing.effects:
+        name = words.called(one.effect, one.degree_of_freedom)
+        say(f"{name[:1].upper()}{name[1:]}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
+    say(words.left_over(saved))
+    if saved.next_test:
+        say(f"Next test: {saved.next_test}")

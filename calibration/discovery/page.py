@@ -1,0 +1,110 @@
+"""A diagnosis as one self-contained HTML page, for the one who decides what is measured next."""
+
+from collections import Counter
+from collections.abc import Iterator
+from html import escape
+from pathlib import Path
+
+from calibration.discovery import tables, words
+from calibration.discovery.saved import Found, SavedDiagnosis
+from calibration.formatting import number
+from calibration.outputs import DIAGNOSIS
+from calibration.report import UNCONVERGED, cells, figures, framed, images, listed, table
+from calibration.tables import USE, Rows
+
+_ANATOMY = """<p>What the declared model leaves over once its coefficients are fitted, the largest first: its root mean
+square, as a share of the motion, and over the noise, before and after what was found is added (1:
+nothing but noise).</p>"""
+_BANDS = """<p>Tests in irregular waves: error of the energy in the band of slow motion and of waves, (simulated - measured) /
+measured.</p>"""
+_COEFFICIENTS = """<p>The same coefficients fitted without what was missing (before) and with it (after), ± 1 standard
+deviation. What was missing had hidden in those that move.</p>"""
+
+
+def page(saved: SavedDiagnosis, folder: Path) -> str:
+    """The page's text. Whatever comes from files is escaped; images are part of the page."""
+    return framed(saved, "Diagnosis", _parts(saved, folder))
+
+
+def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
+    drawn = images(saved, folder)
+
+    def taken(*starts: str) -> str:
+        """The figures whose names begin so, each shown once."""
+        return figures([drawn.pop(name) for name in list(drawn) if name.startswith(starts)])
+
+    if not saved.converged:
+        yield UNCONVERGED.format("a diagnosis")
+    yield f'<p class="verdict">{escape(words.verdict(saved))}</p>'
+    yield "<h2>What was measured</h2>"
+    yield f"<p>{escape(_measured(saved))}</p>"
+    yield _table(tables.tests(saved), 4)
+    yield "<h2>What the model missed</h2>"
+    if saved.anatomy.before:
+        yield _ANATOMY
+        yield _table(tables.anatomy(saved), 4)
+    yield taken("anatomy")
+    yield "<h2>What was found</h2>"
+    for one in saved.missing.effects:
+        yield from _effect(saved, one)
+    if not saved.missing.effects:
+        yield "<p>No effect.</p>"
+    yield f"<p>{escape(words.left_over(saved))}</p>"
+    if saved.next_test:
+        yield f"<p><b>The test to run next:</b> {escape(saved.next_test)}</p>"
+    yield taken("effect-")
+    yield "<h2>Error before and after</h2>"
+    yield f"<p>{escape(_objectives(saved))}</p>"
+    yield _table(tables.errors(saved, str(folder / DIAGNOSIS)), 3)
+    if (rows := tables.bands(saved))[1]:
+        yield _BANDS
+        yield _table(rows, 4)
+    yield taken("before-after", "spectra-")
+    yield "<h2>Fitted coefficients</h2>"
+    yield _COEFFICIENTS
+    yield _table(tables.coefficients(saved), 1, 4)
+    yield "<h2>What was rejected, and why</h2>"
+    yield _table(rows, 9) if (rows := tables.rejected(saved))[1] else "<p>Nothing.</p>"
+    yield taken("scores")
+    if saved.notes or saved.seconds is not None:
+        yield "<h2>Notes</h2>"
+        spent = [f"The diagnosis took {number(saved.seconds, 3)} s."] if saved.seconds is not None else []
+        yield listed([*saved.notes, *spent])
+    if rest := taken(""):
+        yield f"<h2>More figures</h2>{rest}"
+
+
+def _measured(saved: SavedDiagnosis) -> str:
+    """How many tests of which kind, and how long together."""
+    each = Counter((tables.KINDS.get(one.kind, one.kind), one.use) for one in saved.tests.values())
+    kinds = {kind: [f"{n} {USE.get(use, use)}" for (other, use), n in each.items() if other == kind] for kind, _ in each}
+    hours = sum(one.duration or 0.0 for one in saved.tests.values()) / 3600
+    said = "; ".join(f"{kind}: {', '.join(counts)}" for kind, counts in kinds.items())
+    platform = f" of {saved.platform}" if saved.platform else ""
+    tests = f"{len(saved.tests)} {'test' if len(saved.tests) == 1 else 'tests'}"
+    return f"{tests}{platform}, {number(hours, 2)} hours together at full scale ({said})."
+
+
+def _effect(saved: SavedDiagnosis, one: Found) -> Iterator[str]:
+    name = words.called(one.effect, one.degree_of_freedom)
+    yield f"<h3>{escape(name[:1].upper() + name[1:])}</h3>"
+    sizes = "; ".join(words.size(key, value) for key, value in one.parameters.items())
+    yield f'<p class="size"><b>Size:</b> {escape(sizes)}.</p>' if sizes else ""
+    if one.meaning:
+        source = f" ({one.source})" if one.source else ""
+        yield f"<p>{escape(one.meaning.rstrip('.') + source)}.</p>"
+    yield f"<p><b>How sure:</b> {escape(' '.join(words.sureness(saved, one)))}</p>"
+    yield f"<p><b>What else it could be:</b> {escape(words.alternatives(one))}</p>"
+
+
+def _objectives(saved: SavedDiagnosis) -> str:
+    """J before and after, fitted and held out."""
+    before, after = saved.baseline.objective, saved.augmented.objective
+    said = f"The error of the fitted tests {words.change(before.fit, after.fit)}"
+    if before.holdout is not None and after.holdout is not None:
+        said += f", that of the held-out tests {words.change(before.holdout, after.holdout)}"
+    return f"{said}. J is the sum of RMSE over the motion's standard deviation; the table has every part of it."
+
+
+def _table(rows: Rows, first: int, last: int = 99) -> str:
+    return table(rows[0], [f"<tr>{cells(row, first, last)}</tr>" for row in rows[1]], first, last)

@@ -1,0 +1,101 @@
+"""What a diagnosis returns, as values."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.result import Calibration, Estimate
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Why an effect is believed: `score`, by how much -2 ln L of the fitted tests falls at first order when it is let in, what
+    the fitted parameters can do instead projected out; `delta_bic` after the refit (above 0 speaks for it); `holdout_gain`, the
+    share of the held-out tests' error above noise that it takes away (1: all of it); `clear`, the parameter over its standard
+    deviation."""
+
+    score: float
+    delta_bic: float
+    holdout_gain: float
+    clear: float
+
+
+@dataclass(frozen=True, eq=False)
+class Effect:
+    """An effect that was found: its name as in the contract, motion, parameters, evidence, the share of what was unexplained in
+    the fitted tests that it explains, the effects that the records cannot tell from it, and the test that would."""
+
+    effect: str
+    degree_of_freedom: str | None
+    meaning: str
+    source: str
+    parameters: dict[str, Estimate]
+    evidence: Evidence
+    share: float
+    indistinguishable: tuple[str, ...]
+    telling_test: str | None
+
+
+@dataclass(frozen=True, eq=False)
+class Rejected:
+    """An effect that was tried and is not in the model, and why."""
+
+    effect: str
+    degree_of_freedom: str | None
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Score:
+    """A candidate at its null, in one round: `gain` of -2 ln L at first order, degrees of freedom it takes, and what the
+    held-out tests would gain by the same step; `refitted` gains where it was tried (None: it was not)."""
+
+    round: int
+    effect: str
+    degree_of_freedom: str | None
+    gain: float
+    size: int
+    holdout: float
+    refitted: float | None
+    refitted_holdout: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """What is left of one motion of one test: `rms` (m, rad) of the residual, `noise` (m, rad), `relative` to the
+    motion's standard deviation, and the bands: (low, high in Hz, rms over noise)."""
+
+    test: str
+    use: str
+    channel: str
+    rms: float
+    noise: float
+    relative: float
+    bands: tuple[tuple[float, float, float], ...]
+    words: str
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """A campaign's model as declared and fitted (`baseline`), what it lacks, and the model with that (`augmented`).
+
+    `verdict` is "found", "nothing_missing" or "unexplained". `anatomy_before` and `anatomy_after` are the residuals of both,
+    motion by motion; `unexplained_share`, of the residual's energy above noise that is left at the end, `signature` what
+    is known of it in words; `next_test` what to measure next.
+    """
+
+    campaign: str
+    verdict: str
+    baseline: Calibration
+    augmented: Calibration
+    effects: tuple[Effect, ...]
+    rejected: tuple[Rejected, ...]
+    scores: tuple[Score, ...]
+    anatomy_before: tuple[Finding, ...]
+    anatomy_after: tuple[Finding, ...]
+    unexplained_share: float
+    signature: str
+    next_test: str
+    notes: tuple[str, ...]
+    seconds: float
+    latent: dict[str, np.ndarray] | None = None

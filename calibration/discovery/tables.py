@@ -1,0 +1,111 @@
+"""Heads and rows of the tables of a diagnosis, for the terminal and the page."""
+
+from calibration.discovery.saved import SavedDiagnosis
+from calibration.discovery.words import called, plain, pretty, quantity, strength
+from calibration.formatting import number, percent, with_deviation
+from calibration.saved import Parameter
+from calibration.tables import USE, Rows
+
+KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
+ORDER = list(USE)
+
+
+def tests(saved: SavedDiagnosis) -> Rows:
+    """What was measured."""
+    rows = []
+    for id, one in saved.tests.items():
+        kind = " in ".join(filter(None, (KINDS.get(one.kind, one.kind), one.degree_of_freedom)))
+        length = f"{number(one.duration, 3)} s" if one.duration is not None else ""
+        rows.append((id, kind, one.file, USE.get(one.use, one.use), length))
+    return ("Test", "Kind", "File", "Use", "Length"), rows
+
+
+def effects(saved: SavedDiagnosis) -> Rows:
+    """What was found: a row for every parameter."""
+    rows = []
+    for one in saved.missing.effects:
+        first = (called(one.effect, one.degree_of_freedom), strength(one.evidence), percent(one.evidence.holdout_gain))
+        for i, (name, value) in enumerate(one.parameters.items()):
+            said = quantity(value.value, value.standard_deviation, value.unit) if value.identifiable else "not identifiable"
+            rows.append((first[0] if i == 0 else "", plain(name), said, *(first[1:] if i == 0 else ("", ""))))
+    return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", "Held-out gain"), rows
+
+
+def errors(saved: SavedDiagnosis, source: str = "diagnosis.json") -> Rows:
+    """RMSE over the motion's standard deviation, before and after, of what counts in J; fitted tests first."""
+    before, after = saved.errors(source), saved.errors(source, "augmented")
+    rows = []
+    for id, channels in sorted(after.items(), key=lambda item: _order(saved, item[0])):
+        use = _use(saved, id)
+        for name, error in channels.items():
+            if error.in_objective:
+                was = before.get(id, {}).get(name)
+                both = percent(was.relative if was else None), percent(error.relative)
+                rows.append((id, USE.get(use, use), name, *both, f"{number(error.rmse, 2)} {error.unit}"))
+    return ("Test", "Use", "Motion", "Before", "After", "RMSE after"), rows
+
+
+def bands(saved: SavedDiagnosis) -> Rows:
+    """Errors of energy in the bands of tests in irregular waves."""
+    names = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
+    rows = []
+    for id in sorted(saved.augmented.error, key=lambda id: _order(saved, id)):
+        there, was = (fitted.error.get(id, {}).get("bands") or {} for fitted in (saved.augmented, saved.baseline))
+        for channel, row in there.items():
+            for band, value in row.items():
+                then = was.get(channel, {}).get(band)
+                use = _use(saved, id)
+                rows.append((id, USE.get(use, use), channel, names.get(band, band), percent(then), percent(value)))
+    return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
+
+
+def coefficients(saved: SavedDiagnosis) -> Rows:
+    """Every fitted parameter as declared, before and after; the effects' own are among those after."""
+    before, after = saved.baseline.parameters, saved.augmented.parameters
+    rows = []
+    for label in dict.fromkeys([*before, *after]):
+        was, now = before.get(label), after.get(label)
+        one = now or was
+        if one is None:
+            continue
+        start = was.start if was is not None else None
+        known = was is not None and now is not None and was.identifiable and now.identifiable and was.value != 0
+        moved = f"{100 * (now.value / was.value - 1):+.2g} %" if known and was and now else ""
+        rows.append((label, number(start, 3), _value(was), _value(now), pretty(one.unit), moved))
+    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
+
+
+def rejected(saved: SavedDiagnosis) -> Rows:
+    """What was tried and is not in the model."""
+    rows = [(called(one.effect, one.degree_of_freedom), one.reason) for one in saved.missing.rejected]
+    return ("Effect", "Why not"), rows
+
+
+def anatomy(saved: SavedDiagnosis) -> Rows:
+    """The residual before, motion by motion, the largest first, and what became of it."""
+    after = {(one.test, one.channel): one for one in saved.anatomy.after}
+    rows = []
+    for one in sorted(saved.anatomy.before, key=lambda one: -(one.over_noise or 0.0)):
+        now = after.get((one.test, one.channel))
+        rows.append((
+            one.test, USE.get(one.use, one.use), one.channel, one.words,
+            f"{number(one.rms, 2)} {one.unit}", percent(one.relative),
+            number(one.over_noise, 2), number(now.over_noise if now else None, 2),
+        ))  # fmt: skip
+    return ("Test", "Use", "Motion", "What is left", "Residual", "Of motion", "Over noise", "After"), rows
+
+
+def _value(one: Parameter | None) -> str:
+    if one is None:
+        return "–"
+    text = with_deviation(one.value, one.standard_deviation) if one.identifiable else "not identifiable"
+    return f"{text}, at its bound" if one.at_bound else text
+
+
+def _use(saved: SavedDiagnosis, id: str) -> str:
+    return str(saved.augmented.error.get(id, {}).get("use", ""))
+
+
+def _order(saved: SavedDiagnosis, id: str) -> int:
+    use = _use(saved, id)
+    return ORDER.index(use) if use in ORDER else len(ORDER)

@@ -1,0 +1,154 @@
+"""A diagnosis in words and readable numbers, for the terminal and the page."""
+
+import math
+import re
+
+from calibration.discovery.saved import Found, Grounds, SavedDiagnosis
+from calibration.formatting import number, percent, with_deviation
+from calibration.saved import Parameter
+
+NAMES = {
+    "coulomb_friction": "Coulomb friction",
+    "mass_properties": "wrong mass properties",
+    "mooring_nonlinearity": "a nonlinear mooring",
+    "static_offset": "a static offset",
+    "umbilical": "an umbilical",
+    "current": "a current",
+    "hidden_oscillator": "a hidden oscillator",
+    "sensor_reference": "a wrong sensor reference",
+    "sensor_lag": "a sensor lag",
+    "wave_gauge_position": "a wrong wave gauge position",
+}
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+STRENGTHS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "positive"), (0.0, "weak"))  # Kass and Raftery 1995, table in 3.2
+
+
+def called(effect: str, motion: str | None = None) -> str:
+    """An effect as people say it: `coulomb_friction (surge)`, or its name and motion apart, is "Coulomb friction in surge"."""
+    name, _, inside = effect.removesuffix(")").partition(" (")
+    words = NAMES.get(name, name.replace("_", " "))
+    motion = motion or inside
+    return f"{words} in {motion}" if motion else words
+
+
+def several(words: list[str]) -> str:
+    """a, b and c."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
+def quantity(value: float, deviation: float | None, unit: str) -> str:
+    """A value with its standard deviation in a unit that people read: `81.0 ± 2.1 kN`, degrees for radians."""
+    largest = max(abs(value), deviation or 0.0)
+    factor, unit = _readable(largest, unit)
+    sure = deviation is not None and math.isfinite(deviation) and deviation > 0
+    text = with_deviation(value / factor, deviation / factor) if sure and deviation else number(value / factor, 3)
+    text = f"({text})" if unit and "±" in text and "(" not in text else text
+    return f"{text} {unit}".strip()
+
+
+def _readable(largest: float, unit: str) -> tuple[float, str]:
+    """What values are divided by, and the unit then."""
+    if unit in ("-", "1"):
+        return 1.0, ""
+    if unit in ("rad", "rad/s"):
+        return math.radians(1.0), unit.replace("rad", "deg")
+    if re.match(r"N\b", unit):
+        size, prefix = next(((size, prefix) for size, prefix in PREFIXES if largest >= size), (1.0, ""))
+        return size, prefix + pretty(unit)
+    if re.match(r"kg\b", unit) and largest >= 1e3:
+        return 1e3, pretty("t" + unit[2:])
+    return 1.0, pretty(unit)
+
+
+def pretty(unit: str) -> str:
+    """m2 as m²; nothing for "-"."""
+    return "" if unit == "-" else re.sub(r"(?<=[a-z])([2-4])\b", lambda found: "²³⁴"[int(found[1]) - 2], unit)
+
+
+def plain(name: str) -> str:
+    """A parameter's name in words: `column.exponent` is "column exponent"."""
+    return name.replace(".", " ").replace("_", " ")
+
+
+def size(name: str, one: Parameter) -> str:
+    """A parameter of an effect: its name, value, deviation and unit."""
+    text = quantity(one.value, one.standard_deviation, one.unit)
+    more = ", which the records do not determine" if not one.identifiable else ", at its bound" if one.at_bound else ""
+    return f"{plain(name)} {text}{more}"
+
+
+def verdict(saved: SavedDiagnosis) -> str:
+    """What a project lead has to know, in one sentence."""
+    missing = saved.missing
+    names = several([called(one.effect, one.degree_of_freedom) for one in missing.effects])
+    if missing.verdict == "found":
+        return f"The declared model lacks {names}: {fall(saved)}."
+    if missing.verdict == "nothing_missing":
+        return "These records show nothing that the declared model lacks: no effect that was tried survives."
+    if names:
+        return f"The declared model lacks {names}, and something more that no effect tried explains."
+    return "The declared model lacks something, and no effect that was tried explains it."
+
+
+def fall(saved: SavedDiagnosis) -> str:
+    """How much smaller errors are, of the held-out tests where there are any."""
+    before, after = saved.baseline.objective, saved.augmented.objective
+    added = f"with {'them' if len(saved.missing.effects) > 1 else 'it'} in the model, the error"
+    if before.holdout and after.holdout is not None:
+        return f"{added} of tests that were not fitted {change(before.holdout, after.holdout)}"
+    said = f"{added} of the fitted tests {change(before.fit, after.fit)}"
+    return f"{said}; no test was held out to check it"
+
+
+def change(before: float, after: float) -> str:
+    """falls by 61 % (J from 0.57 to 0.22)"""
+    if not before > 0:
+        return f"is {number(after, 3)} (J)"
+    share = 1 - after / before
+    word = "falls" if share >= 0 else "grows"
+    return f"{word} by {percent(abs(share))} (J from {number(before, 3)} to {number(after, 3)})"
+
+
+def strength(evidence: Grounds) -> str:
+    """The evidence's weight by BIC, in the words of Kass and Raftery."""
+    if evidence.delta_bic is None:
+        return "unknown"
+    return next((word for limit, word in STRENGTHS if evidence.delta_bic > limit), "none")
+
+
+def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
+    """How sure an effect is: sentences with their numbers."""
+    evidence = one.evidence
+    held = any(row.get("use") == "holdout" for row in saved.augmented.error.values())
+    said = [f"{strength(evidence).capitalize()} evidence on the fitted tests: BIC falls by {number(evidence.delta_bic, 3)} "
+            "(above 10 is very strong)."]  # fmt: skip
+    gain = evidence.holdout_gain
+    if gain is None or not held:
+        said.append("No test was held out to check it.")
+    elif gain >= 0:
+        said.append(f"It takes away {percent(gain)} of the error above noise of tests that were not fitted.")
+    else:
+        said.append(f"The error above noise of tests that were not fitted grows by {percent(-gain)}.")
+    said.append(f"It explains {percent(one.share_of_residual_explained)} of what the fitted tests left unexplained.")
+    if evidence.clear is not None:
+        said.append(f"Its size is {number(evidence.clear, 2)} standard deviations away from none.")
+    if evidence.score is not None:
+        fell = f"−2 ln L fell by {number(evidence.score, 3)}"
+        said.append(f"At first order, with what the coefficients can do instead projected out, {fell}.")
+    return said
+
+
+def alternatives(one: Found) -> str:
+    """What else it could be, and the test that would tell."""
+    names = several([called(other) for other in one.indistinguishable_from])
+    said = f"These records cannot tell it from {names}." if names else "No other effect that was tried does as well."
+    if one.test_that_would_tell:
+        said += f" A test that would tell: {one.test_that_would_tell.rstrip('.')}."
+    return said
+
+
+def left_over(saved: SavedDiagnosis) -> str:
+    """What nothing explains."""
+    left = saved.missing.unexplained
+    said = f"{percent(left.share)} of the residual's energy above noise is left unexplained"
+    return f"{said}: {left.signature.rstrip('.')}." if left.signature else f"{said}."

@@ -1,0 +1,39 @@
+"""Ends of pontoons that water does not reach."""
+
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+
+LABEL = "covered_ends.share"
+
+
+class CoveredEnds(AbstractLoad):
+    """f = c p A on every end of a pontoon, along it: takes the share c of the dynamic pressure there away again.
+
+    A pontoon's end that meets a column is not wet. Pressure on it is still right where the column is loaded as if it were
+    whole: the two make up the Froude-Krylov force of the volume that both fill (c = 0, the default, as in OpenFAST HydroDyn
+    for members that end in no common joint). Strip models that load members across their axes only have c = 1; the
+    difference is the force along the pontoons, some 15 % of the surge excitation of a VolturnUS-S in long waves.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, loads on member ends (what this takes away)"
+
+    @classmethod
+    def null(cls) -> "CoveredEnds":
+        """Pressure on all ends."""
+        return cls({LABEL: jnp.zeros(())})
+
+    def about(self, label: str) -> Parameter:
+        return Parameter("-", "share of the waves' pressure on the ends of pontoons that is not there", -1.0, 2.0)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        flow, ends = now.end_flow, now.hull.ends
+        if flow.pressure is None:
+            return Action()
+        area = jnp.where(ends.radius > 0, 0.0, ends.area)
+        pressure = now.environment.density * flow.pressure * area * ends.outward * flow.wet
+        return Action(end_force=self.values[LABEL] * pressure)

@@ -1,0 +1,36 @@
+"""A steady current."""
+
+from typing import ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Parameter
+
+FASTEST = 5.0  # m/s
+
+
+class Current(AbstractLoad):
+    """u_c = (U, V, 0) everywhere: it adds to the velocity past every strip and end, and so acts through their drag.
+
+    Uniform over depth, steady, and there from the start. Parallel and steady flow has no acceleration, hence no
+    Froude-Krylov force; lift, Munk's moment and what a current does to the waves (Doppler shift, steepness) are left out. That
+    a current adds to the waves' velocity inside the
+    drag term is common practice (DNV-RP-C205, section 6; Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter
+    6). A platform without drag loads does not feel it, and one that rests in still water has no slope by it at U = 0: |u| u
+    has none. In a decay and in waves it has.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "DNV-RP-C205, section 6; Faltinsen 1990, chapter 6"
+
+    @classmethod
+    def null(cls) -> "Current":
+        """No current."""
+        return cls({"current.x": jnp.zeros(()), "current.y": jnp.zeros(())})
+
+    def about(self, label: str) -> Parameter:
+        return Parameter("m/s", f"velocity of the current along earth's {label[-1]}", -FASTEST, FASTEST)
+
+    def stream(self) -> Float[Array, "3"]:
+        return jnp.stack([*(jnp.asarray(self.values[f"current.{axis}"]) for axis in "xy"), jnp.zeros(())])

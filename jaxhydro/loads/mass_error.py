@@ -1,0 +1,64 @@
+"""Mass, centre of mass and inertia that were stated wrongly."""
+
+from typing import Any, ClassVar, Self
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.rotations import cross, skew
+
+ABOUT = "inertia about the centre of mass in {} that was not declared"
+PARAMETERS = {
+    "mass": Parameter("kg", "mass at the centre of mass that was not declared"),
+    "centre_x": Parameter("m", "how far forward of the declared one the centre of mass is"),
+    "centre_z": Parameter("m", "how far above the declared one the centre of mass is"),
+    "inertia_roll": Parameter("kg m2", ABOUT.format("roll")),
+    "inertia_pitch": Parameter("kg m2", ABOUT.format("pitch")),
+    "inertia_yaw": Parameter("kg m2", ABOUT.format("yaw")),
+}
+
+
+class MassError(AbstractLoad):
+    """F = -(M' - M) a - (what turns) + (W' - W): the body with M + m, c + d, I + dI less the body M, c, I that is declared.
+
+    m is mass at the centre of mass, d = (dx, 0, dz) how much the centre of all the mass is off, dI inertia about the centre of
+    mass. The difference of inertia, of gyroscopic and centripetal force, and of weight: exact for any motion. `total` (kg) and
+    `centre` (m, body axes) are what the model's body has.
+
+    Mass that is added weighs: the platform sinks by m/(rho Aw). Where the draught was ballasted to what it should be, it is the
+    volume that is also wrong, and `added_mass` in surge, sway and heave is the better name for what is left. In one free decay
+    it cannot be told from stiffness, nor dz from the metacentre. Mass and inertia that come out negative are nonsense.
+
+    Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3. Labels are `mass_properties.mass`,
+    `.centre_x`, `.centre_z`, `.inertia_roll`, `.inertia_pitch`, `.inertia_yaw`.
+    """
+
+    total: Float[Array, ""]
+    centre: Float[Array, "3"]
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Fossen 2011, section 3.3"
+
+    @classmethod
+    def null(cls, total: Float[Array, ""] | float, centre: Float[Array, "3"]) -> Self:
+        """All as declared: a body of mass `total` (kg) and centre of mass `centre` (m, body axes)."""
+        values = {f"mass_properties.{name}": jnp.asarray(about.null, float) for name, about in PARAMETERS.items()}
+        return cls(total=jnp.asarray(total, float), centre=jnp.asarray(centre, float), values=values)
+
+    def about(self, label: str) -> Parameter:
+        return PARAMETERS[label.removeprefix("mass_properties.")]
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        mass, forward, up, *inertias = (self.values[f"mass_properties.{name}"] for name in PARAMETERS)
+        shift, spin = jnp.stack([forward, jnp.zeros_like(forward), up]), now.velocity[3:]
+        # every difference is a sum of terms with a factor that is 0 where nothing is wrong: exactly silent there
+        first = mass * (self.centre + shift) + self.total * shift
+        old, by, new = skew(self.centre), skew(shift), skew(self.centre + shift)
+        second = jnp.diag(jnp.stack(inertias)) - mass * new @ new - self.total * (old @ by + by @ old + by @ by)
+        upper = jnp.concatenate([mass * jnp.eye(3), -skew(first)], axis=1)
+        inertia = jnp.concatenate([upper, jnp.concatenate([skew(first), second], axis=1)])
+        down = -now.environment.gravity * now.rotation[2]  # in body axes
+        force = jnp.concatenate(
+            [mass * down - cross(spin, cross(spin, first)), cross(first, down) - cross(spin, second @ spin)]
+        )
+        return Action(body_force=force, added_mass=inertia)

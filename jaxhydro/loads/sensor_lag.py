@@ -1,0 +1,34 @@
+"""The motions were recorded on another clock than the waves."""
+
+from typing import ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Parameter
+
+LONGEST = 60.0  # s
+
+
+class SensorLag(AbstractLoad):
+    """y_rec(t) = y(t - delay): what is recorded at t is the motion a delay earlier; all channels alike, the waves on time.
+
+    A delay above 0 means that the motions were recorded late, below 0 early: a filter's group delay, or two loggers started
+    one after the other. Its sign is a phase that is linear in frequency and the same in all motions, exp(-i omega delay)
+    (the shift theorem, Bracewell 2000, The Fourier Transform and Its Applications, chapter 6). In a free decay the release
+    takes it up. No force: the motion is the same.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Bracewell 2000, chapter 6 (shift theorem)"
+
+    @classmethod
+    def null(cls) -> "SensorLag":
+        """One clock."""
+        return cls({"sensor_lag.delay": jnp.zeros(())})
+
+    def about(self, label: str) -> Parameter:
+        return Parameter("s", "delay of the recorded motions behind the waves: y_rec(t) = y(t - delay)", -LONGEST, LONGEST)
+
+    def clock_lag(self) -> Float[Array, ""]:
+        return jnp.asarray(self.values["sensor_lag.delay"])

@@ -1,0 +1,40 @@
+"""The point that was tracked is not the reference point."""
+
+from typing import ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.rotations import rotation
+
+FARTHEST = 200.0  # m
+
+
+class SensorReference(AbstractLoad):
+    """y = p + R o - o: the surge, sway and heave that are recorded are those of a point at o = (x, 0, z) in body axes.
+
+    R is the exact rotation (Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 2.2). The point's
+    own place is taken off, so that at zero attitude it reads as the reference point does. To first order surge gets + z theta,
+    heave - x theta of the pitch theta, sway - z phi + x psi. Angles are those of any point. No force: the motion is the same.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Fossen 2011, section 2.2"
+
+    @classmethod
+    def null(cls) -> "SensorReference":
+        """The reference point itself."""
+        return cls({"sensor_reference.x": jnp.zeros(()), "sensor_reference.z": jnp.zeros(())})
+
+    def about(self, label: str) -> Parameter:
+        return Parameter("m", f"{label[-1]} of the tracked point from the reference point, body axes", -FARTHEST, FARTHEST)
+
+    def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
+        x, z = (jnp.asarray(self.values[f"sensor_reference.{axis}"]) for axis in "xz")
+        offset = jnp.stack([x, jnp.zeros(()), z])
+
+        def of(one: Float[Array, "6"]) -> Float[Array, "6"]:
+            return jnp.concatenate([one[:3] + (rotation(one[3:]) @ offset - offset), one[3:]])
+
+        return jnp.vectorize(of, signature="(n)->(n)")(position)

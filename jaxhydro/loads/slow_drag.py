@@ -1,0 +1,72 @@
+"""Drag in which the platform's slow motion has a coefficient of its own, by six states."""
+
+import math
+from collections.abc import Mapping
+from typing import ClassVar
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.drag import about, end_area, quadratic, strip_area
+
+NAME = "sea_state_dependent_drag"
+CUTOFF = 0.03  # Hz
+OWN = {
+    f"{NAME}.low_share": Parameter("-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0),
+    f"{NAME}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, CUTOFF),
+}
+
+
+class SlowDrag(AbstractLoad):
+    """f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u + w, w that of the low-passed motion.
+
+    u is the water's relative velocity, w a strip's own velocity by the platform's low-passed one: dm/dt = 2 pi fc (v - m), m
+    and v of six components in body axes. So u' is u without the platform's slow motion, and that motion feels r Cd where
+    fast motion and waves feel Cd. r = 1 is plain drag exactly, whatever fc; r above 1 gives slow motion more drag than fast.
+    In place of `StripDrag` and `EndDrag`, whose coefficients it has.
+
+    The idea is that of OpenFAST HydroDyn's filtered drag (AxVnCOff and AxFDLoFSc, Morison.f90), which is `HighPassDrag`. The
+    difference: there the relative velocity of every line is filtered, water included, so that a current and slow
+    second-order flow have the small coefficient, too; here only the platform's own motion is, one r and one fc serve all,
+    and the state has six entries instead of one per line, which keeps derivatives cheap. Low-passing along body axes takes
+    the slow turning of these for none. Not passive at every instant: with r above 1, or where slow and fast motion mix, it
+    can, for a while, give energy back.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    coupled: bool = eqx.field(static=True, default=True)
+    source: ClassVar[str] = "OpenFAST HydroDyn, Morison.f90 (AxVnCOff, AxFDLoFSc); filtering the platform's motion is ours"
+
+    @classmethod
+    def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
+        """The law on the lines whose drag coefficients are in `values`; its own parameters are null where they are not."""
+        return cls({label: jnp.asarray(about.null) for label, about in OWN.items()} | dict(values), coupled)
+
+    @classmethod
+    def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
+        """Plain drag with the coefficients in `values`."""
+        return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
+
+    def rest(self) -> Float[Array, "6"]:
+        return jnp.zeros(6)
+
+    def about(self, label: str) -> Parameter:
+        return OWN[label] if label in OWN else about(label, {})
+
+    def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
+        values, hull, density = self.values, now.hull, now.environment.density
+        share = values[f"{NAME}.low_share"]
+        still, turning = (memory @ hull.motion).reshape(2, -1)
+        slow_strip, slow_end = hull.split(still + turning * now.lines.away)
+
+        def force(area: Array, relative: Array, slow: Array, coupled: bool) -> Array:
+            whole, fast = (quadratic(density, area, u, coupled) for u in (relative, relative + slow))
+            return share * whole + (1 - share) * fast
+
+        return Action(
+            strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled),
+            end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False),
+            memory_rate=2 * math.pi * values[f"{NAME}.cutoff"] * (now.velocity - memory),
+        )

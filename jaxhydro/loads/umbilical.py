@@ -1,0 +1,53 @@
+"""The cable that leaves the platform."""
+
+from typing import Any, ClassVar, Self
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.rotations import cross, skew
+
+PARAMETERS = {
+    "stiffness": Parameter("N/m", "horizontal spring where the cable leaves the platform", 0.0),
+    "pull": Parameter("N", "mean pull of the cable along x, earth axes"),
+    "mass": Parameter("kg", "mass of the cable that the platform carries", 0.0),
+    "height": Parameter("m", "height over the reference point where the cable leaves the platform", -30.0, 60.0, 12.0),
+}
+
+
+class Umbilical(AbstractLoad):
+    """F = (p - k x, -k y, -m g) at the point (0, 0, h) of the body, x and y its displacement along earth axes; and its mass m.
+
+    k (N/m) is the horizontal spring of a slack cable, alike along x and y, p (N) its mean pull along x, m (kg) the part of it
+    that hangs on the platform: weight and inertia of a point that moves with the hull. As all this acts at the displaced point,
+    surge couples with pitch, and sway with roll, by the lever h. No drag, no damping, no vertical spring, no lever in yaw:
+    where the cable leaves off the axis, `static_force` in yaw is what is left.
+
+    Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3, for the point's mass; spring and pull
+    are the cable's statics, linearised, and ours. Labels are `umbilical.stiffness`, `.pull`, `.mass`, `.height` (h; m).
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Fossen 2011, section 3.3; the spring is ours"
+
+    @classmethod
+    def null(cls, height: float = 12.0) -> Self:
+        """No cable, at a height (m) over the reference point."""
+        every = {name: parameter.null for name, parameter in PARAMETERS.items()} | {"height": height}
+        return cls({f"umbilical.{name}": jnp.asarray(value, float) for name, value in every.items()})
+
+    def about(self, label: str) -> Parameter:
+        return PARAMETERS[label.removeprefix("umbilical.")]
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        stiffness, pull, mass, height = (self.values[f"umbilical.{name}"] for name in PARAMETERS)
+        zero = jnp.zeros_like(height)
+        arm, spin = jnp.stack([zero, zero, height]), now.velocity[3:]
+        place = now.position[:3] + height * now.rotation[:, 2]  # from the reference point's own reference position
+        earth = jnp.stack([pull - stiffness * place[0], -stiffness * place[1], -mass * now.environment.gravity])
+        force = earth @ now.rotation - mass * cross(spin, cross(spin, arm))
+        lever = mass * skew(arm)
+        upper = jnp.concatenate([mass * jnp.eye(3), -lever], axis=1)
+        inertia = jnp.concatenate([upper, jnp.concatenate([lever, -lever @ skew(arm)], axis=1)])
+        return Action(body_force=jnp.concatenate([force, cross(arm, force)]), added_mass=inertia)

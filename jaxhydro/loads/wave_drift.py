@@ -1,0 +1,59 @@
+"""Slow drift by the waves' squared envelope."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import DOFS
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.waves.sea import MIDDLE
+
+WAYS = {
+    "envelope": "in phase with the squared envelope |a|^2",
+    "quadrature": "a quarter of a beat behind the squared envelope",
+    "frequency_weighted": f"in phase with the squared envelope weighted by (omega/{MIDDLE:g})^2",
+}
+"""By what stands last in a label, in the order of `AbstractSea.drift`."""
+
+
+class WaveDrift(AbstractLoad):
+    """F_i(t) = sum_j D_ij s_j(t), of the undisturbed first-order waves at the origin, along earth axes.
+
+    s_0 = |a|^2 with a the complex elevation, eta = Re a; s_1 its Hilbert transform, out of phase and of no mean; s_2 =
+    Re(a_w conj(a)), the components of a_w weighted by (omega/omega_0)^2, omega_0 = 0.6 rad/s. A law of three real numbers
+    per degree of freedom that is fitted to data. In the terms of a difference-frequency transfer function T (Faltinsen 1990,
+    Sea Loads on Ships and Offshore Structures, chapter 5), with A_k the components' complex amplitudes,
+
+        F = sum_k sum_l A_k conj(A_l) exp(i (omega_k - omega_l) t) T_kl,
+        T_kl = D_i0 - i sign(omega_k - omega_l) D_i1 + D_i2 (omega_k^2 + omega_l^2) / (2 omega_0^2).
+
+    D_i1 = 0 is Newman's approximation (Newman 1974, Second-order, slowly-varying forces on vessels in irregular waves),
+    T_kl = (T_kk + T_ll)/2, with a drift curve linear in omega^2, T_kk = D_i0 + D_i2 (omega_k/omega_0)^2: the mean force in a
+    regular wave of amplitude A is T_kk A^2. Not in it: that the platform is elsewhere than at the origin, and sums of
+    frequencies. The velocity's drag up to the surface drifts, too, as Hs^3 (viscous drift): a look-alike, which the model
+    has by its drag and its wetting. A sea without waves, or one that knows no `drift`, gives no force.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Newman 1974; Faltinsen 1990, chapter 5"
+
+    @classmethod
+    def null(cls, dofs: Sequence[str] = ("surge", "heave", "pitch")) -> "WaveDrift":
+        """No drift, in some degrees of freedom."""
+        return cls({f"wave_drift.{dof}.{way}": jnp.zeros(()) for dof in dofs for way in WAYS})
+
+    def about(self, label: str) -> Parameter:
+        _, dof, way = label.split(".")
+        what, unit = ("force", "N/m2") if DOFS.index(dof) < 3 else ("moment", "N m/m2")
+        return Parameter(unit, f"second-order {what} in {dof}, {WAYS[way]}")
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        if now.drift is None or not self.values:
+            return Action()
+        names = [label.split(".") for label in self.values]
+        ways, dofs = [list(WAYS).index(way) for _, _, way in names], [DOFS.index(dof) for _, dof, _ in names]
+        parts = jnp.stack([jnp.asarray(value) for value in self.values.values()]) * now.drift[np.array(ways)]
+        return Action(force=parts @ np.eye(6)[dofs])

@@ -1,0 +1,36 @@
+"""The wave gauge stood elsewhere than was said."""
+
+from typing import ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.waves.sea import AbstractSea
+
+FARTHEST = 50.0  # m
+
+
+class WaveGaugePosition(AbstractLoad):
+    """eta(x, t) = eta_said(x - d, t): the gauge stood d further along the waves (to where they travel) than was said.
+
+    What it recorded belongs d further down, so the whole sea of the record is moved by d along its direction: every phase
+    grows by k d, bound waves' by their own wavenumber (linear and second-order waves of constant form, Sharma and Dean 1981,
+    SPE Journal 21, 604-612). Exact in any sea, but for `AbstractSea.drift` of a prepared one, which moves with the energy's
+    group velocity. A prepared sea is good in a box about the hull, of which d takes its share. The waves of second order that
+    were taken off the record do not depend on d.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "Sharma and Dean 1981, SPE Journal 21 (the waves that are moved)"
+
+    @classmethod
+    def null(cls) -> "WaveGaugePosition":
+        """The gauge where it was said to be."""
+        return cls({"wave_gauge_position.distance": jnp.zeros(())})
+
+    def about(self, label: str) -> Parameter:
+        return Parameter("m", "how much further along the waves the gauge stood than was said", -FARTHEST, FARTHEST)
+
+    def through(self, sea: AbstractSea) -> AbstractSea:
+        return sea.moved(jnp.asarray(self.values["wave_gauge_position.distance"]))

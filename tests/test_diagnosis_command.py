@@ -1,0 +1,170 @@
+"""`jaxhydro diagnose`: what it prints and writes, its exit statuses; and its values used in a simulation."""
+
+import json
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from fake_diagnosis import fake_diagnosis
+from test_outputs import Page, changed
+from typer.testing import CliRunner
+
+import jaxhydro as jh
+from calibration.discovery.outputs import write_diagnosis
+from calibration.discovery.result import Diagnosis
+from calibration.fit import Interrupted, Progress
+from calibration.outputs import write_calibration
+from calibration.report import write_report
+from calibration.saved import applied, read_saved
+from calibration.seas import Diverged
+from jaxhydro import cli
+from jaxhydro.problems import InputError, Problem
+
+DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"
+FORCE = "coulomb_friction.surge.force"
+
+
+@pytest.fixture(scope="module")
+def result() -> Diagnosis:
+    return fake_diagnosis()
+
+
+@pytest.fixture(scope="module")
+def written(result: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_diagnosis(result, tmp_path_factory.mktemp("results"), figures=False)
+
+
+# --- the command
+
+
+def run(*said: object, status: int = 0) -> str:
+    result = CliRunner().invoke(cli.app, [str(word) for word in said])
+    text = " ".join(re.sub("[│╭╮╰╯─]", " ", result.output).split())
+    assert result.exit_code == status and "Traceback" not in text, text
+    return text
+
+
+@pytest.fixture
+def searching(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """What `diagnose` gives or raises is set by the test."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.getbasetemp() / "cache"))
+    outcome: dict[str, Any] = {}
+
+    def diagnose(campaign, *, progress=None, options=None):
+        progress(Progress("reading the records", 0, float("nan"), 0.0, "-2 ln L"))
+        progress(Progress("scoring", 1, 812.0, 0.4, "-2 ln L"))
+        if isinstance(outcome["it"], BaseException):
+            raise outcome["it"]
+        return outcome["it"]
+
+    monkeypatch.setitem(sys.modules, "calibration.discovery.search", SimpleNamespace(diagnose=diagnose))
+    return outcome
+
+
+def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path) -> None:
+    searching["it"] = result
+    text = run("diagnose", DEMO, "--out", tmp_path / "o")
+    for said in ("9 tests fitted", "reading the records scoring: iteration 1, -2 ln L = 812",
+                 "The declared model lacks Coulomb friction in surge", "(81.0 ± 2.1) kN", "very strong",
+                 "hysteresis in surge explains no more", "surge-3 held out surge 12 % 1.9 %", "Note: surge-2 repeats",
+                 "sea-1 fitted surge low frequency -24 % -3 %", "Next test: a static pull-out"):  # fmt: skip
+        assert said in text, said
+    assert {path.name for path in (tmp_path / "o").iterdir()} == {"diagnosis.json", "simulated.nc", "figures"}
+    assert "report.html" in run("report", tmp_path / "o")
+    run("diagnose", DEMO / "campaign.yaml", "--no-figures", "--out", tmp_path / "p")
+    assert {path.name for path in (tmp_path / "p").iterdir()} == {"diagnosis.json", "simulated.nc"}
+
+
+@pytest.mark.parametrize(
+    ("outcome", "status", "said", "written"),
+    [
+        ("unconverged", 3, "not converged: the results are marked so", True),
+        ("stopped", 3, "stopped by the user", True),
+        ("stopped at once", 130, "nothing was written", False),
+        ("stopped in the first fit", 130, "nothing was written", False),
+        ("killed", 130, "nothing was written", False),
+        ("not finite", 3, "not finite; nothing was written", False),
+        ("diverged", 3, "surge grows; nothing was written", False),
+        ("bad", 2, "tests: expected at least one, found none", False),
+    ],
+)
+def test_what_does_not_converge(searching, outcome, status, said, written, tmp_path) -> None:
+    good = fake_diagnosis()
+    stopped = Interrupted(None)
+    stopped.partial = good  # type: ignore[assignment]
+    searching["it"] = {
+        "unconverged": fake_diagnosis(converged=False), "stopped": stopped, "stopped at once": Interrupted(None),
+        "stopped in the first fit": Interrupted(good.baseline), "killed": KeyboardInterrupt(),
+        "diverged": Diverged("surge grows"),
+        "not finite": replace(good, baseline=changed(good.baseline, 0, simulated=np.full(2400, np.nan))),
+        "bad": InputError("campaign.yaml", [Problem("tests", "at least one", "none")]),
+    }[outcome]  # fmt: skip
+    assert said in run("diagnose", DEMO, "--no-figures", "--out", tmp_path / "o", status=status)
+    assert (tmp_path / "o").exists() == written and not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
+    if written:
+        assert json.loads((tmp_path / "o" / "diagnosis.json").read_text())["augmented"]["converged"] is False
+        assert "did not converge" in Page(write_report(tmp_path / "o").read_text()).text
+
+
+def test_results_do_not_replace_those_of_other_commands(searching, result: Diagnosis, tmp_path: Path) -> None:
+    searching["it"] = result
+    mine = write_diagnosis(result, tmp_path / "mine", figures=False)
+    theirs = write_calibration(result.baseline, tmp_path / "theirs", figures=False)
+    assert "which has the results of a diagnosis" in run("calibrate", DEMO, "--out", mine, status=2)
+    assert "which has the results of a calibration" in run("diagnose", DEMO, "--out", theirs, status=2)
+    (theirs / "simulated.nc").unlink()
+    assert "another command's calibration.json" in run("diagnose", DEMO, "--out", theirs, status=2)
+    run("diagnose", DEMO, "--no-figures", "--out", mine)
+    assert "no such file" in run("diagnose", tmp_path / "none", "--out", tmp_path / "o", status=2)
+    assert not (tmp_path / "o").exists()
+
+
+# --- its values in a simulation
+
+
+def saved_with(written: Path, folder: Path, values: dict[str, float], platform: str) -> Path:
+    """The diagnosis with other augmented values and another platform."""
+    content = json.loads((written / "diagnosis.json").read_text()) | {"platform": platform}
+    content["augmented"]["parameters"] = {label: {"value": value, "unit": "-"} for label, value in values.items()}
+    (folder / "diagnosis.json").write_text(json.dumps(content))
+    return folder / "diagnosis.json"
+
+
+def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: Path, capsys) -> None:
+    model = jh.load_model(str(DEMO / "platform.yaml"))
+    platform = "VolturnUS-S"
+    path = saved_with(written, tmp_path, {"column.Ca_t": 1.5, FORCE: 81000.0, "mass_properties.mass": 1e5}, platform)
+    used = applied(path, model, platform)
+    assert float(used.model.values[FORCE]) == 81000.0 and float(used.model.values["column.Ca_t"]) == 1.5
+    assert len(used.model.loads) == len(model.loads) + 2 and read_saved(tmp_path).key == "augmented"
+    elsewhere = applied(path, model, "another")
+    assert elsewhere.left == ("mass_properties.mass",) and FORCE in elsewhere.values
+    found = cli._model(str(DEMO / "platform.yaml"), path, None, None)
+    assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
+
+
+def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def with_effects(model, labels):
+        asked.append(list(labels))
+        return model
+
+    monkeypatch.setattr("calibration.discovery.catalogue.with_effects", with_effects)
+    model = jh.load_model(str(DEMO / "platform.yaml"))
+    path = saved_with(written, tmp_path, {"column.Ca_t": 1.5, FORCE: 81000.0}, "VolturnUS-S")
+    with pytest.raises(InputError, match=r"augmented\.parameters: expected parameters of this hull .* found 'coulomb_friction"):
+        applied(path, model, "this hull")
+    assert asked == [[FORCE]]
+
+
+def test_effects_of_another_version_are_told(written: Path, tmp_path: Path) -> None:
+    path = saved_with(written, tmp_path, {"ghosts.surge": 1.0}, "VolturnUS-S")
+    model = jh.load_model(str(DEMO / "platform.yaml"))
+    with pytest.raises(InputError, match="effects that this version knows, found no effect 'ghosts'"):
+        applied(path, model, "VolturnUS-S")

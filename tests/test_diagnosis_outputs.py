@@ -1,0 +1,236 @@
+"""What a diagnosis leaves behind, the page made of it, the command, and its values used in a simulation."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+import xarray as xr
+from fake_diagnosis import fake_diagnosis
+from PIL import Image
+from test_outputs import SCHEMAS, Page, changed, contents
+
+import jaxhydro as jh
+from calibration.discovery import plots, words
+from calibration.discovery.outputs import document, paired, write_diagnosis
+from calibration.discovery.result import Diagnosis
+from calibration.discovery.saved import read_diagnosis
+from calibration.outputs import NotFinite
+from calibration.report import write_report
+from jaxhydro.problems import InputError
+
+DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"
+FORCE = "coulomb_friction.surge.force"
+
+
+@pytest.fixture(scope="module")
+def result() -> Diagnosis:
+    return fake_diagnosis()
+
+
+@pytest.fixture(scope="module")
+def written(result: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_diagnosis(result, tmp_path_factory.mktemp("results") / "new" / "deep")
+
+
+# --- diagnosis.json, simulated.nc, figures
+
+
+@pytest.mark.parametrize("schema", SCHEMAS, ids=["own", "shared"])
+def test_the_document_follows_the_schema(written: Path, schema: Path) -> None:
+    if not schema.exists():
+        pytest.skip("no shared schema here")
+    read = json.loads((written / "diagnosis.json").read_text(), parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
+    jsonschema.Draft202012Validator(json.loads(schema.read_text())).validate(read)
+
+
+def test_the_document_says_what_the_contract_says(result: Diagnosis, written: Path) -> None:
+    read = json.loads((written / "diagnosis.json").read_text())
+    assert {"campaign", "platform", "jaxhydro", "baseline", "missing", "augmented"} <= set(read)
+    missing = read["missing"]
+    assert missing["verdict"] == "found" and missing["unexplained"] == {"share": 0.04, "signature": result.signature}
+    effect = missing["effects"][0]
+    assert (effect["effect"], effect["degree_of_freedom"]) == ("coulomb_friction", "surge")
+    force = effect["parameters"]["force"]
+    assert (force["value"], force["standard_deviation"], force["unit"]) == (81000.0, 2100.0, "N")
+    assert effect["evidence"] == {"score": 812.0, "delta_bic": 604.0, "holdout_gain": 0.61, "clear": 38.6}
+    assert effect["share_of_residual_explained"] == 0.93 and effect["indistinguishable_from"] == ["hysteresis (surge)"]
+    assert missing["rejected"][0] == {"effect": "current", "degree_of_freedom": None, "reason": "held-out error grew by 2 %"}
+    assert FORCE in read["augmented"]["parameters"] and FORCE not in read["baseline"]["parameters"]
+    for key, one in (("baseline", result.baseline), ("augmented", result.augmented)):
+        assert read[key]["objective"]["fit"] == pytest.approx(one.objective("fit")) and read[key]["converged"] is True
+        low = one.tests[4].bands["surge"]["low_frequency"]
+        assert read[key]["error"]["sea-1"]["bands"]["surge"]["low_frequency"] == low.after
+    first = read["augmented"]["error"]["pitch-1"]["pitch"]
+    assert first["unit"] == "deg" and first["before"] == pytest.approx(
+        {key: read["baseline"]["error"]["pitch-1"]["pitch"][key] for key in ("rmse", "unit", "relative")}
+    )
+    assert read["tests"]["sea-2"]["bands_before"] == read["baseline"]["error"]["sea-2"]["bands"]
+    assert len(read["scores"]) == len(result.scores) and read["scores"][0]["refitted_gain"] == 640.0
+    assert read["anatomy"]["before"][3]["rms"] == pytest.approx(np.rad2deg(result.anatomy_before[3].rms))
+    assert len(read["anatomy"]["after"][0]["bands"]) == 10 and read["next_test"] and read["seconds"] == 321.0
+
+
+def test_the_series_before_have_the_residual_they_had(result: Diagnosis, written: Path) -> None:
+    """Sensor offsets differ between the two fits: what is measured is on the later one's."""
+    with xr.open_dataset(written / "simulated.nc") as data:
+        for before, after in zip(result.baseline.tests, result.augmented.tests):
+            here = data.sel(test=after.id, channel=after.main.channel)
+            n, factor = len(after.time), 180 / np.pi if after.main.channel == "pitch" else 1.0
+            np.testing.assert_allclose(here.simulated[:n], factor * after.main.simulated, atol=1e-12)
+            left = factor * (before.main.measured - before.main.simulated)
+            np.testing.assert_allclose(here.measured[:n] - here.before[:n], left, atol=1e-12)
+        assert data.attrs["title"] == "Diagnosis of basin" and "declared model" in data.before.attrs["long_name"]
+    test = result.baseline.tests[0]
+    short = replace(test, series=tuple(replace(s, measured=s.measured[1:], simulated=s.simulated[1:]) for s in test.series))
+    odd = replace(result, baseline=replace(result.baseline, tests=(short, *result.baseline.tests[2:])))
+    assert not paired(odd).tests[0].start and len(paired(odd).tests) == len(result.augmented.tests)
+
+
+def test_every_figure_is_half_a_page_wide_and_named_in_the_document(written: Path) -> None:
+    listed = json.loads((written / "diagnosis.json").read_text())["figures"]
+    names = [figure["file"].removeprefix("figures/") for figure in listed]
+    assert names == ["before-after.png", "anatomy.png", "effect-coulomb_friction-surge.png", "scores.png", "spectra-sea-1.png",
+                     "spectra-sea-2.png"]  # fmt: skip
+    assert set(names) == {path.name for path in (written / "figures").iterdir()}
+    for figure in listed:
+        assert figure["caption"]
+        with Image.open(written / figure["file"]) as image:
+            assert image.width == 1005 and 500 < image.height < 3000
+
+
+def nothing(**changes: Any) -> Diagnosis:
+    """Nothing was found."""
+    less = {"verdict": "nothing_missing", "effects": (), "rejected": (), "scores": (), "anatomy_before": (),
+            "anatomy_after": (), "unexplained_share": np.nan, "next_test": "", "notes": (), "signature": ""}  # fmt: skip
+    return replace(fake_diagnosis(), **{**less, **changes})
+
+
+def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_path: Path) -> None:
+    """Nothing missing; no tests at all; numbers that are none; effects twice, of nothing that moves; many rounds."""
+    read_diagnosis(write_diagnosis(nothing(), tmp_path / "a"))
+    page = Page(write_report(tmp_path / "a").read_text())
+    assert "nothing that the declared model lacks" in page.text and "No effect." in page.text
+    assert json.loads((tmp_path / "a" / "diagnosis.json").read_text())["missing"]["unexplained"]["share"] == 0.0
+    less = {key: replace(getattr(result, key), tests=()) for key in ("baseline", "augmented")}
+    write_diagnosis(replace(nothing(verdict="unexplained", signature="at 0.01 Hz, as Hs^2"), **less), tmp_path / "b")
+    assert "at 0.01 Hz, as Hs^2" in Page(write_report(tmp_path / "b").read_text()).text
+    one = result.effects[0]
+    unsure = replace(one.evidence, score=np.nan, delta_bic=np.inf, holdout_gain=np.nan, clear=np.nan)
+    other = replace(one, effect="new", degree_of_freedom="yaw", parameters={}, telling_test=None)
+    twice = (one, replace(one, evidence=unsure), other)
+    many = tuple(replace(s, round=n, gain=np.nan if n == 3 else s.gain) for n in range(1, 6) for s in result.scores[:6])
+    findings = tuple(replace(f, noise=0.0, bands=((0.0, 1.0, np.nan),)) for f in result.anatomy_before[:3])
+    odd = replace(result, effects=twice, scores=many, anatomy_before=findings, anatomy_after=findings[:1], seconds=np.inf)
+    write_diagnosis(odd, tmp_path / "c")
+    jsonschema.validate(json.loads((tmp_path / "c" / "diagnosis.json").read_text()), json.loads(SCHEMAS[0].read_text()))
+    text = Page(write_report(tmp_path / "c").read_text()).text
+    assert "No test was held out" in text and "Coulomb friction in surge, Coulomb friction in surge and new in yaw" in text
+
+
+def test_what_is_not_finite_is_refused(result: Diagnosis) -> None:
+    force = {FORCE: replace(result.effects[0].parameters[FORCE], value=np.nan)}
+    with pytest.raises(NotFinite, match="force of what was found"):
+        document(replace(result, effects=(replace(result.effects[0], parameters=force),)))
+    with pytest.raises(NotFinite, match="fitted test"):
+        document(replace(result, augmented=changed(result.augmented, 0, simulated=np.full(2400, np.nan))))
+
+
+# --- whole or not at all
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
+def test_an_old_result_stays_when_plotting_fails(result, tmp_path, monkeypatch, error) -> None:
+    folder = write_diagnosis(result, tmp_path / "out", figures=False)
+    before = contents(tmp_path)
+
+    def broken(*_: object) -> None:
+        raise error("no ink")
+
+    monkeypatch.setattr(plots, "figures", broken)
+    for out in (folder, tmp_path / "other"):
+        with pytest.raises(error, match="no ink"):
+            write_diagnosis(replace(result, campaign="new"), out)
+    assert contents(tmp_path) == before and not (tmp_path / "other").exists()
+
+
+def test_a_new_result_replaces_the_old_one_and_nothing_else(result: Diagnosis, tmp_path: Path) -> None:
+    folder = write_diagnosis(result, tmp_path / "out")
+    write_report(folder)
+    (folder / "figures" / "mine.png").write_bytes(b"keep")
+    write_diagnosis(nothing(campaign="second"), folder, figures=False)
+    assert {path.name for path in (folder / "figures").iterdir()} == {"mine.png"}
+    assert {path.name for path in folder.iterdir()} == {"diagnosis.json", "simulated.nc", "figures"}
+    assert read_diagnosis(folder).campaign == "second"
+
+
+# --- the page
+
+
+def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> None:
+    path = write_report(written)
+    page = Page(path.read_text(encoding="utf-8"))
+    assert path == written / "report.html" and page.tags.count("img") == len(list((written / "figures").iterdir()))
+    assert all(link.startswith("data:image/png;base64,") for link in page.links) and "http" not in page.text
+    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+    told = ("The declared model lacks Coulomb friction in surge", "falls by 69 %", "What was measured",
+            "free decay: 4 fitted, 1 held out", "What the model missed", "in phase with velocity", "What was found",
+            "force (81.0 ± 2.1) kN", "Very strong evidence", "takes away 61 %", "cannot tell it from hysteresis in surge",
+            "A test that would tell: a static pull-out",
+            "left unexplained: white", "The test to run next", "Error before and after", "RMSE after", "low frequency", "-24 %",
+            "Fitted coefficients", "91000 ± 3000", "44000 ± 1500", "-52 %", "What was rejected", "held-out error grew", "Notes",
+            "surge-2 repeats surge-1", "321 s")  # fmt: skip
+    places = [page.text.find(text) for text in told]
+    assert -1 not in places and places == sorted(places), list(zip(told, places))
+    assert "did not converge" not in page.text and "not identifiable" in page.text
+
+
+def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Path) -> None:
+    evil = '<script>alert("1")</script>&amp; $title'
+    one = result.effects[0]
+    force = replace(one.parameters[FORCE], label=evil, unit=evil)
+    effect = replace(one, effect=evil, degree_of_freedom=evil, meaning=evil, source=evil, parameters={evil: force},
+                     telling_test=evil, indistinguishable=(evil,))  # fmt: skip
+    rejected = tuple(replace(r, effect=evil, reason=evil) for r in result.rejected)
+    anatomy = tuple(replace(f, test=evil, words=evil) for f in result.anatomy_before)
+    strange = replace(
+        result, campaign=evil, effects=(effect,), rejected=rejected, anatomy_before=anatomy, signature=evil, next_test=evil,
+        notes=(evil,), augmented=replace(result.augmented, converged=False, parameters={evil: replace(force, label=evil)}),
+    )  # fmt: skip
+    page = Page(write_report(write_diagnosis(strange, tmp_path / "out", figures=False)).read_text(encoding="utf-8"))
+    assert "script" not in page.tags and page.text.count(evil) >= 15 and "did not converge" in page.text
+
+
+def test_broken_results_are_told(written: Path, tmp_path: Path) -> None:
+    good = json.loads((written / "diagnosis.json").read_text())
+    one = good["missing"]["effects"][0]
+    missing, augmented = good["missing"], good["augmented"]
+    cases = [
+        ({key: good[key] for key in good if key != "augmented"}, "augmented: expected a mapping"),
+        (good | {"missing": missing | {"verdict": "maybe"}}, "missing.verdict: expected one of"),
+        (good | {"missing": missing | {"effects": [one | {"parameters": 3}]}}, "missing.effects[0].parameters"),
+        (good | {"augmented": augmented | {"error": {"a": {"use": "fit", "surge": 3}}}}, "augmented.error.a.surge"),
+        ("{", "line 1, column 2: expected valid JSON"),
+    ]
+    for content, said in cases:
+        (tmp_path / "diagnosis.json").write_text(content if isinstance(content, str) else json.dumps(content))
+        with pytest.raises(InputError) as caught:
+            write_report(tmp_path)
+        assert said in str(caught.value) and "diagnosis.json" in str(caught.value)
+        assert [path.name for path in tmp_path.iterdir()] == ["diagnosis.json"]
+
+
+def test_sizes_and_names_as_people_read_them() -> None:
+    assert words.quantity(81000.0, 2100.0, "N") == "(81.0 ± 2.1) kN"
+    assert words.quantity(-2.5e9, None, "N m") == "-2.50 GN m"
+    assert words.quantity(3.6e8, 5e5, "N m s2/rad2") == "(360.00 ± 0.50) MN m s²/rad²"
+    assert words.quantity(np.deg2rad(2.0), np.deg2rad(0.1), "rad") == "(2.00 ± 0.10) deg"
+    assert words.quantity(-3.1e5, 2e4, "kg") == "(-310 ± 20) t"
+    assert words.quantity(0.33, 0.01, "-") == "0.330 ± 0.010"
+    assert words.quantity(0.12, np.nan, "m/s") == "0.120 m/s"
+    assert words.called("hysteresis (surge)") == "hysteresis in surge" and words.called("current") == "a current"
+    assert words.several(["a"]) == "a" and words.several(["a", "b", "c"]) == "a, b and c" and words.several([]) == ""
+    assert words.change(0.5, 0.6) == "grows by 20 % (J from 0.500 to 0.600)"

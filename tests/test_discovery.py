@@ -1,0 +1,110 @@
+"""Diagnosis: frequency bands, and rolling bodies made by SciPy with an effect in them, or none."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from ruamel.yaml import YAML
+from scipy.integrate import solve_ivp
+
+from calibration.campaign import load_campaign
+from calibration.discovery.bands import bands_of
+from calibration.discovery.evidence import banded
+from calibration.discovery.pose import pose
+from calibration.discovery.search import diagnose
+from calibration.seas import Options
+
+PLATFORM = {
+    "name": "a rolling body",
+    "water": {"density": 1000.0, "depth": 5.0, "gravity": 9.81},
+    "rigid_body": {"mass": 994.0, "centre_of_mass": [0.0, 0.0, 0.0], "inertia": {"Ixx": 115.7, "Iyy": 1376.0, "Izz": 1376.0}},
+    "members": [],
+    "added_mass": {"A44": 20.0},
+    "linear_damping": {"B44": 3.0},
+    "hydrostatics": {"C44": 822.0},
+    "mooring": {"kind": "none"},
+}
+NOISE = 2e-4  # rad
+
+
+def release(amplitude: float, torque, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Roll of a body released at rest, with a torque (N m) of angle and rate beside what the platform file has; and noise."""
+    time = np.arange(0.0, 60.0, 0.05)
+
+    def rate(_, y):
+        return [y[1], (-822.0 * np.sin(y[0]) - 2.4 * y[1] + torque(*y)) / (115.7 + 23.0)]
+
+    found = solve_ivp(rate, (0, 60), [amplitude, 0.0], t_eval=time, rtol=1e-9, atol=1e-11)
+    return time, found.y[0] + np.random.default_rng(seed).normal(0, NOISE, time.size)
+
+
+def campaign_of(folder, torque):
+    """Three decays of one body: two to fit, one held out."""
+    tests = []
+    for i, (amplitude, use) in enumerate([(0.10, "fit"), (0.30, "fit"), (0.22, "holdout")]):
+        time, roll = release(amplitude, torque, i)
+        columns = np.column_stack([time, roll])
+        np.savetxt(folder / f"roll-{i}.csv", columns, "%.6f", ",", header="time_s,roll_rad", comments="")
+        tests.append({"id": f"roll-{i}", "kind": "decay", "degree_of_freedom": "roll", "file": f"roll-{i}.csv", "use": use})
+    manifest = {
+        "name": "made by SciPy",
+        "platform": "platform.yaml",
+        "scale": 1.0,
+        "channels": {"time": {"column": "time_s", "unit": "s"}, "roll": {"column": "roll_rad", "unit": "rad"}},
+        "noise": {"roll": NOISE},
+        "tests": tests,
+    }
+    for name, data in (("campaign.yaml", manifest), ("platform.yaml", PLATFORM)):
+        with (folder / name).open("w") as file:
+            YAML().dump(data, file)
+    return load_campaign(folder)
+
+
+def test_bands_are_a_partition_of_the_lines():
+    """Every Fourier line up to the highest frequency is in one band; degrees of freedom are the record's, not those of zeros."""
+    cut = bands_of(100.0, 0.1, 1500, 9, 1.0)
+    frequency = np.fft.rfftfreq(1500, 0.1)
+    assert_allclose(cut.member.sum(axis=0), 1.0)
+    assert cut.member.shape[1] == (frequency <= 1.0).sum()
+    assert_allclose(2 * cut.lines[1:].sum() + 1, 2 * 100.0 * 1.0, rtol=0.02)
+
+
+def test_bands_hold_the_sum_of_squares():
+    """Parseval: products over all bands are those over samples."""
+    rng = np.random.default_rng(0)
+    residual, slopes = rng.normal(size=(2, 400)), rng.normal(size=(2, 400, 3))
+    member = bands_of(40.0, 0.1, 400, 12, 6.0).member  # all frequencies
+    full = np.concatenate([slopes, residual[..., None]], axis=-1)
+    found = np.asarray(banded(slopes, residual, member)).sum(axis=1)
+    # the line at half the sampling rate counts once, and is counted twice: it is one of 201
+    assert_allclose(found, np.einsum("ctk,ctl->ckl", full, full), atol=0.02 * 400)
+
+
+def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
+    """What is declared is fitted, not looked for."""
+    campaign = campaign_of(tmp_path, lambda x, v: 0.0)
+    names = {one.name for one in pose(campaign, Options()).candidates}
+    assert {"coulomb_friction (roll)", "nonlinear_hydrostatics (roll)", "quadratic_damping (roll)"} <= names
+    assert not any("surge" in name for name in names)
+
+
+@pytest.mark.parametrize(
+    ("torque", "expected", "left"),  # `left`: share of the held-out decay's error
+    [
+        (lambda x, v: 0.0, None, 1.0),
+        (lambda x, v: -500.0 * x**3, "nonlinear_hydrostatics", 0.05),
+        (lambda x, v: -0.3 * np.tanh(v / 2e-3), "coulomb_friction", 0.3),
+    ],
+    ids=["nothing", "hydrostatics", "friction"],
+)
+def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
+    """The effect is named, the held-out decay comes down; where there is none, none is named."""
+    found = diagnose(campaign_of(tmp_path, torque))
+    if expected is None:
+        assert found.verdict == "nothing_missing"
+        assert not found.effects
+        return
+    assert found.verdict == "found"
+    assert expected in {found.effects[0].effect, *(name.split(" ")[0] for name in found.effects[0].indistinguishable)}
+    held = [one for one in found.anatomy_after if one.use == "holdout"]
+    before = [one for one in found.anatomy_before if one.use == "holdout"]
+    assert held[0].rms < left * before[0].rms

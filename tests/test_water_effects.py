@@ -1,0 +1,384 @@
+"""What the water, the waves and the sensors do that a model may lack: closed forms, and double sums done here in NumPy."""
+
+import dataclasses
+import math
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.signal import hilbert
+from scipy.spatial.transform import Rotation
+from test_loads import COEFFICIENTS, COLUMN, PONTOON, RHO, SEA, G, build, force, model_of, only
+
+import jaxhydro as jh
+from jaxhydro.environment import DOFS
+from jaxhydro.loads import (
+    AbstractLoad,
+    Current,
+    EndDrag,
+    PowerDrag,
+    SensorLag,
+    SensorReference,
+    SlowDrag,
+    StripDrag,
+    WaveDrift,
+    WaveDriftDamping,
+    WaveGaugePosition,
+    WaveReflection,
+)
+from jaxhydro.waves import Clock, PlaneWaves, WaveSea
+
+WATER = jh.Environment(RHO, 200.0, G)
+CD_T, CD_Z = COEFFICIENTS["Cd_t"], COEFFICIENTS["Cd_z"]
+AREA = 10.0 * 20.0  # m2, of the column in the water
+HULL = np.array([[-30.0, 0, -20], [45.0, 10, -20], [0, -10, 15.0]]).T
+VELOCITY = np.array([1.1, -0.6, 0.7, 0.02, -0.03, 0.01])
+POSITION = (3.0, -2.0, 1.0, 0.05, -0.1, 0.2)
+
+
+def with_values(load: AbstractLoad, **values: float) -> AbstractLoad:
+    """A load with parameters of these last parts of their labels."""
+    changed = {k: jnp.asarray(values.get(k.rsplit(".", 1)[1], v)) for k, v in load.values.items()}
+    return dataclasses.replace(load, values=changed)
+
+
+def irregular(order: int = 1, heading: float = 0.0, ramp: float = 0.0) -> jh.IrregularSea:
+    waves = jh.spectrum_components(
+        lambda omega: jh.jonswap(omega, 5.0, 10.0), 100.0, WATER, low=0.05, cutoff=0.2, seed=3, heading=heading
+    )
+    return jh.IrregularSea(waves, WATER, order, ramp=ramp)
+
+
+@eqx.filter_jit
+def acting(model: jh.Model, position, velocity, memory, sea, time) -> tuple[jax.Array, tuple]:
+    """Force of all loads in body axes, and the rates of their memories."""
+    now = model.instant(time, jh.State(position, velocity, memory), sea)
+    total = model.sum_of_loads(now, memory)
+    return total.force, total.memory_rate
+
+
+def acts(model: jh.Model, position, velocity, memory, sea, time: float = 0.0) -> tuple[np.ndarray, tuple]:
+    """The same, of anything."""
+    force, rates = acting(model, *(jnp.asarray(x, float) for x in (position, velocity)), memory, sea, jnp.asarray(time))
+    return np.asarray(force), rates
+
+
+@eqx.filter_jit
+def water(sea: jh.AbstractSea, time, points, load: AbstractLoad | None = None) -> tuple:
+    """Velocity, acceleration and pressure along earth axes, elevation, and what slow forces go with."""
+    sea = sea if load is None else load.through(sea)
+    flow = sea.flow(time, points).earth()
+    return flow.velocity, flow.acceleration, flow.pressure, sea.elevation(time, points[:2]), sea.drift(time)
+
+
+# current
+
+
+def test_drag_in_a_current() -> None:
+    """1/2 rho Cd D T |U| U on a column that is held, oblique; as much on one that is moved the other way in still water."""
+    plain = only(build(COLUMN), StripDrag)
+    flowing = plain.with_load(with_values(Current.null(), x=0.9, y=-1.2))
+    expected = 0.5 * RHO * CD_T * AREA * 1.5 * np.array([0.9, -1.2])
+    assert_allclose(force(flowing)[:2], expected, rtol=1e-11)
+    assert_allclose(force(plain, [-0.9, 1.2, 0, 0, 0, 0])[:2], expected, rtol=1e-11)
+
+
+def test_a_current_is_galilean() -> None:
+    """Whoever goes with the stream feels none; any motion in it is that of the difference, in an attitude, too."""
+    plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
+    stream = np.array([0.9, -1.2, 0.0])
+    flowing = plain.with_load(with_values(Current.null(), x=0.9, y=-1.2))
+    in_body = np.concatenate([Rotation.from_euler("ZYX", POSITION[:2:-1]).as_matrix().T @ stream, np.zeros(3)])
+    assert_allclose(force(flowing, in_body, POSITION), 0.0, atol=1e-5)
+    expected = force(plain, VELOCITY - in_body, POSITION)
+    assert_allclose(force(flowing, VELOCITY, POSITION), expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+# sensors
+
+
+def test_what_a_point_off_the_reference_reads() -> None:
+    """p + R o - o with scipy's rotation, over any leading axes; at zero attitude, and at the null, p to the bit."""
+    position = np.random.default_rng(0).uniform(-0.5, 0.5, (2, 3, 6))
+    load = with_values(SensorReference.null(), x=4.0, z=-6.0)
+    offset = np.array([4.0, 0.0, -6.0])
+    found = np.asarray(load.seen(jnp.asarray(position)))
+    turned = Rotation.from_euler("ZYX", position[..., :2:-1].reshape(-1, 3)).apply(offset).reshape(2, 3, 3)
+    assert_allclose(found[..., :3], position[..., :3] + turned - offset, atol=1e-14)
+    assert (found[..., 3:] == position[..., 3:]).all()
+    assert (np.asarray(SensorReference.null().seen(jnp.asarray(position))) == position).all()
+    upright = position * [1, 1, 1, 0, 0, 0]
+    assert (np.asarray(load.seen(jnp.asarray(upright))) == upright).all()
+    slope = jax.jacfwd(lambda z: dataclasses.replace(load, values=load.values | {"sensor_reference.z": z}).seen(
+        jnp.array([0.0, 0, 0, 0, 0.1, 0])))(jnp.zeros(()))  # fmt: skip
+    assert_allclose(slope, [math.sin(0.1), 0, math.cos(0.1) - 1, 0, 0, 0], atol=1e-15)
+
+
+def test_a_delay_is_late() -> None:
+    """y_rec(t) = y(t - delay), through the model; None where no load is about clocks."""
+    model = build(COLUMN)
+    assert model.clock_lag() is None
+    late = model.with_load(with_values(SensorLag.null(), delay=0.7))
+    assert float(late.clock_lag()) == 0.7
+    assert (force(late, VELOCITY, POSITION) == force(model, VELOCITY, POSITION)).all()
+
+
+# where the gauge stood
+
+
+def test_a_gauge_further_along_by_hand() -> None:
+    """It recorded a cos(omega t), was said to be at x = 12 m and stood at 12 + 30 m: there the sea is a cos(omega t)."""
+    said = jh.regular_wave(2.0, 8.0, WATER)
+    k = float(said.waves.vector[0, 0])
+    said = jh.regular_wave(2.0, 8.0, WATER, phase=k * 12.0)
+    t = jnp.asarray(3.3)
+    recorded = math.cos(2 * math.pi / 8.0 * 3.3)
+    assert float(said.elevation(t, jnp.array([[12.0], [0.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
+    load = with_values(WaveGaugePosition.null(), distance=30.0)
+    assert float(load.through(said).elevation(t, jnp.array([[42.0], [5.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
+
+
+@pytest.mark.parametrize("order, heading", [(1, 0.0), (2, 0.6)])
+def test_a_moved_sea_is_one_of_other_phases(order: int, heading: float) -> None:
+    """Prepared, direct and by components, flow and surface, against the sea whose components have phases + k d."""
+    sea = irregular(order, heading)
+    waves = sea.components
+    expected = dataclasses.replace(sea, components=dataclasses.replace(waves, phase=waves.phase + 9.0 * waves.wavenumber))
+    load = with_values(WaveGaugePosition.null(), distance=9.0)
+    prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 100, (0.0,)))
+    along = np.array([-20.0, 3.0, 25.0])
+    points = jnp.asarray(np.stack([along * np.cos(heading), along * np.sin(heading), [-15.0, -4.0, 0.0]]))
+    assert_allclose(load.through(sea).components.phase, expected.components.phase, atol=1e-12)
+    expected = expected.direct()
+    time = jnp.asarray(23.5)
+    *exact, drift = water(expected, time, points)
+    for one, tolerance in ((prepared, 1e-5), (sea.direct(), 1e-12)):
+        *found, drifting = water(one, time, points, load)
+        for part, other in zip(found, exact, strict=True):
+            assert_allclose(part, other, atol=5 * tolerance * np.abs(other).max())
+        assert one is prepared or bool(jnp.abs(drifting - drift).max() < 1e-9)
+    same = zip(*(jax.tree.leaves(one) for one in (WaveGaugePosition.null().through(prepared), prepared)), strict=True)
+    assert all(np.array_equal(a, b) for a, b in same)
+    assert isinstance(load.through(jh.StillWater()), jh.StillWater)
+
+
+def test_a_moved_envelope_goes_with_the_group() -> None:
+    """In a narrow band the squared envelope that passes 12 m further down is that of before, but for dispersion."""
+    waves = jh.spectrum_components(lambda w: jh.jonswap(w, 5.0, 10.0), 400.0, WATER, low=0.085, cutoff=0.115, seed=3)
+    sea, load = jh.IrregularSea(waves, WATER), with_values(WaveGaugePosition.null(), distance=12.0)
+    prepared, direct = sea.prepared(HULL, None, Clock(10.0, 0.25, 1000, (0.0,))), sea.direct()
+    times = jnp.linspace(20.0, 240.0, 60)
+    found, exact, still = (
+        jax.jit(jax.vmap(one.drift))(times) for one in (load.through(prepared), load.through(direct), direct)
+    )
+    missed, moved = (np.abs(one - exact).max(axis=0) for one in (found, still))
+    assert (missed < 0.1 * moved).all()
+
+
+# drift
+
+
+def squares(sea: jh.IrregularSea, time: float) -> np.ndarray:
+    """The three signals by a double sum over components."""
+    waves = sea.components
+    amplitude, omega = np.asarray(waves.complex_amplitude()), np.asarray(waves.omega)
+    found = np.zeros(3)
+    for a, p in zip(amplitude, omega, strict=True):
+        for b, q in zip(amplitude, omega, strict=True):
+            pair = a * np.conj(b) * np.exp(1j * (p - q) * time)
+            found += pair.real, (-1j * np.sign(p - q) * pair).real, pair.real * (p**2 + q**2) / 2 / 0.36
+    return found
+
+
+@pytest.mark.parametrize("step", [0.25, 0.5])
+def test_the_squared_envelope(step: float) -> None:
+    """By double sums: direct, and prepared on the clock, beyond a period, and between its steps; by scipy's Hilbert."""
+    sea = irregular(2)
+    prepared = sea.prepared(HULL, None, Clock(10.0, step, int(120 / step), (0.0, 0.5), 2))
+    for time, tolerance in ((10.0, 1e-9), (36.5, 1e-9), (10 + step / 2, 4e-3), (50 + step / 3, 4e-3), (125.5, 1e-9)):
+        exact = squares(sea, time)
+        assert_allclose(sea.direct().drift(jnp.asarray(time)), exact, atol=1e-9)
+        assert_allclose(prepared.drift(jnp.asarray(time)), exact, atol=tolerance * np.abs(exact).max())
+    size = round(100 / step)
+    series = np.asarray(prepared.envelope.series)[:size]
+    assert_allclose(series[:, 1], hilbert(series[:, 0] - series[:, 0].mean()).imag, atol=1e-9)
+    assert series[:, 0].mean() == pytest.approx(float((sea.components.amplitude**2).sum()), rel=1e-9)
+    assert float(series[:, 0].min()) >= -1e-12
+
+
+def test_the_envelope_grows_with_the_waves() -> None:
+    """As the square of their height over the ramp; it is not that of second-order waves."""
+    grown, whole = (irregular(1, ramp=ramp).prepared(HULL, None, Clock(0.0, 0.25, 100, (0.0,))) for ramp in (20.0, 0.0))
+    time = jnp.asarray(5.0)
+    share = 0.5 - 0.5 * math.cos(math.pi * 5.0 / 20.0)
+    assert_allclose(grown.drift(time), share**2 * np.asarray(whole.drift(time)), rtol=1e-12)
+    assert_allclose(irregular(1, ramp=20.0).drift(time), grown.drift(time), rtol=1e-9)
+
+
+def test_wave_drift_is_its_transfer_function() -> None:
+    """Double sum over A_k conj(A_l) T_kl with T of the docstring; Newman's mean in a regular wave; nothing in still water."""
+    sea, (d0, d1, d2) = irregular(), (2e4, -7e3, 9e3)
+    load = with_values(WaveDrift.null(("surge", "pitch")), envelope=d0, quadrature=d1, frequency_weighted=d2)
+    model = model_of(build(COLUMN), load)
+    waves = sea.components
+    amplitude, omega, t = np.asarray(waves.complex_amplitude()), np.asarray(waves.omega), 36.5
+    p, q = omega[:, None], omega[None]
+    transfer = d0 - 1j * np.sign(p - q) * d1 + d2 * (p**2 + q**2) / (2 * 0.6**2)
+    exact = (amplitude[:, None] * np.conj(amplitude) * np.exp(1j * (p - q) * t) * transfer).sum()
+    assert abs(exact.imag) < 1e-9 * abs(exact)
+    prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,)))
+    found, _ = acts(model, np.zeros(6), np.zeros(6), (None,), prepared, t)
+    assert_allclose(found, exact.real * np.eye(6)[[0, 4]].sum(axis=0), rtol=1e-9)
+    assert_allclose(force(model, sea=SEA)[0], (d0 + d2 * (2 * math.pi / 9.0 / 0.6) ** 2) * 1.5**2, rtol=1e-9)
+    assert (force(model, VELOCITY) == 0).all()
+
+
+def test_wave_drift_damping() -> None:
+    """-alpha A^2 v in a regular wave of amplitude 1.5 m, in the degrees of freedom that it has; none in still water."""
+    model = model_of(build(COLUMN), with_values(WaveDriftDamping.null(("surge", "pitch")), coefficient=3e4))
+    expected = -3e4 * 1.5**2 * VELOCITY * [1, 0, 0, 0, 1, 0]
+    assert_allclose(force(model, VELOCITY, POSITION, SEA), expected, rtol=1e-11, atol=1e-9)
+    assert (force(model, VELOCITY) == 0).all()
+
+
+def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
+    """As many operations as without an envelope, and the same numbers."""
+    sea = irregular().prepared(HULL, None, Clock(10.0, 0.25, 100, (0.0,)))
+    plain = only(build(COLUMN), StripDrag)
+
+    def cost(model: jh.Model, sea: jh.AbstractSea) -> tuple[float, np.ndarray]:
+        leaves, shape = jax.tree.flatten(sea)
+        run = jax.jit(lambda leaves: model.rate(jnp.asarray(12.5), model.rest(), jax.tree.unflatten(shape, leaves)).velocity)
+        return run.lower(leaves).compile().cost_analysis()["flops"], np.asarray(run(leaves))
+
+    bare, whole = (cost(plain, one) for one in (dataclasses.replace(sea, envelope=None), sea))
+    assert bare[0] == whole[0] and (bare[1] == whole[1]).all()
+    assert cost(plain.with_load(WaveDrift.null()), sea)[0] > whole[0]
+
+
+# drag
+
+
+def replaced(law: type, model: jh.Model, **values: float) -> jh.Model:
+    """Plain drag of strips and ends replaced by another law, of the same coefficients."""
+    drag = [load for load in model.loads if isinstance(load, (StripDrag, EndDrag))]
+    taken = {label: value for load in drag for label, value in load.values.items()}
+    rest = [load for load in model.loads if load not in drag]
+    return model_of(model, *rest, with_values(law.null(taken, drag[0].coupled), **values))
+
+
+@pytest.mark.parametrize("speed", ["vector", "component"])
+@pytest.mark.parametrize("law", [PowerDrag, SlowDrag])
+def test_a_null_is_plain_drag_but_for_rounding(law: type, speed: str) -> None:
+    """In waves, moving, and whatever a memory holds."""
+    plain = only(build(COLUMN, PONTOON, drag_speed=speed), StripDrag, EndDrag)
+    changed = replaced(law, plain)
+    memory = tuple(None if m is None else jnp.asarray(VELOCITY[::-1].copy()) for m in changed.rest().memory)
+    for sea in (jh.StillWater(), SEA):
+        found, _ = acts(changed, POSITION, VELOCITY, memory, sea)
+        expected, _ = acts(plain, POSITION, VELOCITY, (None, None), sea)
+        assert_allclose(found, expected, atol=1e-15 * np.abs(expected).max(), rtol=1e-14)
+
+
+def test_another_power_of_the_speed() -> None:
+    """1/2 rho Cd D T |u|^(2+n) / U0^n on a column, and on its end; the coefficient is Cd at U0 = 0.5 m/s."""
+    plain = only(build(COLUMN), StripDrag, EndDrag)
+    model = replaced(PowerDrag, plain, exponent=-1 / 3)
+    factor = ((0.8**2 + 4e-4) / (0.25 + 4e-4)) ** (-1 / 6)
+    assert_allclose(force(model, [0.48, -0.64, 0, 0, 0, 0]), factor * force(plain, [0.48, -0.64, 0, 0, 0, 0]), atol=1e-4)
+    assert_allclose(force(model, [0, 0, 0.8, 0, 0, 0]), factor * force(plain, [0, 0, 0.8, 0, 0, 0]), rtol=1e-9, atol=1e-4)
+    assert_allclose(force(model, [0.5, 0, 0, 0, 0, 0]), force(plain, [0.5, 0, 0, 0, 0, 0]), rtol=1e-12, atol=1e-4)
+
+
+def test_slow_motion_has_a_coefficient_of_its_own() -> None:
+    """r = 0 is plain drag at the velocity less the slow one, in any motion of strips and ends; r between is the mixture; the
+    memory is a first-order low-pass."""
+    plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
+    slow = np.array([-0.4, 0.9, -0.2, 0.01, 0.015, -0.02])
+    whole, fast = force(plain, VELOCITY, POSITION), force(plain, VELOCITY - slow, POSITION)
+    for share in (0.0, 0.3, 2.0):
+        model = replaced(SlowDrag, plain, low_share=share, cutoff=0.05)
+        found, (rate,) = acts(model, POSITION, VELOCITY, (jnp.asarray(slow),), jh.StillWater())
+        expected = share * whole + (1 - share) * fast
+        assert_allclose(found, expected, rtol=1e-10, atol=1e-10 * np.abs(whole).max())
+        assert_allclose(rate, 2 * math.pi * 0.05 * (VELOCITY - slow), rtol=1e-13)
+
+
+def test_slow_motion_in_a_current() -> None:
+    """A platform that drifts slowly in it feels r of the whole, and of the current the rest: that is no slow motion."""
+    plain = only(build(COLUMN), StripDrag)
+    load = SlowDrag.of(plain.loads[0].values | {"sea_state_dependent_drag.low_share": jnp.asarray(0.3)})
+    flowing = model_of(plain, load, with_values(Current.null(), x=1.0))
+    slow = jnp.array([0.4, 0, 0, 0, 0, 0])
+    found, _ = acts(flowing, np.zeros(6), slow, (slow, None), jh.StillWater())
+    assert float(found[0]) == pytest.approx(0.5 * RHO * CD_T * AREA * (0.3 * 0.6**2 + 0.7 * 1.0**2), rel=1e-9)
+
+
+# reflection
+
+
+def test_a_regular_wave_comes_back() -> None:
+    """a cos(omega t - k x) + r a cos(omega (t - T) + k x), and its flow: along with the sign turned, up without."""
+    sea = jh.regular_wave(2.0, 7.0, WATER, heading=0.5)
+    load = with_values(WaveReflection.null(13.0), coefficient=-0.2)
+    omega, k = 2 * math.pi / 7.0, float(np.hypot(*np.asarray(sea.waves.vector[:, 0])))
+    x, z, t = 17.0, -4.0, 23.0
+    points = jnp.array([[x * math.cos(0.5)], [x * math.sin(0.5)], [z]])
+    there, back = omega * t - k * x, omega * (t - 13.0) + k * x
+    met = load.through(sea)
+    assert_allclose(met.elevation(jnp.asarray(t), points[:2]), math.cos(there) - 0.2 * math.cos(back), atol=1e-12)
+    flow = met.flow(jnp.asarray(t), points)
+    cosh, sinh = (f(k * (z + 200)) / math.cosh(k * 200) for f in (math.cosh, math.sinh))
+    along = G * k / omega * cosh * (math.cos(there) + 0.2 * math.cos(back))
+    up = -G * k / omega * sinh * (math.sin(there) - 0.2 * math.sin(back))
+    assert_allclose(flow.velocity[:, 0], [along * math.cos(0.5), along * math.sin(0.5), up], rtol=1e-9)
+    assert_allclose(flow.pressure, G * cosh * (math.cos(there) - 0.2 * math.cos(back)), rtol=1e-9)
+
+
+def test_a_prepared_sea_comes_back() -> None:
+    """In whole steps of its clock, as the direct sum does; nothing before the delay, and nothing at the null."""
+    sea = irregular(2, 0.3)
+    prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
+    load = with_values(WaveReflection.null(8.1), coefficient=0.25)
+    points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, -1.0]])
+    met, exact = load.through(prepared), with_values(WaveReflection.null(8.0), coefficient=0.25).through(sea.direct())
+    for one, other in zip(*(water(one, jnp.asarray(40.5), points) for one in (met, exact)), strict=True):
+        assert_allclose(one, other, atol=2e-5 * np.abs(other).max())
+    for time, one in ((17.75, met), (10.125, met), (40.5, WaveReflection.null(8.1).through(prepared))):
+        found, expected = (water(which, jnp.asarray(time), points) for which in (one, prepared))
+        assert_allclose(found[0], expected[0], rtol=1e-13)
+    assert isinstance(load.through(jh.StillWater()), jh.StillWater)
+
+
+# all of them
+
+
+def test_every_parameter_has_a_slope_at_its_null() -> None:
+    """In two waves, moving: of force, flow or reading. The shape of the low-pass alone has none."""
+    first, second = (jh.regular_wave(2.0, period, WATER, phase=0.3).waves for period in (9.0, 11.0))
+    sea = WaveSea(first + second, WATER)
+    assert isinstance(sea.waves, PlaneWaves)
+    plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
+    values = {label: value for load in plain.loads for label, value in load.values.items()}
+    kinds = (Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
+    laws = [PowerDrag.null(values), SlowDrag.null(values), WaveDrift.null(DOFS), WaveDriftDamping.null(DOFS)]
+    model = model_of(plain, *plain.loads, *laws, *(kind.null() for kind in kinds))
+    labels = [label for label in model.values if ".Cd_" not in label]
+    memory = tuple(None if m is None else jnp.asarray(VELOCITY[::-1].copy()) for m in model.rest().memory)
+    state = jh.State(jnp.asarray(POSITION), jnp.asarray(VELOCITY), memory)
+
+    @jax.jit
+    def look(x):
+        changed = model.with_values(dict(zip(labels, x, strict=True)))
+        total = changed.sum_of_loads(changed.instant(jnp.asarray(7.7), state, sea), memory).force
+        return jnp.concatenate([total / 1e6, changed.seen(state.position), changed.clock_lag()[None]])
+
+    x = jnp.array([float(model.about(label).null) for label in labels])
+    assert bool((x == jnp.array([float(model.values[label]) for label in labels])).all())
+    slope = np.asarray(jax.jacfwd(look)(x))
+    assert np.isfinite(slope).all()
+    silent = {label for label, column in zip(labels, slope.T, strict=True) if not np.abs(column).max() > 1e-9}
+    assert silent == {"sea_state_dependent_drag.cutoff"}
