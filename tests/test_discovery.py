@@ -60,7 +60,7 @@ def campaign_of(folder, torque):
 
 
 def test_bands_are_a_partition_of_the_lines():
-    """Every Fourier line up to the highest frequency is in one band; degrees of freedom are the record's, not those of zeros."""
+    """Every Fourier line up to the highest frequency is in one band; degrees of freedom are the record's, not the zeros'."""
     cut = bands_of(100.0, 0.1, 1500, 9, 1.0)
     frequency = np.fft.rfftfreq(1500, 0.1)
     assert_allclose(cut.member.sum(axis=0), 1.0)

@@ -420,7 +420,8 @@ def test_forces_along_earth_axes_and_body_axes() -> None:
     assert_allclose(force(spring, position=quarter), [0, 12, 0, 0, 0, 0], atol=1e-14)
     damping = model_of(rig(), CubicDamping({"cubic_damping.pitch.coefficient": jnp.asarray(2.0)}))
     assert_allclose(force(damping, (1, 2, 3, 4, 3, 5), quarter), [0, 0, 0, 0, -54, 0], rtol=1e-14)
-    friction = model_of(rig(), CoulombFriction({"coulomb_friction.yaw.force": jnp.asarray(7.0), "coulomb_friction.yaw.speed": jnp.asarray(2e-4)}))
+    values = {"coulomb_friction.yaw.force": jnp.asarray(7.0), "coulomb_friction.yaw.speed": jnp.asarray(2e-4)}
+    friction = model_of(rig(), CoulombFriction(values))
     assert_allclose(force(friction, (0, 0, 0, 0, 0, -0.02), quarter), [0, 0, 0, 0, 0, 7], rtol=1e-14)
 
 

@@ -143,7 +143,7 @@ def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad
 
 def in_water(model: jh.Model) -> jh.Model:
     """The model with the effects of the water and the sensors at their nulls; three drag coefficients get laws of their own."""
-    taken = {"column.Cd_t": PowerDrag, "pontoon.Cd_t": SlowDrag, "pontoon.Cd_z": ChangingDrag}
+    taken = {"column.Cd_t": PowerDrag, "pontoon.Cd_t": SlowDrag, "column.Cd_z": ChangingDrag}
     plain = [
         dataclasses.replace(load, values={k: v for k, v in load.values.items() if k not in taken})
         if isinstance(load, StripDrag)

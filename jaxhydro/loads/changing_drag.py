@@ -3,53 +3,75 @@
 from collections.abc import Mapping
 from typing import ClassVar
 
+import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import Action, Instant, Parameter
-from jaxhydro.loads.drag import end_area, of_ends, of_strips, quadratic, strip_area
-from jaxhydro.loads.power_drag import NAME as POWER
-from jaxhydro.loads.power_drag import SPEED, PowerDrag, power
-from jaxhydro.loads.slow_drag import NAME as SLOW
-from jaxhydro.loads.slow_drag import SlowDrag
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.drag import (
+    OF_SHARE,
+    POWER,
+    SHARE,
+    about,
+    about_exponent,
+    end_area,
+    exponents,
+    groups_of,
+    of_ends,
+    of_strips,
+    power,
+    quadratic,
+    strip_area,
+)
 
 
-class ChangingDrag(SlowDrag):
-    """`SlowDrag` times the factor of `PowerDrag`: where a model may need either, or both. At both nulls plain drag exactly."""
+class ChangingDrag(AbstractLoad):
+    """`SlowDrag` times the factor of `PowerDrag`: where a model may need either, or both. At both nulls plain drag.
 
-    source: ClassVar[str] = "as SlowDrag and PowerDrag"
+    Sources are those of the two: OpenFAST HydroDyn, Morison.f90; Keulegan and Carpenter 1958; Graham 1980.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    coupled: bool = eqx.field(static=True, default=True)
+    source: ClassVar[str] = "OpenFAST HydroDyn, Morison.f90; Keulegan and Carpenter 1958; Graham 1980"
 
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "ChangingDrag":
         """The law on the lines whose drag coefficients are in `values`; its own parameters are null where they are not."""
-        both = {**SlowDrag.of({}).values, **PowerDrag.of(values).values}
-        return cls({**both, **dict(values)}, coupled)
+        own = {label: jnp.asarray(about.null) for label, about in OF_SHARE.items()}
+        own |= {f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)}
+        return cls(own | dict(values), coupled)
+
+    @classmethod
+    def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "ChangingDrag":
+        """Plain drag with the coefficients in `values`."""
+        return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
+
+    def rest(self) -> Float[Array, "6"]:
+        return jnp.zeros(6)
 
     def about(self, label: str) -> Parameter:
-        return PowerDrag(self.values).about(label) if label.startswith(f"{POWER}.") else super().about(label)
+        if label.startswith(f"{POWER}."):
+            return about_exponent(label)
+        return OF_SHARE[label] if label in OF_SHARE else about(label, {})
 
     def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
-        share = values[f"{SLOW}.low_share"]
+        share = values[f"{SHARE}.low_share"]
         still, turning = (memory @ hull.motion).reshape(2, -1)
         slow_strip, slow_end = hull.split(still + turning * now.lines.away)
-        exponents = {
-            label.removeprefix(f"{POWER}.") + way: value
-            for label, value in values.items()
-            if label.startswith(f"{POWER}.")
-            for way in ("_t", "_z")
-        }
+        own = exponents(values)
 
         def force(area: Array, relative: Array, slow: Array, coupled: bool, exponent: Array) -> Array:
             found = []
             for u in (relative, relative + slow):
                 square = (u**2).sum(axis=0) if coupled else u**2
-                found.append(quadratic(density, area, u, coupled) * power(square, exponent, SPEED))
+                found.append(quadratic(density, area, u, coupled) * power(square, exponent))
             return share * found[0] + (1 - share) * found[1]
 
-        strips, ends = of_strips(now, exponents, "exponent", 0.0), of_ends(now, exponents, "exponent", 0.0)
+        strips, ends = of_strips(now, own, "exponent", 0.0), of_ends(now, own, "exponent", 0.0)
         return Action(
             strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled, strips),
             end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False, ends),
-            memory_rate=2 * jnp.pi * values[f"{SLOW}.cutoff"] * (now.velocity - memory),
+            memory_rate=2 * jnp.pi * values[f"{SHARE}.cutoff"] * (now.velocity - memory),
         )

@@ -18,6 +18,15 @@ REST = 1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at 
 COEFFICIENT = Parameter("-", "{way} drag coefficient of {group}, on {area} area", 0.0, 30.0)
 SUCTION = Parameter("-", "share of the drag of the ends of {group} that moves to where the flow leaves them", 0.0, 1.0)
 
+POWER = "amplitude_dependent_drag"  # labels of coefficients that go with a power of the speed
+SPEED = 0.5  # m/s at which Cd is what it says
+SLOW = 0.02  # m/s below which the coefficient no longer changes
+SHARE = "sea_state_dependent_drag"  # labels of drag in which slow motion has a coefficient of its own
+OF_SHARE = {
+    f"{SHARE}.low_share": Parameter("-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0),
+    f"{SHARE}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, 0.03),
+}
+
 Values = Mapping[str, Float[Array, ""]]
 
 
@@ -90,3 +99,25 @@ def about(label: str, more: Mapping[str, Parameter]) -> Parameter:
     found = COEFFICIENT if name == "Cd" else more[name]
     way, area = ("transverse", "projected") if kind == "t" else ("vertical or axial", "plan or end")
     return found._replace(meaning=found.meaning.format(way=way, group=group, area=area))
+
+
+def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float = SPEED) -> Float[Array, "..."]:
+    """((u^2 + e^2)/(U0^2 + e^2))^(n/2) of u^2 (m2/s2): exactly 1 for n = 0."""
+    return jnp.exp(0.5 * exponent * jnp.log((square + SLOW**2) / (speed**2 + SLOW**2)))
+
+
+def groups_of(values: Iterable[str]) -> tuple[str, ...]:
+    """Groups whose drag coefficients are among labels."""
+    return tuple(dict.fromkeys(label.rsplit(".", 1)[0] for label in values if ".Cd_" in label))
+
+
+def exponents(values: Values) -> dict[str, Float[Array, ""]]:
+    """Exponents of the speed, by labels as `of_strips` and `of_ends` ask for them."""
+    named = {label.removeprefix(f"{POWER}."): value for label, value in values.items() if label.startswith(f"{POWER}.")}
+    return {label + way: value for label, value in named.items() for way in ("_t", "_z")}
+
+
+def about_exponent(label: str, speed: float = SPEED) -> Parameter:
+    """What an exponent of the speed means."""
+    group = label.removeprefix(f"{POWER}.").removesuffix(".exponent")
+    return Parameter("-", f"exponent of the drag coefficients of {group} in the speed over {speed:g} m/s", -1.0, 1.0)

@@ -8,11 +8,20 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.drag import about, end_area, of_ends, of_strips, quadratic, strip_area
-
-NAME = "amplitude_dependent_drag"
-SPEED = 0.5  # m/s at which Cd is what it says
-SLOW = 0.02  # m/s below which the coefficient no longer changes
+from jaxhydro.loads.drag import (
+    POWER,
+    SPEED,
+    about,
+    about_exponent,
+    end_area,
+    exponents,
+    groups_of,
+    of_ends,
+    of_strips,
+    power,
+    quadratic,
+    strip_area,
+)
 
 
 class PowerDrag(AbstractLoad):
@@ -38,8 +47,7 @@ class PowerDrag(AbstractLoad):
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True, speed: float = SPEED) -> "PowerDrag":
         """The law on the lines whose drag coefficients are in `values`; exponents that are not there are 0."""
-        groups = dict.fromkeys(label.rsplit(".", 1)[0] for label in values if ".Cd_" in label)
-        return cls({f"{NAME}.{group}.exponent": jnp.zeros(()) for group in groups} | dict(values), coupled, speed)
+        return cls({f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)} | dict(values), coupled, speed)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "PowerDrag":
@@ -47,28 +55,15 @@ class PowerDrag(AbstractLoad):
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def about(self, label: str) -> Parameter:
-        if not label.startswith(f"{NAME}."):
-            return about(label, {})
-        group = label.removeprefix(f"{NAME}.").removesuffix(".exponent")
-        return Parameter("-", f"exponent of the drag coefficients of {group} in the speed over {self.speed:g} m/s", -1.0, 1.0)
+        return about_exponent(label, self.speed) if label.startswith(f"{POWER}.") else about(label, {})
 
     def act(self, now: Instant, memory: Any) -> Action:
         values, density = self.values, now.environment.density
-        exponents = {
-            label.removeprefix(f"{NAME}.") + way: value
-            for label, value in values.items()
-            if label.startswith(f"{NAME}.")
-            for way in ("_t", "_z")
-        }
+        own = exponents(values)
         square = now.strip_flow.relative**2
         square = square.sum(axis=0) if self.coupled else square
-        factor = power(square, of_strips(now, exponents, "exponent", 0.0), self.speed)
+        factor = power(square, of_strips(now, own, "exponent", 0.0), self.speed)
         strip_force = quadratic(density, strip_area(now, values), now.strip_flow.relative, self.coupled) * factor
-        factor = power(now.end_flow.relative**2, of_ends(now, exponents, "exponent", 0.0), self.speed)
+        factor = power(now.end_flow.relative**2, of_ends(now, own, "exponent", 0.0), self.speed)
         end_force = quadratic(density, end_area(now, values), now.end_flow.relative) * factor
         return Action(strip_force=strip_force, end_force=end_force)
-
-
-def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float) -> Float[Array, "..."]:
-    """((u^2 + e^2)/(U0^2 + e^2))^(n/2) of u^2 (m2/s2): exactly 1 for n = 0."""
-    return jnp.exp(0.5 * exponent * jnp.log((square + SLOW**2) / (speed**2 + SLOW**2)))

@@ -9,14 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.drag import about, end_area, quadratic, strip_area
-
-NAME = "sea_state_dependent_drag"
-CUTOFF = 0.03  # Hz
-OWN = {
-    f"{NAME}.low_share": Parameter("-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0),
-    f"{NAME}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, CUTOFF),
-}
+from jaxhydro.loads.drag import OF_SHARE, SHARE, about, end_area, quadratic, strip_area
 
 
 class SlowDrag(AbstractLoad):
@@ -42,7 +35,7 @@ class SlowDrag(AbstractLoad):
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
         """The law on the lines whose drag coefficients are in `values`; its own parameters are null where they are not."""
-        return cls({label: jnp.asarray(about.null) for label, about in OWN.items()} | dict(values), coupled)
+        return cls({label: jnp.asarray(about.null) for label, about in OF_SHARE.items()} | dict(values), coupled)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
@@ -53,11 +46,11 @@ class SlowDrag(AbstractLoad):
         return jnp.zeros(6)
 
     def about(self, label: str) -> Parameter:
-        return OWN[label] if label in OWN else about(label, {})
+        return OF_SHARE[label] if label in OF_SHARE else about(label, {})
 
     def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
-        share = values[f"{NAME}.low_share"]
+        share = values[f"{SHARE}.low_share"]
         still, turning = (memory @ hull.motion).reshape(2, -1)
         slow_strip, slow_end = hull.split(still + turning * now.lines.away)
 
@@ -68,5 +61,5 @@ class SlowDrag(AbstractLoad):
         return Action(
             strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled),
             end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False),
-            memory_rate=2 * math.pi * values[f"{NAME}.cutoff"] * (now.velocity - memory),
+            memory_rate=2 * math.pi * values[f"{SHARE}.cutoff"] * (now.velocity - memory),
         )
