@@ -59,7 +59,7 @@ def estimates_of(search: Search, state: State, names: list[str]) -> dict[str, Es
             about = search.study.model.about(name)
             known = deviation < 0.5 * prior.width[i]
             bound = free.transform.at_bound(float(x))
-            size = abs(slope) * deviation
+            size = abs(slope) * deviation * float(study.directions[i, k])
             values[name] = Estimate(name, value, size if known else None, about.unit, about.meaning, free.start, bound, known)
     return values
 
@@ -72,14 +72,26 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Sta
         *[n for n in search.posed.nuisances if n in search.study.labels and n not in effects],
         *effects,
     ]
+    parameters = {**estimates_of(search, state, names), **_lines(search, state)}
     tests = tests_of(campaign, search, state)
     if before is not None:
         earlier = {test.id: test for test in tests_of(campaign, search, before)}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
     return Calibration(
-        campaign.manifest.name, augmented_model(search, state), estimates_of(search, state, names), tuple(tests),
+        campaign.manifest.name, augmented_model(search, state), parameters, tuple(tests),
         state.reached.settled, state.reached.iterations, 0.0, (), (), campaign.platform.name, None,
     )  # fmt: skip
+
+
+def _lines(search: Search, state: State) -> dict[str, Estimate]:
+    """Mooring lines, which are only nearly known, and move together: values, without deviations of their own."""
+    found, x = {}, state.reached.look.place.x
+    for i, one in enumerate(search.study.space.free):
+        if one.label.startswith("mooring."):
+            about = search.study.model.about(one.label)
+            value = float(one.transform.forward(x[i]))
+            found[one.label] = Estimate(one.label, value, None, about.unit, about.meaning, one.start, False, False)
+    return found
 
 
 def _with_start(test: TestFit, before: TestFit) -> TestFit:
@@ -162,5 +174,6 @@ def effect_of(search: Search, one: Candidate, before: State, after: State) -> Ef
     about = search.study.model.about(one.amplitudes[0])
     return Effect(
         one.effect, one.dof, about.meaning, one.source, parameters,
-        Evidence(score, bic, held, clear), share, search.alike.get(one.name, ()), one.telling or None,
+        Evidence(score, bic, held if (~search.used).any() else float("nan"), clear),
+        share, search.alike.get(one.name, ()), one.telling or None,
     )  # fmt: skip
