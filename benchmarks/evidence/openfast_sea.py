@@ -166,7 +166,8 @@ class GridSea(jh.AbstractSea):
 def sea(run: Run, grid: bool = False) -> OpenFASTSea:
     """OpenFAST's sea; the `grid` is that of its file."""
     width = run.setup["XH"] / (run.setup["NX"] - 1)
-    return OpenFASTSea(run.waves, WATER, run.case.order, run.case.stretching, 0.0, run.setup["whiD"], width if grid else 0.0)
+    options = {"beats": run.setup["whiD"], "grid": width if grid else 0.0}
+    return OpenFASTSea(run.waves, WATER, run.case.order, run.case.stretching, **options)
 
 
 def plain(run: Run, order: int = 2, stretching: str = "vertical") -> jh.IrregularSea:
