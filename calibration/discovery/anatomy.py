@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calibration.discovery.result import Finding
-from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
     from calibration.discovery.search import Search, State
@@ -19,7 +18,7 @@ QUIET = 1.3  # rms over noise below which nothing is said
 def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
     """Of every motion that the tests are about, what is left."""
     study = search.study
-    mean_square, dof = study.mean_squares(state.reached.look)
+    mean_square, dof = study.mean_squares(state.residual), study.dof
     found = []
     for one, squares, freedom in zip(study.series, mean_square, dof):
         if one.channel not in search.posed.motions or not freedom.sum():
@@ -50,7 +49,7 @@ def signature(search: Search, before: State, after: State) -> tuple[float, str]:
     study = search.study
     total = float(before.left.sum())
     share = float(after.left.sum()) / total if total > 0 else 0.0
-    dof = np.array([one.dof.sum() for one in study.series])
+    dof = study.dof.sum(axis=1)
     excess = after.left / np.maximum(dof, 1.0)
     if not (excess > QUIET**2 - 1).any():
         return share, "white at the declared noise level"
@@ -63,14 +62,9 @@ def signature(search: Search, before: State, after: State) -> tuple[float, str]:
     said = ", ".join(
         f"{channel} in {kind} ({100 * value:.0f} % of the motion)" for (channel, kind), value in rows if value > 0.005
     )
-    mean_square, _ = study.mean_squares(after.reached.look)
+    mean_square = study.mean_squares(after.residual)
     i = int(np.argmax(after.left))
     k = int(np.argmax(mean_square[i] * study.series[i].dof))
     one = study.series[i]
     where = f"largest in {one.channel} of {one.test}, {one.low[k]:.3g} to {one.high[k]:.3g} Hz"
     return share, f"{said or 'small in every motion'}; {where}"
-
-
-def order(channel: str) -> int:
-    """Place of a motion among the degrees of freedom."""
-    return DOFS.index(channel)

@@ -1,5 +1,6 @@
 """Records cut into frequency bands, so that residuals of any colour are weighed by what they are there."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -7,7 +8,6 @@ import numpy as np
 
 GROWTH = 1.4  # of the edge of one band to the next
 LINES = 4  # Fourier lines in a band at least
-HIGHEST = 0.35  # Hz at full scale: motions of a floating platform are slower; relative to the shortest natural period elsewhere
 
 
 class Bands(NamedTuple):
@@ -46,3 +46,35 @@ def bands_of(duration: float, step: float, length: int, count: int, highest: flo
         lines[i] = 0.5 if i == 0 else number
         low[i], high[i] = begin / duration, end / duration
     return Bands(member, lines, low, high)
+
+
+class Rows(NamedTuple):
+    """How some time series become one column of rows: real and imaginary parts of the Fourier lines that are in a band, scaled
+    so that sums of squares over rows are those over samples (Parseval).
+
+    `take` (l,) are lines among those of all series, one series after the other; `scale` (l,) their factor; `series` (2l,) and
+    `band` (2l,) where a row belongs.
+    """
+
+    take: np.ndarray
+    scale: np.ndarray
+    series: np.ndarray
+    band: np.ndarray
+    lines: int
+
+    @classmethod
+    def of(cls, cuts: Sequence[Bands], samples: int) -> "Rows":
+        """From the bands of every series, all of one length."""
+        lines = max(one.member.shape[1] for one in cuts)
+        member = np.stack([np.pad(one.member, ((0, 0), (0, lines - one.member.shape[1]))) for one in cuts])
+        series, line = np.nonzero(member.any(axis=1))
+        scale = np.sqrt(np.where(line == 0, 1.0, 2.0) / samples)
+        band = member.argmax(axis=1)[series, line]
+        return cls(series * lines + line, scale, np.repeat(series, 2), np.repeat(band, 2), lines)
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """Rows (2l, ...) of time series (s, t, ...)."""
+        lines = np.fft.rfft(values, axis=1)[:, : self.lines]
+        kept = lines.reshape(-1, *values.shape[2:])[self.take]
+        kept = kept * self.scale.reshape(-1, *[1] * (values.ndim - 2))
+        return np.stack([kept.real, kept.imag], axis=1).reshape(-1, *values.shape[2:])

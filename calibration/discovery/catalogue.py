@@ -61,6 +61,11 @@ class Candidate:
     source: str = ""
 
     @property
+    def labels(self) -> tuple[str, ...]:
+        """All its parameters."""
+        return (*self.amplitudes, *self.shapes)
+
+    @property
     def name(self) -> str:
         """As it is listed: the effect, and its motion where it has one."""
         return self.effect if self.dof is None else f"{self.effect} ({self.dof})"
@@ -381,5 +386,5 @@ def catalogue(
 
 def with_candidates(model: Model, candidates: Sequence[Candidate], nuisances: Sequence[str] = ()) -> Model:
     """The model with every candidate at its null."""
-    labels = [label for one in candidates for label in (*one.amplitudes, *one.shapes)]
+    labels = [label for one in candidates for label in one.labels]
     return with_effects(model, [*labels, *nuisances])

@@ -1,17 +1,19 @@
-"""What a diagnosis says of the models before and after: parameters, every test, effects with their evidence."""
+"""What a diagnosis says in the end: models before and after, every test, effects with their evidence, and the verdict."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.discovery.catalogue import Candidate
-from calibration.discovery.evidence import Frame, decay_residuals, sea_residual
+from calibration.discovery.anatomy import anatomy, signature
+from calibration.discovery.catalogue import Candidate, with_effects
 from calibration.discovery.linear import predict
-from calibration.discovery.result import Effect, Evidence
+from calibration.discovery.result import Diagnosis, Effect, Evidence
+from calibration.records import Record
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from calibration.seas_results import bands_of
 from jaxhydro.analysis import band_weights
@@ -21,82 +23,87 @@ from jaxhydro.model import Model
 if TYPE_CHECKING:
     from calibration.discovery.search import Search, State
 
+LEFT = {"decay": 0.03, "waves": 0.5}  # of a motion: what is left beyond it is not for noise, nor for a model's last digits
+
+
+def conclude(
+    campaign: Campaign, search: Search, before: State, after: State, notes: Sequence[str], seconds: float
+) -> Diagnosis:
+    """Everything that is reported, of the declared model's fit and the last one."""
+    baseline = calibration_of(campaign, search, before, None)
+    augmented = calibration_of(campaign, search, after, baseline)
+    effects = tuple(effect_of(search, one, after) for one in after.chosen)
+    share, words = signature(search, before, after)
+    left = anatomy(search, after)
+    kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
+    much = any(one.use == "fit" and one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in left)
+    verdict = "found" if effects else ("unexplained" if much else "nothing_missing")
+    wanted = [one.telling for one in after.chosen if one.telling]
+    return Diagnosis(
+        campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
+        anatomy(search, before), left, share, words, wanted[0] if wanted else "", tuple(notes), seconds,
+    )  # fmt: skip
+
 
 def augmented_model(search: Search, state: State) -> Model:
     """The declared model with what was found, every parameter as fitted."""
-    from calibration.discovery.catalogue import with_effects
-
-    x = state.reached.look.place.x
-    labels = [label for one in state.chosen for label in (*one.amplitudes, *one.shapes)]
-    moved = [search.study.names[i] for i in search.active(state.chosen)]
-    free = search.study.space.free
-    values = {}
-    for i, one in enumerate(free):
-        nuisance = any(name in moved for name in (one.label,)) or one.label.startswith("mooring.")
-        if nuisance or one.label in labels or one.label in search.posed.base:
-            values[one.label] = float(one.transform.forward(x[i]))
-    model = with_effects(search.posed.declared, values)
-    return model.with_values(values)
+    active = search.active(state.chosen)
+    moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
+    values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
+    return with_effects(search.posed.declared, values).with_values(values)
 
 
-def estimates_of(search: Search, state: State, names: list[str]) -> dict[str, Estimate]:
+def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str, Estimate]:
     """Parameters with standard deviations, of those directions that are one parameter each."""
-    look, study = state.reached.look, search.study
+    look, study = state.look, search.study
     prior = search.prior(state.chosen)
-    found = predict(study, look, range(len(look.active)), search.used, prior)
+    deviations = predict(study, look, prior).deviation
     values = {}
     for name in names:
         i = study.names.index(name)
-        if i not in look.active:
+        if i not in look.active or name not in study.labels:
             continue
-        deviation = float(found.deviation[look.active.index(i)])
-        if name in study.labels:
-            k = study.labels.index(name)
-            free = study.space.free[k]
-            x = look.place.x[k]
-            value = float(free.transform.forward(x))
-            slope = (float(free.transform.forward(x + 1e-4)) - float(free.transform.forward(x - 1e-4))) / 2e-4
-            about = search.study.model.about(name)
-            known = deviation < 0.5 * prior.width[i]
-            bound = free.transform.at_bound(float(x))
-            size = abs(slope) * deviation * float(study.directions[i, k])
-            values[name] = Estimate(name, value, size if known else None, about.unit, about.meaning, free.start, bound, known)
+        k = study.labels.index(name)
+        free, x, deviation = study.space.free[k], look.place.x[k], float(deviations[look.active.index(i)])
+        slope = (float(free.transform.forward(x + 1e-4)) - float(free.transform.forward(x - 1e-4))) / 2e-4
+        about = study.model.about(name)
+        known = deviation < 0.5 * prior.width[i]
+        size = abs(slope) * deviation * float(study.directions[i, k])
+        bound = free.transform.at_bound(float(x))
+        value = study.value(name, look.place.x)
+        values[name] = Estimate(name, value, size if known else None, about.unit, about.meaning, free.start, bound, known)
     return values
 
 
-def calibration_of(campaign: Campaign, search: Search, state: State, before: State | None) -> Calibration:
+def calibration_of(campaign: Campaign, search: Search, state: State, before: Calibration | None) -> Calibration:
     """A fit in the form of a calibration: all tests, errors, bands. `before` gives the motions to compare with."""
-    effects = [label for one in state.chosen for label in (*one.amplitudes, *one.shapes)]
-    names = [
-        *search.posed.base,
-        *[n for n in search.posed.nuisances if n in search.study.labels and n not in effects],
-        *effects,
-    ]
+    effects = [label for one in state.chosen for label in one.labels]
+    nuisances = [name for name in search.posed.nuisances if name in search.study.labels and name not in effects]
+    names = [*search.posed.base, *nuisances, *effects]
     parameters = {**estimates_of(search, state, names), **_lines(search, state)}
     tests = tests_of(campaign, search, state)
     if before is not None:
-        earlier = {test.id: test for test in tests_of(campaign, search, before)}
+        earlier = {test.id: test for test in before.tests}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
     return Calibration(
         campaign.manifest.name, augmented_model(search, state), parameters, tuple(tests),
-        state.reached.settled, state.reached.iterations, 0.0, (), (), campaign.platform.name, None,
+        state.settled, state.iterations, 0.0, (), (), campaign.platform.name, None,
     )  # fmt: skip
 
 
 def _lines(search: Search, state: State) -> dict[str, Estimate]:
     """Mooring lines, which are only nearly known, and move together: values, without deviations of their own."""
-    found, x = {}, state.reached.look.place.x
-    for i, one in enumerate(search.study.space.free):
+    found = {}
+    for one in search.study.space.free:
         if one.label.startswith("mooring."):
             about = search.study.model.about(one.label)
-            value = float(one.transform.forward(x[i]))
+            value = search.study.value(one.label, state.look.place.x)
             found[one.label] = Estimate(one.label, value, None, about.unit, about.meaning, one.start, False, False)
     return found
 
 
 def _with_start(test: TestFit, before: TestFit) -> TestFit:
-    from dataclasses import replace
-
+    """A test with the motions and errors of an earlier fit as those before."""
     start = {}
     for mine, other in zip(test.series, before.series):
         start[mine.channel] = other.simulated - other.offset + mine.offset if test.kind != "decay" else other.simulated
@@ -109,46 +116,42 @@ def _with_start(test: TestFit, before: TestFit) -> TestFit:
 
 def tests_of(campaign: Campaign, search: Search, state: State) -> list[TestFit]:
     """Every test with the motions of a fit."""
-    study, place = search.study, state.reached.look.place
-    frame = Frame(jnp.asarray(place.x), jnp.zeros((len(place.x), study.width)))
+    study, place = search.study, state.look.place
+    motions = study.motions(place)
     found = {}
-    motions = search.posed.motions
     if study.decays is not None:
-        data = study.decays.problem.data
-        ends = jnp.array([record.time[-1] for record in study.decay_records])
-        residuals = np.asarray(decay_residuals(study.decays, frame, jnp.asarray(place.own), ends))
+        data = study.decays.data
+        in_decays = np.asarray(motions.pop(0)).reshape(len(study.decay_records), len(data.dofs), -1)
         offsets = place.own.reshape(len(study.decay_records), 3, -1)[:, 2] * np.asarray(data.unit)
-        for i, record in enumerate(study.decay_records):
-            n, rows = len(record.time), []
+        for record, residual, offset in zip(study.decay_records, in_decays, offsets):
+            rows = []
             for j, dof in enumerate(data.dofs):
                 channel = DOFS[dof]
                 if channel in record.values:
-                    off = float(offsets[i, j])
+                    off = float(offset[j])
                     measured = record.values[channel] - off
-                    rows.append(Series(channel, measured, measured + residuals[i, j, :n], off, record.noise[channel],
-                                       channel == record.degree_of_freedom))  # fmt: skip
-            dof_name, time = record.degree_of_freedom, record.time
-            found[record.id] = TestFit(record.id, record.use, "decay", dof_name, time, tuple(rows), {}, record.file)
+                    simulated = measured + residual[j, : len(measured)]
+                    scored = channel == record.degree_of_freedom
+                    rows.append(Series(channel, measured, simulated, off, record.noise[channel], scored))
+            dof_name = record.degree_of_freedom
+            found[record.id] = TestFit(record.id, record.use, "decay", dof_name, record.time, tuple(rows), {}, record.file)
     by_id = {r.id: r for r in campaign.records}
-    for sea in study.seas:
-        residuals, _ = (np.asarray(x) for x in sea_residual(sea, jnp.asarray(place.x)))
-        for w, begin in enumerate(sea.begins):
-            record = by_id[sea.tests[w]]
-            measured = np.asarray(sea.measured[w])
-            n = measured.shape[1]
+    for sea, residuals in zip(study.seas, motions):
+        n = sea.measured.shape[-1]
+        every = np.asarray(residuals).reshape(len(sea.tests), -1, n)
+        for test, begin, values, residual in zip(sea.tests, sea.begins, np.asarray(sea.measured), every):
+            record = by_id[test]
             series = tuple(
-                Series(
-                    DOFS[dof], measured[c], measured[c] + residuals[w, c], 0.0, record.noise[DOFS[dof]], DOFS[dof] in motions
-                )
-                for c, dof in enumerate(sea.dofs)
+                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in search.posed.motions)
+                for dof, m, r in zip(sea.dofs, values, residual)
             )
             time = np.asarray(sea.times[begin : begin + n])
             bands = _bands(series, float(time[1] - time[0]), record, campaign) if record.kind == "irregular" else {}
-            found[record.id] = TestFit(record.id, record.use, record.kind, None, time, series, {}, record.file, bands)
+            found[test] = TestFit(test, record.use, record.kind, None, time, series, {}, record.file, bands)
     return [found[r.id] for r in campaign.records if r.id in found]
 
 
-def _bands(series, step: float, record, campaign: Campaign) -> dict[str, dict[str, BandError]]:
+def _bands(series: Sequence[Series], step: float, record: Record, campaign: Campaign) -> dict[str, dict[str, BandError]]:
     """Relative errors of energies in bands, as the paper's."""
     period = (record.test.peak_period or 10.0) * campaign.manifest.scale**0.5
     found: dict[str, dict[str, BandError]] = {}
@@ -164,16 +167,14 @@ def _bands(series, step: float, record, campaign: Campaign) -> dict[str, dict[st
     return found
 
 
-def effect_of(search: Search, one: Candidate, before: State, after: State) -> Effect:
+def effect_of(search: Search, one: Candidate, after: State) -> Effect:
     """An effect that is in the model at the end, with its evidence."""
-    (bic, held, clear, _), score, earlier = search.verdicts[one.name]
-    later = search.verdicts.get((one.name, "after"), None)
-    left, now = float(earlier.left[search.used].sum()), float((later or after).left[search.used].sum())
-    parameters = estimates_of(search, after, [*one.amplitudes, *one.shapes])
-    share = max(0.0, 1 - now / left) if left > 0 else 0.0
+    found, used = search.found[one.name], search.study.used
+    left, now = float(found.before.left[used].sum()), float(found.after.left[used].sum())
     about = search.study.model.about(one.amplitudes[0])
+    held = found.verdict.held if (~used).any() else float("nan")
     return Effect(
-        one.effect, one.dof, about.meaning, one.source, parameters,
-        Evidence(score, bic, held if (~search.used).any() else float("nan"), clear),
-        share, search.alike.get(one.name, ()), one.telling or None,
+        one.effect, one.dof, about.meaning, one.source, estimates_of(search, after, one.labels),
+        Evidence(found.score, found.verdict.bic, held, found.verdict.clear), max(0.0, 1 - now / left) if left > 0 else 0.0,
+        found.alike, one.telling or None,
     )  # fmt: skip

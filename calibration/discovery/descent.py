@@ -1,25 +1,23 @@
-"""Fits along a few parameters: the likelihood of residuals whose spectrum is not known, minimised by Levenberg-Marquardt.
+"""Fits along a few parameters: Levenberg-Marquardt with slopes kept from step to step, mended by what every step shows.
 
--2 ln L = sum over motions and bands of n ln(mean square), n the band's degrees of freedom (Whittle 1953, Arkiv for Matematik 2,
-423-434, with a spectrum that is constant over a band and estimated; noise is its least value), and the priors' squares. A fit
-minimises n (m^p - 1) / p of the mean square m over the noise's in place of n ln m (Box and Cox 1964, Journal of the Royal
-Statistical Society B 26, 211-252): near the noise the same, but a record that is not followed is not given up for others.
+A simulation costs some twentieth of what all slopes cost. Broyden's update (1965, Mathematics of Computation 19, 577-593) makes
+slopes agree with the last step; they are taken anew where they have ceased to predict.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from calibration.discovery.study import Look, Place, Prior, Seen, Study
+from calibration.discovery.linear import cost_of, linearly, solve, weights
+from calibration.discovery.study import Look, Place, Prior, Study
 
-POWER = 0.2  # p: 0 is the logarithm
-FLOOR = 1.0  # mean square over the noise's below which nothing is gained
 LONGEST = 0.7  # largest step of a coordinate that is a logarithm
+POOR = 0.25  # of what was predicted: slopes that give no more are stale
 
 
 class Reached(NamedTuple):
-    """Where a fit is: what was seen there, its cost, and the normal equations."""
+    """Where a fit is: what was seen there, what it costs, and whether it has settled."""
 
     look: Look
     cost: float
@@ -27,112 +25,63 @@ class Reached(NamedTuple):
     settled: bool
 
 
-def cost_of(study: Study, look: Look, used: np.ndarray, prior: Prior, share: np.ndarray | None = None) -> float:
-    """What is minimised, of the `used` series and the priors."""
-    mean_square, dof = study.mean_squares(look, share)
-    value = float((used[:, None] * dof * (np.maximum(mean_square, FLOOR) ** POWER - 1)).sum()) / POWER
-    at = list(look.active)
-    value += float((((study.steps(look.place.x) - prior.mean) / prior.width)[at] ** 2).sum())
-    return value + float(((look.place.own / study.own_width) ** 2).sum()) if look.place.own.size else value
-
-
-class Normal(NamedTuple):
-    """Gauss-Newton matrix and gradient of the parameters, and by decay the block of its own unknowns, the cross block and their
-    gradient."""
-
-    matrix: np.ndarray
-    slope: np.ndarray
-    inner: list[tuple[np.ndarray, np.ndarray, np.ndarray]]
-
-
-def normal(study: Study, look: Look, used: np.ndarray, prior: Prior, share: np.ndarray | None = None) -> Normal:
-    """Gauss-Newton matrix and gradient with the decays' own unknowns eliminated, and what gives those back."""
-    mean_square, dof = study.mean_squares(look, share)
-    noise = np.array([one.noise for one in study.series])[:, None]
-    weight = used[:, None] * np.maximum(mean_square, FLOOR) ** (POWER - 1) / noise**2 * (dof > 0)
-    q, at = len(look.active), 0
-    active = list(look.active)
-    width = prior.width[active]
-    matrix = np.diag(1 / width**2)
-    slope = (study.steps(look.place.x) - prior.mean)[active] / width**2
-    inner = []
-    if look.decays.size:
-        r, c, b = look.decays.shape[:3]
-        w = weight[: r * c].reshape(r, c, b)
-        at = r * c
-        summed = np.einsum("rcb,rcbkl->rkl", w, look.decays)
-        for i, one in enumerate(summed):
-            own = one[q:-1, q:-1] + np.diag(1 / study.own_width[i] ** 2)
-            right = one[q:-1, -1] + look.place.own[i] / study.own_width[i] ** 2
-            inner.append((own, one[q:-1, :q], right))
-            matrix += one[:q, :q]
-            slope = slope + one[:q, -1]
-    for products in look.seas:
-        n = products.shape[0] * products.shape[1]
-        w = weight[at : at + n].reshape(products.shape[:3])
-        at += n
-        one = np.einsum("wcb,wcbkl->kl", w, products)
-        matrix += one[:q, :q]
-        slope = slope + one[:q, -1]
-    return Normal(matrix, slope, inner)
-
-
-def solve(equations: Normal, damping: float) -> tuple[np.ndarray, np.ndarray]:
-    """A damped step of the parameters and of every decay's own unknowns (arrow-shaped equations, by Schur complements)."""
-    matrix, slope, inner = equations
-    reduced, right = matrix + damping * np.diag(np.diag(matrix)), slope.copy()
-    kept = []
-    for own, cross, force in inner:
-        scaled = own + damping * np.diag(np.diag(own)) + 1e-12 * np.eye(len(own)) * np.trace(own) / len(own)
-        back = np.linalg.solve(scaled, np.column_stack([cross, force]))
-        reduced = reduced - cross.T @ back[:, :-1]
-        right = right - cross.T @ back[:, -1]
-        kept.append(back)
-    scale = 1 / np.sqrt(np.maximum(np.diag(reduced), 1e-300))
-    step = -scale * np.linalg.lstsq(reduced * np.outer(scale, scale), scale * right, rcond=1e-12)[0]
-    own = np.array([-(back[:, -1] + back[:, :-1] @ step) for back in kept])
-    return step, own
+def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: np.ndarray, own: np.ndarray) -> Look:
+    """Slopes that agree with a step: Broyden's update, parameters measured by what they do to the residual."""
+    weight = weights(study, look.residual)
+    missed = residual - linearly(study, look, step, own)
+    slopes, mine = look.slopes.copy(), look.own.copy()
+    size = (weight[:, None] * look.slopes**2).sum(axis=0) * step
+    decays = study.spans[-1].stop if study.spans else 0
+    if size @ step > 0:
+        slopes[decays:] += np.outer(missed[decays:], size / (size @ step))
+    for span, moved in zip(study.spans, own):
+        inner = (weight[span, None] * look.own[span] ** 2).sum(axis=0) * moved
+        total = size @ step + inner @ moved
+        if total > 0:
+            slopes[span] += np.outer(missed[span], size / total)
+            mine[span] += np.outer(missed[span], inner / total)
+    return Look(place, look.active, residual, slopes, mine)
 
 
 def fit(
     study: Study,
-    place: Place,
-    active: Sequence[int],
+    look: Look,
     used: np.ndarray,
     prior: Prior,
     *,
-    until: np.ndarray | None = None,
-    share: np.ndarray | None = None,
-    iterations: int = 12,
+    iterations: int,
+    looks: int = 0,
     tolerance: float = 0.5,
-    seas: Seen = "fit",
     say: Callable[[int, float], None] = lambda *_: None,
-    first: Look | None = None,
 ) -> Reached:
-    """Levenberg-Marquardt from a place along the active parameters, until one gains less than `tolerance` in -2 ln L."""
-    active = tuple(active)
-    look = study.look(place, active, until, seas) if first is None else first
-    now = cost_of(study, look, used, prior, share)
-    damping, settled, taken = 1e-3, False, 0
-    for i in range(iterations):
-        step, own = solve(normal(study, look, used, prior, share), damping)
-        largest = np.abs(step[study.logarithmic[list(active)]]).max(initial=0.0)
-        scale = min(1.0, LONGEST / max(largest, 1e-300))
-        x = look.place.x + scale * study.directions[list(active)].T @ step
-        there = Place(x, look.place.own + scale * own if look.place.own.size else look.place.own)
-        candidate = study.look(there, active, until, seas)
-        cost = cost_of(study, candidate, used, prior, share)
+    """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
+    `tolerance`; slopes are taken anew at most `looks` times, and once more at the end."""
+    logarithmic = study.logarithmic[list(look.active)]
+    directions = study.directions[list(look.active)]
+    now = cost_of(study, look, look.residual, look.place, used, prior)
+    damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
+    while taken < iterations and not settled:
         taken += 1
-        if np.isfinite(cost) and cost < now:
-            gain, now, look = now - cost, cost, candidate
+        step, own = solve(study, look, used, prior, damping)
+        scale = min(1.0, LONGEST / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
+        step, own = scale * step, scale * own
+        there = look.place.moved(directions, step, own)
+        residual = study.residual(there)
+        cost = cost_of(study, look, residual, there, used, prior)
+        expected = now - cost_of(study, look, linearly(study, look, step, own), there, used, prior)
+        gain = now - cost if np.isfinite(cost) else -np.inf
+        known, little = fresh or not left, 0 <= gain < tolerance or expected < tolerance
+        if gain > 0:
+            look, now, fresh = mended(study, look, there, residual, step, own), cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
-            say(i + 1, now)
-            if gain < tolerance:
-                settled = True
-                break
-        else:
+            say(taken, now)
+        if gain >= max(tolerance, POOR * expected):
+            continue
+        if known and little:
+            settled = True
+        elif not known:
+            look, fresh, left, damping = study.look(look.place, look.active), True, left - 1, 1e-3
+        elif gain <= 0:
             damping = max(damping * 8, 1e-2)
-            if damping > 1e6 or (np.isfinite(cost) and cost - now < 0.1 * tolerance):
-                settled = True
-                break
-    return Reached(look, now, taken, settled)
+            settled = damping > 1e6
+    return Reached(study.look(look.place, look.active) if looks and not fresh else look, now, taken, settled)

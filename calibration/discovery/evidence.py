@@ -1,7 +1,6 @@
-"""Records against a model that may have more than was declared: products of residuals and their Jacobians, band by band.
+"""Records against a model that may have more than was declared: residuals, and their slopes along any few directions.
 
-The Jacobian is taken along a few directions of a long list of parameters. Which directions is data, so that one compiled
-program scores every candidate effect and refits any few of them.
+Which directions is data, so that one compiled program scores every candidate effect and refits any few of them.
 """
 
 from typing import Any, NamedTuple
@@ -26,58 +25,45 @@ class Frame(NamedTuple):
     basis: Float[Array, "p q"]
 
 
-def banded(
-    slopes: Float[Array, "c t k"], residual: Float[Array, "c t"], member: Float[Array, "b f"]
-) -> Float[Array, "c b k+1 k+1"]:
-    """[J r]^T [J r] of every motion in every band: their sums over samples, split by Parseval's theorem."""
-    full = jnp.concatenate([slopes, residual[..., None]], axis=-1)
-    lines = jnp.fft.rfft(full, axis=1)[:, : member.shape[1]]
-    twice = jnp.full(member.shape[1], 2.0).at[0].set(1.0) / full.shape[1]
-    weight = member * twice
-    real = jnp.einsum("bf,cfk,cfl->cbkl", weight, lines.real, lines.real)
-    return real + jnp.einsum("bf,cfk,cfl->cbkl", weight, lines.imag, lines.imag)
+def _record_residual(problem: Problem, x: Float[Array, " p"], own: Float[Array, " o"], record: Data) -> Float[Array, "c t"]:
+    return (problem.motion(x, own, record) - record.measured) * record.present
 
 
-class Decays(eqx.Module):
-    """Decay records: `problem` with the parameters' whole space, and the bands of every record."""
+@eqx.filter_jit
+def decay_residuals(problem: Problem, x: Float[Array, " p"], own: Float[Array, "r o"]) -> Float[Array, "r c t"]:
+    """Simulated less measured, zero where there is no sample."""
+    return jax.lax.map(lambda one: _record_residual(problem, x, *one), (own, problem.data))
 
-    problem: Problem
-    member: Float[Array, "r b f"]
 
-    def residual(
-        self, frame: Frame, z: Float[Array, " q"], own: Float[Array, " o"], record: Data, until: Float[Array, ""]
-    ) -> Float[Array, "c t"]:
-        """Simulated less measured up to a time (s)."""
-        x = frame.origin + frame.basis @ z
-        return (self.problem.motion(x, own, record) - record.measured) * record.present * (record.time <= until)
+@eqx.filter_jit
+def decay_slopes(
+    problem: Problem, frame: Frame, own: Float[Array, "r o"]
+) -> tuple[Float[Array, "r c t"], Float[Array, "r c t k"]]:
+    """Residuals, and their slopes along the directions and the records' own unknowns."""
+    q = frame.basis.shape[1]
 
-    def products(self, frame: Frame, own: Float[Array, "r o"], until: Float[Array, " r"]) -> Float[Array, "r c b k k"]:
-        """By record, motion and band; of the directions, the record's own unknowns and the residual."""
-        q = frame.basis.shape[1]
+    def of_record(inputs):
+        own, record = inputs
 
-        def of_record(inputs):
-            own, record, member, until = inputs
+        def residual(both):
+            r = _record_residual(problem, frame.origin + frame.basis @ both[:q], both[q:], record)
+            return r, r
 
-            def residual(both):
-                r = self.residual(frame, both[:q], both[q:], record, until)
-                return r, r
+        slopes, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([jnp.zeros(q), own]))
+        return r, slopes
 
-            slope, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([jnp.zeros(q), own]))
-            return banded(slope, r, member)
-
-        return jax.lax.map(of_record, (own, self.problem.data, self.member, until))
+    return jax.lax.map(of_record, (own, problem.data))
 
 
 class SeaRecord(eqx.Module):
-    """One run in waves: its sea, and the tests in it, each from sample `begins` on for `length` samples of the run's clock."""
+    """One run in waves: its sea, and the tests in it, each from sample `begins` on for as many samples of the run's clock as
+    are measured."""
 
     model: Model
     sea: SupportSea
     times: Float[Array, " t"]
     step: Float[Array, ""]
     measured: Float[Array, "w c n"]
-    member: Float[Array, "w b f"]
-    rest: Float[Array, "6"] | None
     space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
     steps: int = eqx.field(static=True)
@@ -85,58 +71,32 @@ class SeaRecord(eqx.Module):
     dofs: tuple[int, ...] = eqx.field(static=True)
     tests: tuple[str, ...] = eqx.field(static=True)
 
-    def motion(self, x: Float[Array, " p"]) -> tuple[Float[Array, "t 6"], Float[Array, "6"]]:
-        """What sensors read, and what they read at rest in the reference position."""
+    def residual(self, x: Float[Array, " p"]) -> Float[Array, "w c n"]:
+        """Simulated less measured, test by test."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model)
         start = State(rest, jnp.zeros(6), model.rest().memory)
         grid = integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4")
         late = model.clock_lag()
         position = grid.at(self.times if late is None else self.times - late)[0]
-        base = model.seen(rest) if self.from_rest else jnp.zeros(6)
-        return model.seen(position) - base, position
-
-    def residual(self, x: Float[Array, " p"]) -> tuple[Float[Array, "w c n"], Float[Array, "t 6"]]:
-        """Simulated less measured, test by test."""
-        motion, position = self.motion(x)
+        motion = model.seen(position) - (model.seen(rest) if self.from_rest else jnp.zeros(6))
         n = self.measured.shape[-1]
-        windows = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins])
-        return windows - self.measured, position
-
-    def products(self, frame: Frame) -> tuple[Float[Array, "w c b k k"], Float[Array, "t 6"]]:
-        """By test, motion and band; of the directions and the residual. And the position (m, rad)."""
-
-        def residual(z):
-            r, position = self.residual(frame.origin + frame.basis @ z)
-            return r, (r, position)
-
-        q = frame.basis.shape[1]
-        slope, (r, position) = jax.jacfwd(residual, has_aux=True)(jnp.zeros(q))
-        parts = [banded(*one) for one in zip(slope, r, self.member)]
-        return jnp.stack(parts), position
+        return jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
 
 
 @eqx.filter_jit
-def decay_products(decays: Decays, frame: Frame, own: Any, until: Any) -> Any:
-    return decays.products(frame, own, until)
-
-
-@eqx.filter_jit
-def sea_products(record: SeaRecord, frame: Frame) -> Any:
-    return record.products(frame)
-
-
-@eqx.filter_jit
-def sea_residual(record: SeaRecord, x: Any) -> Any:
+def sea_residuals(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "w c n"]:
+    """Simulated less measured, test by test."""
     return record.residual(x)
 
 
 @eqx.filter_jit
-def decay_residuals(decays: Decays, frame: Frame, own: Any, until: Any) -> Any:
-    """(r, c, t)."""
+def sea_slopes(record: SeaRecord, frame: Frame) -> tuple[Float[Array, "w c n"], Any]:
+    """Residuals, and their slopes along the directions."""
 
-    def one(inputs):
-        own, record, until = inputs
-        return decays.residual(frame, jnp.zeros(frame.basis.shape[1]), own, record, until)
+    def residual(z):
+        r = record.residual(frame.origin + frame.basis @ z)
+        return r, r
 
-    return jax.lax.map(one, (own, decays.problem.data, until))
+    slopes, r = jax.jacfwd(residual, has_aux=True)(jnp.zeros(frame.basis.shape[1]))
+    return r, slopes

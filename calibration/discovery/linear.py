@@ -1,18 +1,124 @@
-"""What a candidate would gain if the model were linear in it: from one look, for the fitted and the held-out tests."""
+"""Least squares with the decays' own unknowns eliminated: weights, equations, steps, and what a step would gain.
+
+-2 ln L = sum over motions and bands of n ln(mean square), n the band's degrees of freedom (Whittle 1953, Arkiv for Matematik 2,
+423-434, with a spectrum that is constant over a band and estimated; noise is its least value), and the priors' squares. A fit
+minimises n (m^p - 1) / p of the mean square m over the noise's in place of n ln m (Box and Cox 1964, Journal of the Royal
+Statistical Society B 26, 211-252): near the noise the same, but a record that is not followed is not given up for others.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from calibration.discovery.descent import FLOOR, POWER
-from calibration.discovery.study import Look, Prior, Study
+from calibration.discovery.study import Look, Place, Prior, Study
 
+POWER = 0.2  # p: 0 is the logarithm
+FLOOR = 1.0  # mean square over the noise's below which nothing is gained
 ROUNDS = 6  # of weights
 
 
+def cost_of(study: Study, look: Look, residual: np.ndarray, place: Place, used: np.ndarray, prior: Prior) -> float:
+    """What is minimised, of the `used` series (s,) and the priors, with this residual at this place."""
+    mean_square = np.maximum(study.mean_squares(residual), FLOOR)
+    value = float((used[:, None] * study.dof * (mean_square**POWER - 1)).sum()) / POWER
+    value += float((((study.steps(place.x) - prior.mean) / prior.width)[list(look.active)] ** 2).sum())
+    return value + float(((place.own / study.own_width) ** 2).sum())
+
+
+def likelihoods(study: Study, residual: np.ndarray) -> np.ndarray:
+    """-2 ln L of every series (s,)."""
+    return (study.dof * np.log(np.maximum(study.mean_squares(residual), FLOOR))).sum(axis=1)
+
+
+def weights(study: Study, residual: np.ndarray) -> np.ndarray:
+    """By which rows' squares count where `cost_of` is taken as quadratic."""
+    each = np.maximum(study.mean_squares(residual), FLOOR) ** (POWER - 1) / study.noise**2 * (study.dof > 0)
+    return each.ravel()[study.cell]
+
+
+class Block(NamedTuple):
+    """Of one decay: Gauss-Newton matrix and gradient of its own unknowns, and the cross block; whether it is fitted."""
+
+    own: np.ndarray
+    cross: np.ndarray
+    slope: np.ndarray
+    fitted: bool
+
+
+class Equations(NamedTuple):
+    """Gauss-Newton matrix and gradient of the parameters, and every decay's block: an arrow."""
+
+    matrix: np.ndarray
+    slope: np.ndarray
+    blocks: list[Block]
+
+    def reduced(self, damping: float = 0.0) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+        """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated, and what gives all of these
+        back."""
+        matrix, slope = self.matrix + damping * np.diag(np.diag(self.matrix)), self.slope
+        back = []
+        for block in self.blocks:
+            size = len(block.own)
+            ridge = damping * np.diag(np.diag(block.own)) + 1e-12 * np.trace(block.own) / size * np.eye(size)
+            back.append(np.linalg.solve(block.own + ridge, np.column_stack([block.cross, block.slope])))
+            if block.fitted:
+                matrix = matrix - block.cross.T @ back[-1][:, :-1]
+                slope = slope - block.cross.T @ back[-1][:, -1]
+        return matrix, slope, back
+
+
+def equations(study: Study, look: Look, weight: np.ndarray, used: np.ndarray, prior: Prior) -> Equations:
+    """Of the `used` series (s,) for the parameters; of all decays for their own unknowns. `weight` (n,) by row."""
+    active = list(look.active)
+    width = prior.width[active]
+    mine = weight * used[study.row_series]
+    matrix = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(1 / width**2)
+    slope = look.slopes.T @ (mine * look.residual) + (study.steps(look.place.x) - prior.mean)[active] / width**2
+    blocks = []
+    for i, span in enumerate(study.spans):
+        own, slopes, w = look.own[span], look.slopes[span], weight[span]
+        blocks.append(
+            Block(
+                own.T @ (w[:, None] * own) + np.diag(1 / study.own_width[i] ** 2),
+                own.T @ (w[:, None] * slopes),
+                own.T @ (w * look.residual[span]) + look.place.own[i] / study.own_width[i] ** 2,
+                bool(used[study.row_series[span]].any()),
+            )
+        )
+    return Equations(matrix, slope, blocks)
+
+
+def own_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarray) -> np.ndarray:
+    """What the decays' own unknowns do where the parameters take a step."""
+    return np.array([-(one[:, -1] + one[:, :-1] @ step) for one in back]).reshape(study.own_width.shape)
+
+
+def inverted(matrix: np.ndarray) -> np.ndarray:
+    """A symmetric matrix's inverse, or pseudo-inverse, of parameters of any size."""
+    scale = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    return np.linalg.pinv(matrix * np.outer(scale, scale), rcond=1e-12, hermitian=True) * np.outer(scale, scale)
+
+
+def solve(study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float) -> tuple[np.ndarray, np.ndarray]:
+    """A damped step of the parameters, and of every used decay's own unknowns."""
+    found = equations(study, look, weights(study, look.residual), used, prior)
+    matrix, slope, back = found.reduced(damping)
+    step = -inverted(matrix) @ slope
+    fitted = np.array([block.fitted for block in found.blocks], float)[:, None]
+    return step, own_steps(study, back, step) * fitted
+
+
+def linearly(study: Study, look: Look, step: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Rows of the residual after a step, were the model linear."""
+    residual = look.residual + look.slopes @ step
+    for span, mine in zip(study.spans, own):
+        residual[span] += look.own[span] @ mine
+    return residual
+
+
 class Predicted(NamedTuple):
-    """Steps of the columns asked for, gains of -2 ln L in the fitted and the held-out tests, and the covariance."""
+    """Steps of the parameters, gains of -2 ln L in the fitted and the held-out tests, and the covariance."""
 
     step: np.ndarray
     fitted: float
@@ -25,57 +131,15 @@ class Predicted(NamedTuple):
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def predict(study: Study, look: Look, columns: Sequence[int], fitted: np.ndarray, prior: Prior) -> Predicted:
-    """Let some columns of a look move (positions in `look.active`), releases and offsets with them, weights renewed."""
-    columns = list(columns)
-    q = len(look.active)
-    active = [look.active[i] for i in columns]
-    width = prior.width[active]
-    begun = (study.steps(look.place.x) - prior.mean)[active]
-    noise2 = np.array([one.noise for one in study.series])[:, None] ** 2
-    before, dof = study.mean_squares(look)
-    now = before
-    r = c = b = 0
-    if look.decays.size:
-        r, c, b = look.decays.shape[:3]
-        keep = np.r_[np.array(columns, int), q : look.decays.shape[-1]]
-        decays = look.decays[..., keep[:, None], keep]
-    keep = np.r_[np.array(columns, int), q]
-    seas = [one[..., keep[:, None], keep] for one in look.seas]
-    n = len(columns)
-    step, inverse, powers = np.zeros(n), np.zeros((n, n)), look.power()
+def predict(study: Study, look: Look, prior: Prior) -> Predicted:
+    """What a look's directions would gain were the model linear, releases and offsets moving with them, weights renewed."""
+    residual, step = look.residual, np.zeros(len(look.active))
+    covariance = np.zeros((len(step), len(step)))
     for _ in range(ROUNDS):
-        every = (dof > 0) * np.maximum(now, FLOOR) ** (POWER - 1) / noise2
-        weight = every * fitted[:, None]
-        matrix, right, back, at = np.diag(1 / width**2), begun / width**2, [], r * c
-        if look.decays.size:
-            mine = np.einsum("rcb,rcbkl->rkl", every[:at].reshape(r, c, b), decays)
-            used = fitted[:at].reshape(r, c)[:, 0]
-            for i, one in enumerate(mine):
-                own = one[n:-1, n:-1] + np.diag(1 / study.own_width[i] ** 2)
-                own = own + 1e-12 * np.eye(len(own)) * np.trace(own) / len(own)
-                force = one[n:-1, -1] + look.place.own[i] / study.own_width[i] ** 2
-                found = np.linalg.solve(own, np.column_stack([one[n:-1, :n], force]))
-                back.append(found)
-                if used[i]:
-                    matrix = matrix + one[:n, :n] - one[n:-1, :n].T @ found[:, :-1]
-                    right = right + one[:n, -1] - one[n:-1, :n].T @ found[:, -1]
-        place = at
-        for one in seas:
-            m = one.shape[0] * one.shape[1]
-            whole = np.einsum("wcb,wcbkl->kl", weight[place : place + m].reshape(one.shape[:3]), one)
-            place += m
-            matrix, right = matrix + whole[:n, :n], right + whole[:n, -1]
-        scale = 1 / np.sqrt(np.diag(matrix))
-        inverse = np.linalg.pinv(matrix * np.outer(scale, scale), rcond=1e-12, hermitian=True) * np.outer(scale, scale)
-        step = -inverse @ right
-        parts = []
-        if look.decays.size:
-            vectors = np.stack([np.concatenate([step, -(f[:, -1] + f[:, :-1] @ step), [1.0]]) for f in back])
-            parts.append(np.einsum("rk,rcbkl,rl->rcb", vectors, decays, vectors).reshape(r * c, b))
-        vector = np.concatenate([step, [1.0]])
-        parts += [np.einsum("k,wcbkl,l->wcb", vector, one, vector).reshape(-1, one.shape[2]) for one in seas]
-        powers = np.concatenate(parts) if parts else powers
-        now = np.where(dof > 0, powers / np.where(dof > 0, dof, 1.0) / noise2, 0.0)
-    gain = dof * (np.log(np.maximum(before, FLOOR)) - np.log(np.maximum(now, FLOOR)))
-    return Predicted(step, float(gain[fitted].sum()), float(gain[~fitted].sum()), inverse)
+        found = equations(study, look, weights(study, residual), study.used, prior)
+        matrix, slope, back = found.reduced()
+        covariance = inverted(matrix)
+        step = -covariance @ slope
+        residual = linearly(study, look, step, own_steps(study, back, step))
+    gain = likelihoods(study, look.residual) - likelihoods(study, residual)
+    return Predicted(step, float(gain[study.used].sum()), float(gain[~study.used].sum()), covariance)

@@ -9,7 +9,8 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.catalogue import Candidate, catalogue, scales_of, with_candidates, with_drag
-from calibration.discovery.study import Prior, Study, study_of
+from calibration.discovery.gathering import study_of
+from calibration.discovery.study import Prior, Study
 from calibration.fit import labels_of, space_of
 from calibration.identifiability import VAGUE
 from calibration.parameters import Free, ParameterSpace
@@ -133,8 +134,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
         for label in candidate.shapes:
             shaped = isinstance(scaled[label].transform, LogInterval)
             direction(label, {label: 1.0}, 0.0, 0.7 if shaped else 3.0)
-    kinds = ("decays", "waves")
-    study = study_of(model, space, names, np.array(rows), campaign, options, width, kinds)
+    study = study_of(model, space, names, np.array(rows), campaign, options, width)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
     return Posed(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions))
 

@@ -1,0 +1,120 @@
+"""From a campaign's records to a study: decays in arrays, seas prepared, every motion cut into bands."""
+
+from collections.abc import Sequence
+
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.discovery.bands import Bands, Rows, bands_of
+from calibration.discovery.evidence import SeaRecord
+from calibration.discovery.study import Series, Study
+from calibration.fit import STEPS_PER_PERIOD
+from calibration.parameters import ParameterSpace
+from calibration.records import Record
+from calibration.residuals import Problem, dominant_period, gather
+from calibration.runs import KINDS, Run
+from calibration.seas import Options, sea_step, seas_of
+from calibration.stretches import window
+from jaxhydro.environment import DOFS
+from jaxhydro.integrate import clock
+from jaxhydro.model import Model
+from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.waves.irregular import fourier_length
+from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
+
+BANDS = 14
+EXCURSIONS = 1.5  # of EXCURSION: how far a sea is prepared for
+OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
+HIGHEST = 6.0  # times the highest natural frequency: what is looked at
+
+
+def study_of(
+    model: Model,
+    space: ParameterSpace,
+    names: Sequence[str],
+    directions: np.ndarray,
+    campaign: Campaign,
+    options: Options,
+    width: int,
+) -> Study:
+    """The records of a campaign, against a model with every candidate at its null. Raises InputError."""
+    records = [r for r in campaign.records if r.use in ("fit", "holdout")]
+    decaying = tuple(r for r in records if r.kind == "decay")
+    waving = {r.id for r in records if r.kind in KINDS}
+    periods = natural_modes(model).period
+    highest = HIGHEST / float(periods.min()) if len(periods) else 1.0
+    from_rest = campaign.manifest.zero is not None
+    series: list[Series] = []
+    cuts: list[Rows] = []
+    decays, own_width = None, np.zeros((0, 0))
+    if decaying:
+        shortest = min([float(periods.min()), *(dominant_period(r) for r in decaying)])
+        data = gather(decaying, model, shortest / STEPS_PER_PERIOD)
+        decays = Problem(model, data, space, from_rest, None if from_rest else equilibrium(model))
+        found, own_width = _decay_series(decaying, data, highest)
+        series += [one for one, _ in found]
+        cuts.append(Rows.of([cut for _, cut in found], data.time.shape[1]))
+    seas = []
+    if waving:
+        step = sea_step(model, options)
+        for run, made in seas_of(campaign, model.environment, options):
+            tests = [r for r in run.records if r.id in waving]
+            if not tests:
+                continue
+            sea = _sea_record(run, made.sea, tests, model, space, from_rest, step)
+            measured = np.asarray(sea.measured)
+            n = measured.shape[-1]
+            cut = bands_of(n * run.step, run.step, n, BANDS, highest)
+            channels = [DOFS[dof] for dof in sea.dofs]
+            series += [_series(r, c, v, cut) for r, values in zip(tests, measured) for c, v in zip(channels, values)]
+            cuts.append(Rows.of([cut] * (len(tests) * len(channels)), n))
+            seas.append(sea)
+    return Study(
+        space, model, tuple(names), directions, width, decays, tuple(seas), tuple(series), decaying, own_width, tuple(cuts)
+    )
+
+
+def _series(record: Record, channel: str, values: np.ndarray, cut: Bands) -> Series:
+    noise, spread = record.noise[channel], float(np.std(values))
+    return Series(record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values))
+
+
+def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[Series, Bands]], np.ndarray]:
+    """Every motion of every decay, and how far the decays' own unknowns may go."""
+    found = []
+    width = np.full((len(records), 3, len(data.dofs)), np.inf)
+    for i, record in enumerate(records):
+        n, dt = len(record.time), float(np.median(np.diff(record.time)))
+        cut = bands_of(n * dt, dt, data.time.shape[1], BANDS, highest)
+        for j, dof in enumerate(data.dofs):
+            channel = DOFS[dof]
+            if channel in record.values:
+                one = _series(record, channel, record.values[channel], cut)
+                found.append((one, cut))
+            else:  # a row of nothing keeps the arrays' shape
+                nothing = cut._replace(member=np.zeros_like(cut.member))
+                one = Series(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * cut.lines, cut.low, cut.high, n)
+                found.append((one, nothing))
+            width[i, 2, j] = (OFFSET * one.spread + 3 * one.noise / np.sqrt(n)) / float(data.unit[i, j])
+    return found, width.reshape(len(records), -1)
+
+
+def _sea_record(
+    run: Run, made: IrregularSea, tests: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float
+) -> SeaRecord:
+    """The tests of one run, and its sea for as long as they last."""
+    times = run.time[: 1 + max(int(run.samples(r)[-1]) for r in tests)]
+    period = float(made.components.period)
+    dt = period / fourier_length(period / step)
+    count = int(np.ceil((times[-1] - times[0]) / dt - 1e-9))
+    instants = clock("ab4", float(times[0]), dt, count)
+    sea = made.prepared(model.hull.extremities(), model.cylinders, instants, EXCURSIONS * EXCURSION)
+    channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
+    windows = [window(run, r) for r in tests]
+    n = min(len(w) for w in windows)
+    measured = [[np.interp(w[:n], run.samples(r), r.values[c]) for c in channels] for r, w in zip(tests, windows)]
+    return SeaRecord(
+        model, sea, jnp.asarray(times), jnp.asarray(dt), jnp.asarray(np.array(measured)), space, from_rest, count,
+        tuple(int(w[0]) for w in windows), tuple(DOFS.index(c) for c in channels), tuple(r.id for r in tests),
+    )  # fmt: skip
