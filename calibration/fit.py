@@ -73,7 +73,12 @@ class Fit:
         self.products: np.ndarray | None = None
 
     def minimise(
-        self, stage: str, weight, until, tolerance: float, fraction: tuple[float, float],
+        self,
+        stage: str,
+        weight,
+        until,
+        tolerance: float,
+        fraction: tuple[float, float],
         samples: float | None = None,
     ) -> bool:
         """Levenberg-Marquardt from where the fit is, to a relative decrease below `tolerance`.
@@ -295,8 +300,8 @@ def pose(model: Model, campaign: Campaign, records: Sequence[Record], space: Par
     return Problem(model, data, space, campaign.manifest.zero is not None, rest)
 
 
-def run(fit: Fit) -> None:
-    """The stages of a fit."""
+def run(fit: Fit, near: bool = False) -> None:
+    """The stages of a fit; where `near`, no more than brings it near."""
     data, records = fit.problem.data, fit.records
     period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time[:, 0])
     length = (np.asarray(fit.ends) - start) / period
@@ -310,6 +315,8 @@ def run(fit: Fit) -> None:
         cycles, done = cycles * GROWTH, done + 1
     weight = weights(records, data, fit.scored, fit.spread, even)
     fit.minimise("whole records", weight, fit.ends, 1e-3, (0.4, 0.6))
+    if near:
+        return
     noise = np.array([[r.noise.get(DOFS[dof], np.inf) for dof in data.dofs] for r in records])
     measured = np.isfinite(noise) & (np.asarray(data.present).sum(axis=-1) > 0)
     for _ in range(3):

@@ -25,14 +25,28 @@ def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
     return model.force_at_rest(position) / (weight * jnp.array([1.0, 1.0, 1.0, 10.0, 10.0, 10.0]))
 
 
+@eqx.filter_custom_jvp
+def _root(model: Model) -> Float[Array, "6"]:
+    # The least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is.
+    solver: optx.Newton = optx.Newton(rtol=1e-12, atol=1e-12, linear_solver=lx.AutoLinearSolver(well_posed=False))
+    solution: optx.Solution = optx.root_find(_balance, solver, jnp.zeros(6), model, max_steps=64, throw=False)
+    return solution.value
+
+
+@_root.def_jvp
+def _root_jvp(primals, tangents):
+    """By the implicit function theorem; optimistix's own adjoint checks by a host callback, and programs that call back are not
+    kept in JAX's compilation cache."""
+    (model,), (moved,) = primals, tangents
+    root = _root(model)
+    _, balance = eqx.filter_jvp(lambda m: _balance(root, m), (model,), (moved,))
+    return root, -jnp.linalg.pinv(jax.jacfwd(_balance)(root, model), rtol=1e-12) @ balance
+
+
 @eqx.filter_jit
 def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-    # The least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is.
-    linear = lx.AutoLinearSolver(well_posed=False)
-    solver: optx.Newton = optx.Newton(rtol=1e-12, atol=1e-12, linear_solver=linear)
-    adjoint = optx.ImplicitAdjoint(linear_solver=linear)
-    solution: optx.Solution = optx.root_find(_balance, solver, jnp.zeros(6), model, max_steps=64, throw=False, adjoint=adjoint)
-    return solution.value, _balance(solution.value, model)
+    position = _root(model)
+    return position, _balance(position, model)
 
 
 def equilibrium(model: Model) -> Float[Array, "6"]:

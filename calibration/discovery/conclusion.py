@@ -36,7 +36,9 @@ def conclude(
     share, words = signature(search, before, after)
     left = anatomy(search, after)
     kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
-    much = any(one.use == "fit" and one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in left)
+    main = {record.id: record.degree_of_freedom for record in search.study.decay_records}
+    told = [one for one in left if one.use == "fit" and one.channel == main.get(one.test, one.channel)]
+    much = any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
     verdict = "found" if effects else ("unexplained" if much else "nothing_missing")
     wanted = [one.telling for one in after.chosen if one.telling]
     return Diagnosis(

@@ -55,7 +55,7 @@ def study_of(
         found, own_width = _decay_series(decaying, data, highest)
         series += [one for one, _ in found]
         cuts.append(Rows.of([cut for _, cut in found], data.time.shape[1]))
-    seas = []
+    seas, linear = [], []
     if waving:
         step = sea_step(model, options)
         for run, made in seas_of(campaign, model.environment, options):
@@ -63,6 +63,8 @@ def study_of(
             if not tests:
                 continue
             sea = _sea_record(run, made.sea, tests, model, space, from_rest, step)
+            if options.order == 2:
+                linear.append(_sea_record(run, made.sea, tests, model, space, from_rest, step, linear=True))
             measured = np.asarray(sea.measured)
             n = measured.shape[-1]
             cut = bands_of(n * run.step, run.step, n, BANDS, highest)
@@ -71,8 +73,9 @@ def study_of(
             cuts.append(Rows.of([cut] * (len(tests) * len(channels)), n))
             seas.append(sea)
     return Study(
-        space, model, tuple(names), directions, width, decays, tuple(seas), tuple(series), decaying, own_width, tuple(cuts)
-    )
+        space, model, tuple(names), directions, width, decays, tuple(seas), tuple(linear), tuple(series), decaying, own_width,
+        tuple(cuts),
+    )  # fmt: skip
 
 
 def _series(record: Record, channel: str, values: np.ndarray, cut: Bands) -> Series:
@@ -101,15 +104,22 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
 
 
 def _sea_record(
-    run: Run, made: IrregularSea, tests: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float
+    run: Run,
+    made: IrregularSea,
+    tests: Sequence[Record],
+    model: Model,
+    space: ParameterSpace,
+    from_rest: bool,
+    step: float,
+    linear: bool = False,
 ) -> SeaRecord:
-    """The tests of one run, and its sea for as long as they last."""
+    """The tests of one run, and its sea for as long as they last; of the first order alone where `linear`."""
     times = run.time[: 1 + max(int(run.samples(r)[-1]) for r in tests)]
     period = float(made.components.period)
     dt = period / fourier_length(period / step)
     count = int(np.ceil((times[-1] - times[0]) / dt - 1e-9))
     instants = clock("ab4", float(times[0]), dt, count)
-    sea = made.prepared(model.hull.extremities(), model.cylinders, instants, EXCURSIONS * EXCURSION)
+    sea = made.prepared(model.hull.extremities(), model.cylinders, instants, EXCURSIONS * EXCURSION, linear)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
     n = min(len(w) for w in windows)

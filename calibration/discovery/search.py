@@ -30,6 +30,7 @@ LOOKS = 4  # slopes taken anew in that
 LEAST_BIC = 30.0
 LEAST_GAIN = 0.05  # share of the held-out error above noise
 LEAST_CLEAR = 3.0  # standard deviations
+LEAST_MATTER = 0.015  # of a motion: what takes less away from its error is no business of engineers, nor sure of its name
 ALIKE = 0.25  # of the winner's gain: what comes as near cannot be told from it
 
 
@@ -56,12 +57,13 @@ class Scored(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, and why it is refused (""
-    where it is not)."""
+    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, by how much of a motion an
+    error falls, and why it is refused ("" where it is not)."""
 
     bic: float
     held: float
     clear: float
+    matters: float
     refused: str
 
 
@@ -91,6 +93,7 @@ class Search:
 
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
+        self.notes: list[str] = []
         self.base = self.study.index([*posed.base, *posed.nuisances])
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
@@ -119,7 +122,7 @@ class Search:
         own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
             plain = prepare(self.campaign)
-            run(plain)
+            run(plain, near=True)
             for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
             rows = [r.id for r in study.decay_records]
@@ -134,7 +137,21 @@ class Search:
         self.say("calibrating the declared model", 0.03)
         place = self.start()
         self.say("declared model: slopes", 0.08)
-        return self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
+        state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
+        if not self.study.linear_seas:
+            return state
+        bound, self.study = self.study, replace(self.study, seas=self.study.linear_seas)
+        look = self.study.look(state.look.place, self.base)
+        first = self.refit(look, (), "declared model in waves of first order", 0.12)
+        better = float((state.likelihood - first.likelihood)[self.study.used].sum())
+        if better < LEAST_BIC:
+            self.study = bound
+            return state
+        self.notes.append(
+            "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions "
+            f"are followed worse (by {better:.0f} in -2 ln L)"
+        )
+        return first
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""
@@ -202,7 +219,7 @@ class Search:
         used = self.study.used
         bic = float((before.likelihood - after.likelihood)[used].sum()) - len(one.labels) * math.log(self.count)
         held, told = self.held_gain(before, after)
-        clear = self.clearness(one, after)
+        clear, matters = self.clearness(one, after), self.matters(before, after)
         refused = ""
         values = {label: self.study.value(label, after.look.place.x) for label in one.positive if len(one.amplitudes) == 1}
         wrong = [label for label, value in values.items() if value < 0]
@@ -214,7 +231,19 @@ class Search:
             refused = f"the held-out tests' error above noise changes by {-100 * held:+.0f} % only"
         elif clear < LEAST_CLEAR:
             refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
-        return Verdict(bic, held, clear, refused)
+        elif matters < LEAST_MATTER:
+            refused = f"no error of a motion falls by more than {100 * matters:.1f} % of the motion"
+        return Verdict(bic, held, clear, matters, refused)
+
+    def matters(self, before: State, after: State) -> float:
+        """By how much of a motion its error above noise falls at most, of the motions that tests are about: of held-out tests
+        where there are any."""
+        series, used = self.study.series, self.study.used
+        main = {record.id: record.degree_of_freedom for record in self.study.decay_records}
+        asked = np.array([one.channel in ((main[one.test],) if one.test in main else self.posed.motions) for one in series])
+        asked &= ~used if (~used).any() else used
+        size = np.array([one.noise / one.spread / math.sqrt(one.samples) for one in series])
+        return float((size * (np.sqrt(before.left) - np.sqrt(after.left)))[asked].max(initial=0.0))
 
     def held_gain(self, before: State, after: State) -> tuple[float, bool]:
         """Mean share of the error above noise that is gone, over the held-out motions that have any; else the fitted. And
@@ -314,4 +343,4 @@ def diagnose(
     states = [search.declared()]
     while len(states) <= ROUNDS and (after := search.grow(states[-1], len(states))) is not None:
         states.append(after)
-    return conclude(campaign, search, states[0], states[-1], notes, clock.monotonic() - begun)
+    return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes), clock.monotonic() - begun)

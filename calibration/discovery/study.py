@@ -94,7 +94,7 @@ class Prior:
 class Study:
     """All records of a campaign that take part, against one model. Directions (d, p), orthogonal, are what is free: most are
     one parameter each, some move several together. `width` is how many are looked along at a time; `cuts` are the rows of the
-    decays and of every sea."""
+    decays and of every sea; `linear_seas` the seas without the second order that their records have."""
 
     space: ParameterSpace
     model: Any
@@ -103,6 +103,7 @@ class Study:
     width: int
     decays: Problem | None
     seas: tuple[SeaRecord, ...]
+    linear_seas: tuple[SeaRecord, ...]
     series: tuple[Series, ...]
     decay_records: tuple[Record, ...]
     own_width: np.ndarray

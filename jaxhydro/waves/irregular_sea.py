@@ -92,9 +92,15 @@ class IrregularSea(AbstractSea):
         return found * np.asarray(growth(jnp.asarray(times), self.ramp))
 
     def prepared(
-        self, points: Float[np.ndarray, "3 p"], cylinders: Cylinders | None, clock: Clock, excursion: float = EXCURSION
+        self,
+        points: Float[np.ndarray, "3 p"],
+        cylinders: Cylinders | None,
+        clock: Clock,
+        excursion: float = EXCURSION,
+        linear: bool = False,
     ) -> "SupportSea":
-        """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock.
+        """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock; of its
+        first order alone where `linear`, in arrays of the same shapes.
 
         Raises ValueError for components of several headings, that are no harmonics, or where the clock's steps do not divide
         the period or are too long for the highest frequency.
@@ -122,7 +128,7 @@ class IrregularSea(AbstractSea):
         radius = jnp.zeros(0) if cylinders is None else cylinders.radius
         options = (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp)
         arrays = (jnp.asarray(found.table), found.spacing, jnp.asarray(middle), jnp.asarray(along), radius)
-        spectrum = _spectrum(waves, self.environment, self.order, self.kinds, options, *arrays)
+        spectrum = _spectrum(waves, self.environment, 1 if linear else self.order, self.kinds, options, *arrays)
         series, fine = _series(spectrum, 2 * math.pi / float(waves.period), size, clock, self.ramp)
         wavenumber = jnp.asarray(found.wavenumber)
         return SupportSea(
