@@ -1,6 +1,7 @@
 """Makes docs/validation.md and its figures: every number on the page comes from a run of this program.
 
-    python -m benchmarks.validate [--seeds 20] [--starts 20] [--processes 2] [--only SECTION ...] [--fresh] [--stale]
+    python -m benchmarks.validate [--seeds 20] [--starts 20] [--diagnoses 200] [--processes 2]
+                                  [--only SECTION ...] [--fresh] [--stale]
 
 Finished parts are kept in .venv/validate-cache under a hash of the sources and files that they depend on; what has not
 changed is not done again, and a run that was stopped goes on where it was. `--fresh` forgets them first. `--stale`
@@ -19,6 +20,7 @@ from benchmarks.evidence import (
     classical_bias,
     common,
     coverage,
+    diagnoses,
     global_search,
     measured,
     measured_waves,
@@ -35,7 +37,7 @@ from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
     "seeds", "coverage", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas", "classical_bias",
-    "starts", "global_search", "study",
+    "starts", "global_search", "study", "diagnoses",
 )  # fmt: skip
 INTRO = """\
 # Validation
@@ -61,6 +63,8 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return global_search.run(figures, options.processes)
     if name == "tuned_seas":
         return tuned_seas.run(figures, options.processes)
+    if name == "diagnoses":
+        return diagnoses.run(figures, options.processes, options.diagnoses)
     plain = {"periods": periods, "openfast": openfast, "openfast_waves": openfast_waves,
              "measured": measured, "study": study_text}  # fmt: skip
     return plain[name].run(figures)
@@ -68,7 +72,10 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
 
 def command(name: str, options: argparse.Namespace) -> str:
     """What makes a section alone."""
-    counts = {"seeds": f" --seeds {options.seeds}", "starts": f" --starts {options.starts}"}
+    counts = {
+        "seeds": f" --seeds {options.seeds}", "starts": f" --starts {options.starts}",
+        "diagnoses": f" --diagnoses {options.diagnoses}",
+    }  # fmt: skip
     return f"python -m benchmarks.validate --only {name}{counts.get(name, '')}"
 
 
@@ -118,6 +125,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seeds", type=int, default=20, help="seeds of noise (default 20)")
     parser.add_argument("--starts", type=int, default=20, help="far starts (default 20)")
+    parser.add_argument("--diagnoses", type=int, default=200, help="campaigns to diagnose at most (default 200: all)")
     parser.add_argument("--processes", type=int, default=2, help="at work at once (default 2)")
     parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, help="sections to make; others stay")
     parser.add_argument("--fresh", action="store_true", help="forget finished parts first")

@@ -1,5 +1,6 @@
 """Diagnosis: frequency bands, and rolling bodies made by SciPy with an effect in them, or none."""
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -8,9 +9,11 @@ from scipy.integrate import solve_ivp
 
 from calibration.campaign import load_campaign
 from calibration.discovery.bands import Rows, bands_of
+from calibration.discovery.catalogue import Candidate
 from calibration.discovery.pose import pose
 from calibration.discovery.search import diagnose
 from calibration.seas import Options
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 
 PLATFORM = {
     "name": "a rolling body",
@@ -109,3 +112,28 @@ def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
     held = [one for one in found.anatomy_after if one.use == "holdout"]
     before = [one for one in found.anatomy_before if one.use == "holdout"]
     assert held[0].rms < left * before[0].rms
+
+
+class Sine(AbstractLoad):
+    """A torque in roll of one's own: -k sin(10 x)."""
+
+    values: dict
+
+    def about(self, label):
+        return Parameter("N m", "strength of a torque that repeats", -np.inf, np.inf, 0.0)
+
+    def act(self, now, memory):
+        torque = -self.values["repeating.strength"] * jnp.sin(10 * now.position[3])
+        return Action(force=jnp.zeros(6).at[3].set(torque))
+
+
+def test_a_law_of_ones_own_takes_part(tmp_path):
+    """What no candidate of the catalogue follows as well is found by one's own, and the model has it afterwards."""
+    own = Candidate(
+        "repeating", "roll", ("repeating.strength",), load=Sine({"repeating.strength": jnp.zeros(())}),
+        sizes={"repeating.strength": 1.0},
+    )  # fmt: skip
+    found = diagnose(campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x)), candidates=[own])
+    assert found.effects[0].effect == "repeating"
+    assert_allclose(float(found.augmented.model.values["repeating.strength"]), 4.0, rtol=0.05)
+    assert found.augmented.objective("holdout") < 0.1 * found.baseline.objective("holdout")

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import jax.numpy as jnp
@@ -48,7 +48,8 @@ YIELDS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hyster
 class Candidate:
     """An effect that may be missing. `amplitudes` are the labels that are null where it is not; `shapes` those that mean
     nothing then, freed with it, and tried at the values of `grid` first; `positive`, amplitudes that physics wants above
-    zero. `needs`: "waves" where only these show it. `telling`: the test that would tell it from others."""
+    zero. `needs`: "waves" where only these show it. `telling`: the test that would tell it from others. One's own law comes
+    with its `load` at null and, by label, `sizes` of its amplitudes that are noticeable."""
 
     effect: str
     dof: str | None
@@ -59,6 +60,8 @@ class Candidate:
     needs: str = ""
     telling: str = ""
     source: str = ""
+    load: AbstractLoad | None = None
+    sizes: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -386,5 +389,8 @@ def catalogue(
 
 def with_candidates(model: Model, candidates: Sequence[Candidate], nuisances: Sequence[str] = ()) -> Model:
     """The model with every candidate at its null."""
+    for one in candidates:
+        if one.load is not None:
+            model = model.with_load(one.load)
     labels = [label for one in candidates for label in one.labels]
     return with_effects(model, [*labels, *nuisances])

@@ -10,7 +10,7 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.anatomy import anatomy, signature
-from calibration.discovery.catalogue import Candidate, with_effects
+from calibration.discovery.catalogue import Candidate, with_candidates, with_effects
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence
 from calibration.records import Record
@@ -52,7 +52,8 @@ def augmented_model(search: Search, state: State) -> Model:
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
-    return with_effects(search.posed.declared, values).with_values(values)
+    own = [one for one in state.chosen if one.load is not None]
+    return with_effects(with_candidates(search.posed.declared, own), values).with_values(values)
 
 
 def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str, Estimate]:

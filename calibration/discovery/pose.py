@@ -73,6 +73,13 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     mass, stiffness = (np.asarray(m) for m in eqx.filter_jit(linearised)(declared, equilibrium(declared)))
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
     candidates, scaled, units = catalogue(declared, scales_of(mass, stiffness, motions), bool(waves), variance)
+    for own in extra:
+        if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
+            raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
+        for label, size in own.sizes.items():
+            null = float(own.load.values[label])
+            scaled[label], units[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)
+    candidates = [*candidates, *extra]
     # what the platform file has is fitted, not looked for
     candidates = [one for one in candidates if not set(one.amplitudes) & set(declared.values)]
     scaled = {label: one for label, one in scaled.items() if label not in declared.values}

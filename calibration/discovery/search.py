@@ -23,6 +23,7 @@ from calibration.seas import Options
 
 ROUNDS = 4  # effects at most
 SHORTLIST = 5
+FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
 ITERATIONS = 8  # of a refit
 LAST = 25  # ... of what is let in
 LOOKS = 4  # slopes taken anew in that
@@ -31,7 +32,7 @@ LEAST_BIC = 30.0
 LEAST_GAIN = 0.05  # share of the held-out error above noise
 LEAST_CLEAR = 3.0  # standard deviations
 LEAST_MATTER = 0.015  # of a motion: what takes less away from its error is no business of engineers, nor sure of its name
-ALIKE = 0.25  # of the winner's gain: what comes as near cannot be told from it
+ALIKE = 0.1  # of the winner's gain: what comes as near cannot be told from it
 
 
 @dataclass(frozen=True)
@@ -273,9 +274,15 @@ class Search:
         enough = 2 * math.log(self.count)
         ranked = self.score(state, number, done)
         short = [item for item in ranked if item.predicted.fitted > enough][:SHORTLIST]
-        tried = [self.attempt(state, item, number, done + 0.02 * (k + 1)) for k, item in enumerate(short)]
-        for left in ranked[len(short) :]:
-            self.refuse(left.candidate, "explains too little at first order")
+        tried: list[Tried] = []
+        for item in ranked:
+            highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
+            if not any(item is one for one in short):
+                self.refuse(item.candidate, "explains too little at first order")
+            elif item.predicted.fitted < FAR * highest:
+                self.refuse(item.candidate, "explains far less than others")
+            else:
+                tried.append(self.attempt(state, item, number, done + 0.02 * (len(tried) + 1)))
         for one in tried:
             self.refuse(one.candidate, one.verdict.refused)
         good = sorted((one for one in tried if not one.verdict.refused), key=lambda one: -one.worth)
@@ -295,6 +302,23 @@ class Search:
             self.rejected.pop(new.name, None)
             return after
         return None
+
+    def pruned(self, state: State) -> State:
+        """The model without what later effects have made needless: every effect but the last is tried to be taken out."""
+        for one in state.chosen[:-1]:
+            rest = tuple(other for other in state.chosen if other is not one)
+            x, null = state.look.place.x.copy(), np.asarray(self.study.space.start)
+            at = [self.study.labels.index(label) for label in one.labels]
+            x[at] = null[at]
+            look = self.study.look(replace(state.look.place, x=x), self.active(rest))
+            without = self.refit(look, rest, f"without {one.name}", 0.97)
+            verdict = self.judge(without, state, one)
+            if verdict.refused:
+                self.refuse(one, f"with what was found after it, {verdict.refused}")
+                state = without
+            else:
+                self.found[one.name] = self.found[one.name]._replace(verdict=verdict)
+        return state
 
     def refuse(self, one: Candidate, why: str) -> None:
         """Keep why a candidate is not in the model; "": nothing to keep."""
@@ -324,12 +348,14 @@ class Search:
 def diagnose(
     campaign: Campaign,
     *,
+    candidates: Sequence[Candidate] = (),
     progress: Callable[[Progress], None] | None = None,
     options: Options | None = None,
 ) -> Diagnosis:
     """What the declared model of a campaign lacks: found, added, judged by the tests marked `holdout`.
 
-    Raises InputError where a campaign has nothing to diagnose.
+    `candidates` of one's own take part beside the catalogue's. Raises InputError where a campaign has nothing to diagnose, and
+    KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
     """
     begun = clock.monotonic()
 
@@ -339,8 +365,17 @@ def diagnose(
 
     say("reading the records", 0.0)
     options, notes = options_for(campaign) if options is None else (options, ())
-    search = Search(campaign, pose(campaign, options), say)
+    search = Search(campaign, pose(campaign, options, candidates), say)
     states = [search.declared()]
-    while len(states) <= ROUNDS and (after := search.grow(states[-1], len(states))) is not None:
-        states.append(after)
-    return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes), clock.monotonic() - begun)
+
+    def concluded() -> Diagnosis:
+        return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes), clock.monotonic() - begun)
+
+    try:
+        while len(states) <= ROUNDS and (after := search.grow(states[-1], len(states))) is not None:
+            states.append(after)
+        states.append(search.pruned(states[-1]))
+    except KeyboardInterrupt as stopped:
+        stopped.partial = concluded()  # type: ignore[attr-defined]
+        raise
+    return concluded()
