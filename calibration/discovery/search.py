@@ -29,7 +29,7 @@ LAST = 25  # ... of what is let in
 LOOKS = 4  # slopes taken anew in that
 # thresholds, set by what they do on campaigns with nothing missing
 LEAST_BIC = 30.0
-LEAST_GAIN = 0.05  # share of the held-out error above noise
+LEAST_GAIN = 0.15  # share of the held-out error above noise
 LEAST_CLEAR = 3.0  # standard deviations
 LEAST_MATTER = 0.015  # of a motion: what takes less away from its error is no business of engineers, nor sure of its name
 ALIKE = 0.1  # of the winner's gain: what comes as near cannot be told from it
@@ -142,8 +142,9 @@ class Search:
         if not self.study.linear_seas:
             return state
         bound, self.study = self.study, replace(self.study, seas=self.study.linear_seas)
-        look = self.study.look(state.look.place, self.base)
-        first = self.refit(look, (), "declared model in waves of first order", 0.12)
+        name = "declared model in waves of first order"
+        reached = self.fit(self.study.look(state.look.place, self.base), (), ITERATIONS, 0, name, 0.12)
+        first = self.state((), reached)
         better = float((state.likelihood - first.likelihood)[self.study.used].sum())
         if better < LEAST_BIC:
             self.study = bound
@@ -152,7 +153,7 @@ class Search:
             "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions "
             f"are followed worse (by {better:.0f} in -2 ln L)"
         )
-        return first
+        return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""
@@ -288,8 +289,10 @@ class Search:
         good = sorted((one for one in tried if not one.verdict.refused), key=lambda one: -one.worth)
         for best in good:
             new, chosen = best.candidate, best.state.chosen
-            look = self.study.look(best.state.look.place, self.active(chosen))
-            after = self.refit(look, chosen, f"round {number}: {new.name} it is", done + 0.15)
+            name = f"round {number}: {new.name} it is"
+            places = (best.state.look.place, self.released(best.state.look.place, chosen))
+            every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
+            after = min(every, key=lambda state: float(state.likelihood[self.study.used].sum()))
             verdict = self.judge(state, after, new)
             self.refuse(new, verdict.refused)
             if verdict.refused:
@@ -302,6 +305,13 @@ class Search:
             self.rejected.pop(new.name, None)
             return after
         return None
+
+    def released(self, place: Place, chosen: Sequence[Candidate]) -> Place:
+        """A place where what is only nearly known is as declared again: it was bent by what the model lacked."""
+        effects = {label for one in chosen for label in one.labels}
+        bent = [name for name in self.posed.nuisances if name not in effects]
+        at = np.abs(self.study.directions[self.study.index(bent)]).sum(axis=0) > 0
+        return replace(place, x=np.where(at, np.asarray(self.study.space.start), place.x))
 
     def pruned(self, state: State) -> State:
         """The model without what later effects have made needless: every effect but the last is tried to be taken out."""
