@@ -1,9 +1,10 @@
 """Least squares with the decays' own unknowns eliminated: weights, equations, steps, and what a step would gain.
 
--2 ln L = sum over motions and bands of n ln(mean square), n the band's degrees of freedom (Whittle 1953, Arkiv for Matematik 2,
-423-434, with a spectrum that is constant over a band and estimated; noise is its least value), and the priors' squares. A fit
-minimises n (m^p - 1) / p of the mean square m over the noise's in place of n ln m (Box and Cox 1964, Journal of the Royal
-Statistical Society B 26, 211-252): near the noise the same, but a record that is not followed is not given up for others.
+-2 ln L = sum over motions and bands of n ln m, n the band's degrees of freedom and m the mean square over the noise's (Whittle
+1953, Arkiv for Matematik 2, 423-434, with a spectrum that is constant over a band and estimated), and the priors' squares. The
+spectrum is the noise's at least: where m < 1 the term is n (m - 1). A fit minimises n (m^p - 1) / p in place of n ln m (Box and
+Cox 1964, Journal of the Royal Statistical Society B 26, 211-252): near the noise the same, but a record that is not followed is
+not given up for others.
 """
 
 from collections.abc import Sequence
@@ -14,26 +15,27 @@ import numpy as np
 from calibration.discovery.study import Look, Place, Prior, Study
 
 POWER = 0.2  # p: 0 is the logarithm
-FLOOR = 1.0  # mean square over the noise's below which nothing is gained
 ROUNDS = 6  # of weights
 
 
 def cost_of(study: Study, look: Look, residual: np.ndarray, place: Place, used: np.ndarray, prior: Prior) -> float:
     """What is minimised, of the `used` series (s,) and the priors, with this residual at this place."""
-    mean_square = np.maximum(study.mean_squares(residual), FLOOR)
-    value = float((used[:, None] * study.dof * (mean_square**POWER - 1)).sum()) / POWER
+    mean_square = study.mean_squares(residual)
+    above = (np.maximum(mean_square, 1.0) ** POWER - 1) / POWER
+    value = float((used[:, None] * study.dof * (above + np.minimum(mean_square - 1, 0.0))).sum())
     value += float((((study.steps(place.x) - prior.mean) / prior.width)[list(look.active)] ** 2).sum())
     return value + float(((place.own / study.own_width) ** 2).sum())
 
 
 def likelihoods(study: Study, residual: np.ndarray) -> np.ndarray:
     """-2 ln L of every series (s,)."""
-    return (study.dof * np.log(np.maximum(study.mean_squares(residual), FLOOR))).sum(axis=1)
+    mean_square = study.mean_squares(residual)
+    return (study.dof * (np.log(np.maximum(mean_square, 1.0)) + np.minimum(mean_square - 1, 0.0))).sum(axis=1)
 
 
 def weights(study: Study, residual: np.ndarray) -> np.ndarray:
     """By which rows' squares count where `cost_of` is taken as quadratic."""
-    each = np.maximum(study.mean_squares(residual), FLOOR) ** (POWER - 1) / study.noise**2 * (study.dof > 0)
+    each = np.maximum(study.mean_squares(residual), 1.0) ** (POWER - 1) / study.noise**2 * (study.dof > 0)
     return each.ravel()[study.cell]
 
 

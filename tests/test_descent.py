@@ -1,0 +1,123 @@
+"""Fits with slopes that are kept from step to step, against SciPy on the same cost."""
+
+from types import SimpleNamespace
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import minimize
+
+from calibration.discovery.bands import Rows, bands_of
+from calibration.discovery.descent import fit, mended
+from calibration.discovery.linear import cost_of, likelihoods, linearly, predict
+from calibration.discovery.study import Look, Place, Prior, Series, Study
+
+SAMPLES, NOISE = 201, 0.05
+TIME = np.linspace(0.0, 20.0, SAMPLES)
+
+
+class Oscillations(Study):
+    """Three records, the last held out: x = a exp(-z t) cos(w t) + offset, w and z shared, a and offset each record's own."""
+
+    def values(self, place: Place) -> np.ndarray:
+        rate, decay = place.x
+        return np.stack([a * np.exp(-decay * TIME) * np.cos(rate * TIME) + offset for a, offset in place.own])
+
+    def residual(self, place: Place, seas="fit") -> np.ndarray:
+        return self.cuts[0](self.values(place) - self.measured)
+
+    def look(self, place: Place, active) -> Look:
+        self.looks.append(place)
+        steps = 1e-6 * np.eye(4)
+
+        def slope(x, own):
+            ahead, behind = (self.residual(Place(place.x + s * x, place.own + s * own)) for s in (1, -1))
+            return (ahead - behind) / 2e-6
+
+        slopes = np.stack([slope(one[:2], 0) for one in steps[:2]], axis=1)[:, list(active)]
+        own = np.stack([slope(0, one[2:]) for one in steps[2:]], axis=1)
+        return Look(place, tuple(active), self.residual(place), slopes, own)
+
+
+@pytest.fixture
+def study():
+    cut = bands_of(TIME[-1] + 0.1, 0.1, SAMPLES, 12, 6.0)
+    noise = np.random.default_rng(1).normal(0, NOISE, (3, SAMPLES))
+    uses = ("fit", "fit", "holdout")
+    series = tuple(
+        Series(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES)
+        for i, use in enumerate(uses)
+    )  # fmt: skip
+    free = tuple(SimpleNamespace(label=name, transform=None) for name in ("rate", "decay"))
+    space = SimpleNamespace(labels=("rate", "decay"), start=jnp.array([1.0, 0.1]), free=free)
+    found = Oscillations(
+        space, None, ("rate", "decay"), np.eye(2), 8, SimpleNamespace(data=SimpleNamespace(dofs=(0,))), (), (), series,
+        tuple(SimpleNamespace(use=use) for use in uses), np.full((3, 2), np.inf), (Rows.of([cut] * 3, SAMPLES),),
+    )  # fmt: skip
+    truth = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
+    object.__setattr__(found, "looks", [])
+    object.__setattr__(found, "measured", found.values(truth) + noise)
+    return found
+
+
+PRIOR = Prior(np.zeros(2), np.full(2, 10.0))
+
+
+def best(study: Study, begin: Place) -> np.ndarray:
+    """By SciPy, of the fitted records."""
+    look = study.look(begin, (0, 1))
+
+    def cost(z):
+        place = Place(z[:2], np.vstack([z[2:].reshape(2, 2), begin.own[2:]]))
+        return cost_of(study, look, study.residual(place), place, study.used, PRIOR)
+
+    start = np.concatenate([begin.x, begin.own[:2].ravel()])
+    return minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}).x
+
+
+@pytest.mark.parametrize(("looks", "close"), [(0, 0.01), (3, 2e-4)], ids=["slopes of the start", "slopes anew"])
+def test_a_fit_ends_where_scipy_does(study, looks, close):
+    """From slopes far from the end's: nearly so with these alone, mended; exactly with slopes taken anew. The held-out record's
+    own unknowns stay."""
+    begin = Place(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
+    expected = best(study, begin)
+    study.looks.clear()
+    reached = fit(study, study.look(begin, (0, 1)), study.used, PRIOR, iterations=60, looks=looks, tolerance=1e-6)
+    assert reached.settled
+    assert len(study.looks) <= 1 + looks + 1
+    assert_allclose(reached.look.place.x, expected[:2], atol=close)
+    assert_allclose(reached.look.place.own[:2].ravel(), expected[2:], atol=10 * close)
+    assert_allclose(reached.look.place.own[2], begin.own[2])
+
+
+def test_held_out_records_are_fitted_with_parameters_as_they_are(study):
+    """No directions: only the own unknowns of what is asked for move."""
+    begin = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.1, 0.3]]))
+    reached = fit(study, study.look(begin, ()), ~study.used, PRIOR, iterations=10, tolerance=1e-6)
+    assert_allclose(reached.look.place.own[2], [0.5, 0.0], atol=0.02)
+    assert_allclose(reached.look.place.own[:2], begin.own[:2])
+    assert_allclose(reached.look.place.x, begin.x)
+
+
+def test_mended_slopes_give_the_step_that_was_taken(study):
+    """The secant equation, record by record."""
+    begin = Place(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
+    look = study.look(begin, (0, 1))
+    step, own = np.array([0.03, -0.02]), np.array([[0.1, 0.05], [0.2, -0.1], [0.0, 0.0]])
+    there = begin.moved(study.directions, step, own)
+    residual = study.residual(there)
+    after = mended(study, look, there, residual, step, own)
+    assert_allclose(linearly(study, after, -step, -own), look.residual, atol=1e-10)
+
+
+def test_a_prediction_is_exact_where_the_model_is_linear(study):
+    """Along the own unknowns alone the model is linear: what is predicted is what a fit gains, held-out tests too."""
+    begin = Place(np.array([1.3, 0.06]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.1]]))
+    look = study.look(begin, ())
+    found = predict(study, look, PRIOR)
+    for used, gain in ((study.used, found.fitted), (~study.used, found.held)):
+        reached = fit(study, look, used, PRIOR, iterations=20, tolerance=1e-9)
+        now = likelihoods(study, look.residual) - likelihoods(study, reached.look.residual)
+        assert now[used].sum() > 10
+        assert_allclose(gain, now[used].sum(), rtol=0.01)
