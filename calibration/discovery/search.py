@@ -31,7 +31,8 @@ LOOKS = 4  # slopes taken anew in that
 LEAST_BIC = 30.0
 LEAST_GAIN = 0.15  # share of the held-out error above noise
 LEAST_CLEAR = 3.0  # standard deviations
-LEAST_MATTER = 0.015  # of a motion: what takes less away from its error is no business of engineers, nor sure of its name
+LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
+LEAST_SEEN = 3.0  # ... and less than that many times the noise, is no business of engineers, nor sure of its name
 ALIKE = 0.1  # of the winner's gain: what comes as near cannot be told from it
 
 
@@ -58,8 +59,8 @@ class Scored(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, by how much of a motion an
-    error falls, and why it is refused ("" where it is not)."""
+    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, by how much an error falls over
+    what matters, and why it is refused ("" where it is not)."""
 
     bic: float
     held: float
@@ -233,18 +234,19 @@ class Search:
             refused = f"the held-out tests' error above noise changes by {-100 * held:+.0f} % only"
         elif clear < LEAST_CLEAR:
             refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
-        elif matters < LEAST_MATTER:
-            refused = f"no error of a motion falls by more than {100 * matters:.1f} % of the motion"
+        elif matters < 1:
+            refused = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times the noise"
         return Verdict(bic, held, clear, matters, refused)
 
     def matters(self, before: State, after: State) -> float:
-        """By how much of a motion its error above noise falls at most, of the motions that tests are about: of held-out tests
-        where there are any."""
+        """By how much a motion's error above noise falls at most, over what matters; of the motions that tests are about, of
+        held-out tests where there are any."""
         series, used = self.study.series, self.study.used
         main = {record.id: record.degree_of_freedom for record in self.study.decay_records}
         asked = np.array([one.channel in ((main[one.test],) if one.test in main else self.posed.motions) for one in series])
         asked &= ~used if (~used).any() else used
-        size = np.array([one.noise / one.spread / math.sqrt(one.samples) for one in series])
+        least = np.array([min(LEAST_MATTER * one.spread / one.noise, LEAST_SEEN) for one in series])
+        size = 1 / (least * np.sqrt([one.samples for one in series]))
         return float((size * (np.sqrt(before.left) - np.sqrt(after.left)))[asked].max(initial=0.0))
 
     def held_gain(self, before: State, after: State) -> tuple[float, bool]:
