@@ -59,8 +59,8 @@ class Scored(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, by how much an error falls over
-    what matters, and why it is refused ("" where it is not)."""
+    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, by how much an error falls
+    over what matters, and why it is refused ("" where it is not)."""
 
     bic: float
     held: float
