@@ -239,14 +239,14 @@ class Search:
         return Verdict(bic, held, clear, matters, refused)
 
     def matters(self, before: State, after: State) -> float:
-        """By how much a motion's error above noise falls at most, over what matters; of the motions that tests are about, of
-        held-out tests where there are any."""
+        """By how much a motion's error above noise falls at most, over what matters; of held-out tests where there are any. Of
+        what a decay is not about the noise alone is a measure."""
         series, used = self.study.series, self.study.used
         main = {record.id: record.degree_of_freedom for record in self.study.decay_records}
-        asked = np.array([one.channel in ((main[one.test],) if one.test in main else self.posed.motions) for one in series])
-        asked &= ~used if (~used).any() else used
-        least = np.array([min(LEAST_MATTER * one.spread / one.noise, LEAST_SEEN) for one in series])
+        share = [LEAST_MATTER if one.channel == main.get(one.test, one.channel) else math.inf for one in series]
+        least = np.array([min(m * one.spread / one.noise, LEAST_SEEN) for m, one in zip(share, series)])
         size = 1 / (least * np.sqrt([one.samples for one in series]))
+        asked = ~used if (~used).any() else used
         return float((size * (np.sqrt(before.left) - np.sqrt(after.left)))[asked].max(initial=0.0))
 
     def held_gain(self, before: State, after: State) -> tuple[float, bool]:
