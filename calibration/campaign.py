@@ -45,9 +45,8 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     try:
         platform = load_platform(platform_source(manifest, folder))
     except InputError as error:
-        problems += [
-            Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint) for p in error.problems
-        ]
+        problems += [Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint)
+                     for p in error.problems]
     try:
         series = read_series(manifest, folder)
     except InputError as error:
@@ -60,6 +59,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     if grave := [finding.problem for finding in errors if finding.test not in spared]:
         raise InputError(source, grave)
     faulty = {finding.test for finding in errors}
-    findings = tuple(replace(f, severity="warning", message=f"left out: {f.message}") if f in errors else f for f in findings)
+    findings = tuple(replace(f, severity="warning", message=f"left out: {f.message}") if f in errors else f
+                     for f in findings)
     records = records_of(manifest, series)
     return Campaign(manifest, folder, platform, tuple(r for r in records if r.id not in faulty), findings)

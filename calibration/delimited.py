@@ -23,7 +23,7 @@ from jaxhydro.problems import InputError, Problem
 
 _COMMENTS = ("#", "%")
 _WHITESPACE = None
-_SHOWN = 5  # of one kind of mistake
+_SHOWN = 5               # of one kind of mistake
 
 
 def wrong(path: Path, where: str, expected: str, found: str, hint: str = "") -> InputError:
@@ -50,7 +50,7 @@ def decoded(path: Path) -> str:
     try:
         text = raw.decode(encoding)
     except UnicodeDecodeError:
-        text = raw.decode("latin-1")  # degree signs and names from older loggers
+        text = raw.decode("latin-1")             # degree signs and names from older loggers
     controls = sum(text.count(chr(code)) for code in range(32) if code not in (9, 10, 12, 13, 26))
     if controls:
         raise wrong(path, "file", "text with delimiters", f"binary content ({controls} control characters)")
@@ -73,7 +73,7 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
         if kept and _is_units(_split(kept[0][1], delimiter)):
             kept = kept[1:]
     elif (above := next((line for number, line in rows if number == kept[0][0] - 1), None)) is not None:
-        header = _split(above.lstrip("".join(_COMMENTS) + " "), delimiter)  # numpy.savetxt puts it in a comment
+        header = _split(above.lstrip("".join(_COMMENTS) + " "), delimiter)      # numpy.savetxt puts it in a comment
     if not kept:
         raise wrong(path, "file", "rows of numbers under the header", "a header only")
 
@@ -82,21 +82,11 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
     width = len(header) if header and len(header) in widths else Counter(widths).most_common(1)[0][0]
     torn = [i for i, found in enumerate(widths) if found != width]
     if torn:
-        raise InputError(
-            str(path),
-            [
-                Problem(
-                    f"row {numbers[i]}",
-                    f"{width} columns",
-                    f"{widths[i]} columns",
-                    "a line cut short" if i == len(body) - 1 else "",
-                )
-                for i in torn[:_SHOWN]
-            ],
-        )
+        raise InputError(str(path), [Problem(f"row {numbers[i]}", f"{width} columns", f"{widths[i]} columns",
+                                             "a line cut short" if i == len(body) - 1 else "") for i in torn[:_SHOWN]])
     names = header if header is not None and width - len(header) in (0, 1) else [str(i) for i in range(width)]
     table = _numbers(path, body, numbers, delimiter, names + [""] * (width - len(names)))
-    if not table.columns[-1] and table.iloc[:, -1].isna().all():  # every line ends with the delimiter
+    if not table.columns[-1] and table.iloc[:, -1].isna().all():                # every line ends with the delimiter
         table = table.iloc[:, :-1]
     if header is fields and len(fields) != len(table.columns):
         raise wrong(path, "header", f"{width} names, one for each column", f"{len(fields)}: " + ", ".join(fields[:10]))
@@ -106,21 +96,11 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
 def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | None, names: list[str]) -> pd.DataFrame:
     """The body as float columns; a column that is text throughout stays text, one that is partly text is a mistake."""
     body = "\n".join(lines)
-    options: dict[str, Any] = {
-        "sep": r"\s+" if delimiter is _WHITESPACE else delimiter,
-        "decimal": "," if delimiter != "," and "," in body else ".",
-    }
+    options: dict[str, Any] = {"sep": r"\s+" if delimiter is _WHITESPACE else delimiter,
+                               "decimal": "," if delimiter != "," and "," in body else "."}
     try:
-        raw = pd.read_csv(
-            io.StringIO(body),
-            header=None,
-            names=range(len(names)),
-            index_col=False,
-            low_memory=False,
-            skip_blank_lines=False,
-            skipinitialspace=True,
-            **options,
-        )
+        raw = pd.read_csv(io.StringIO(body), header=None, names=range(len(names)), index_col=False, low_memory=False,
+                          skip_blank_lines=False, skipinitialspace=True, **options)
     except (ValueError, OverflowError) as error:
         raise wrong(path, "file", "a delimited table", " ".join(str(error).split())) from error
     if len(raw) != len(lines):
@@ -139,9 +119,8 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
             columns.append(cells.astype(object))
             continue
         more = f"{len(bad)} such cells in this column" if len(bad) > _SHOWN else ""
-        problems += [
-            Problem(f"row {rows[row]}, column {name or i}", "a number", repr(cells.iloc[row]), more) for row in bad[:_SHOWN]
-        ]
+        problems += [Problem(f"row {rows[row]}, column {name or i}", "a number", repr(cells.iloc[row]), more)
+                     for row in bad[:_SHOWN]]
         columns.append(values)
     if problems:
         raise InputError(str(path), problems)
@@ -152,7 +131,6 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
 
 def _delimiter(lines: list[str]) -> str | None:
     """The delimiter that makes most cells numbers, then most rows alike; None is white space. The first wins a tie."""
-
     def score(delimiter: str | None) -> tuple[float, int]:
         cells = [_split(line, delimiter) for line in lines]
         width = Counter(map(len, cells)).most_common(1)[0][0]
@@ -160,7 +138,6 @@ def _delimiter(lines: list[str]) -> str | None:
             return 0.0, 0
         whole = [row for row in cells if len(row) == width]
         return sum(_is_number(cell, delimiter) for row in whole for cell in row) / sum(map(len, cells)), len(whole)
-
     return max((";", "\t", ",", _WHITESPACE), key=score)
 
 

@@ -190,7 +190,9 @@ def active_of(parameters: Parameters, information: np.ndarray, at_bound: Sequenc
     return seen, tuple(parameters.labels[i] for i in free if i not in seen)
 
 
-def _combination(parameters: Parameters, core: np.ndarray, active: Sequence[int], mine: Sequence[int]) -> Combination | None:
+def _combination(
+    parameters: Parameters, core: np.ndarray, active: Sequence[int], mine: Sequence[int]
+) -> Combination | None:
     """The best known combination of some parameters, whatever the others are; None if it is not known to CLEAR."""
     rest = [i for i in range(len(core)) if i not in mine]
     across = core[np.ix_(rest, mine)]

@@ -77,7 +77,6 @@ def calibrate_jointly(
     fit = None
     x = space.start
     if decays:
-
         def first(stage: str, iteration: int, value: float, fraction: float) -> None:
             report(stage, iteration, value, 0.3 * fraction, "J")
 

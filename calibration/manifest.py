@@ -30,12 +30,10 @@ from jaxhydro.problems import (
 
 DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 CHANNELS = ("time", *DOFS)
-WAVE = "wave"  # the wave channel's name among the others
-SI = {
-    "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
-    "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048},
-    "angle": {"rad": 1.0, "mrad": 1e-3, "deg": 0.017453292519943295},
-}
+WAVE = "wave"                                    # the wave channel's name among the others
+SI = {"time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
+      "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048},
+      "angle": {"rad": 1.0, "mrad": 1e-3, "deg": 0.017453292519943295}}
 
 
 def quantity(channel: str) -> str:
@@ -57,7 +55,7 @@ Unit = Annotated[Text, Field(description="a unit: " + ", ".join(unit for units i
 Sign = Annotated[Literal[1, -1], BeforeValidator(lambda value: int(value) if value in (1.0, -1.0) else value)]
 
 
-Window = tuple[Number, Number]  # on the file's own time axis
+Window = tuple[Number, Number]                   # on the file's own time axis
 
 
 def _ordered(value: tuple[float, float]) -> Iterator[Problem]:
@@ -109,7 +107,7 @@ class Sea(Schema):
 class Test(Schema):
     """One test: a file, or a window of it."""
 
-    __test__ = False  # not for pytest
+    __test__ = False                             # not for pytest
 
     id: Name
     kind: Kind
@@ -209,7 +207,8 @@ def _channel_problems(manifest: Manifest) -> Iterator[Problem]:
             hint = "Waves have their own key, wave_channel." if name == WAVE else suggest(name, CHANNELS)
             yield Problem(where, "one of " + ", ".join(CHANNELS), repr(name), hint)
         elif unit not in (known := SI[quantity(name)]):
-            yield Problem(f"{where}.unit", f"a unit of {quantity(name)}: " + ", ".join(known), repr(unit), suggest(unit, known))
+            yield Problem(f"{where}.unit", f"a unit of {quantity(name)}: " + ", ".join(known), repr(unit),
+                          suggest(unit, known))
 
 
 def _test_problems(manifest: Manifest) -> Iterator[Problem]:
@@ -230,9 +229,8 @@ def _test_problems(manifest: Manifest) -> Iterator[Problem]:
         if test.kind == "decay" and test.degree_of_freedom is None:
             yield Problem(f"{at}.degree_of_freedom", "the motion that was released: " + ", ".join(DOFS), "nothing")
         elif test.degree_of_freedom is not None and test.degree_of_freedom not in present:
-            yield Problem(
-                f"{at}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present), repr(test.degree_of_freedom)
-            )
+            yield Problem(f"{at}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present),
+                          repr(test.degree_of_freedom))
         if test.kind in ("regular", "irregular") and test.use != "ignore" and manifest.wave_channel is None:
             yield Problem(f"{at}.kind", "a wave_channel in the manifest, since waves drive this test", "none")
         for problem in _ordered(test.window) if test.window is not None else ():
@@ -260,9 +258,8 @@ def _other_problems(manifest: Manifest) -> Iterator[Problem]:
 
 def _unknown(where: str, expected: str, name: str, known: Iterable[str]) -> Problem:
     known = sorted(known)
-    return Problem(
-        where, f"{expected}: {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}", repr(name), suggest(name, known)
-    )
+    return Problem(where, f"{expected}: {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}", repr(name),
+                   suggest(name, known))
 
 
 def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
@@ -280,14 +277,8 @@ def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
             problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", repr(test.file), hint))
     if _is_path(manifest.platform) and not _there(folder / manifest.platform):
         near = [item.name for item in folder.iterdir() if item.suffix in (".yaml", ".yml")]
-        problems.append(
-            Problem(
-                "platform",
-                f"a file in {folder}, or a built-in platform's name",
-                repr(manifest.platform),
-                suggest(manifest.platform, near),
-            )
-        )
+        problems.append(Problem("platform", f"a file in {folder}, or a built-in platform's name",
+                                repr(manifest.platform), suggest(manifest.platform, near)))
     if problems:
         raise InputError(str(path), problems)
     return manifest, folder
@@ -306,5 +297,5 @@ def _is_path(platform: str) -> bool:
 def _there(path: Path, folder: bool = False) -> bool:
     try:
         return path.is_dir() if folder else path.is_file()
-    except (OSError, ValueError):  # a name that no file can have
+    except (OSError, ValueError):                # a name that no file can have
         return False

@@ -179,7 +179,9 @@ def with_laws(model: Model, labels: Sequence[str], over: Sequence[Over], referen
     return replace(model, loads=with_exponents(model.loads, exponents, reference))
 
 
-def _conclude(campaign: Campaign, declared: Model, fit: SeaFit, options: Options, made: Seas, seconds: float) -> Calibration:
+def _conclude(
+    campaign: Campaign, declared: Model, fit: SeaFit, options: Options, made: Seas, seconds: float
+) -> Calibration:
     """Parameters with their deviations, and all tests in waves before and after."""
     problem = fit.problem
     model = problem.space.model(problem.model, fit.x)

@@ -51,7 +51,9 @@ def document(found: SeaLaws) -> dict[str, Any]:
             "reference": None if reference is None else reference._asdict(),
             "parameters": _parameters(law.calibration),
         }  # fmt: skip
-    seas = {sea.id: {"use": sea.use, **sea.state._asdict(), "parameters": _parameters(sea.calibration)} for sea in found.seas}
+    seas = {
+        sea.id: {"use": sea.use, **sea.state._asdict(), "parameters": _parameters(sea.calibration)} for sea in found.seas
+    }
     return {"chosen": found.chosen.name, "judged_by": list(found.judged_by), "left_out_one_by_one": found.left_out,
             "laws": laws, "sea_states": seas}  # fmt: skip
 

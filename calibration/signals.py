@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-SPIKE = 8.0  # robust standard deviations
+SPIKE = 8.0               # robust standard deviations
 
 
 def resolution(values: np.ndarray) -> float:
@@ -61,9 +61,9 @@ def dominant_period(time: np.ndarray, values: np.ndarray) -> float | None:
         return None
     even = np.linspace(time[0], time[-1], len(time))
     signal = np.interp(even, time, values)
-    power = np.abs(np.fft.rfft(signal - line(even, signal), 4 * len(signal))) ** 2
+    power = np.abs(np.fft.rfft(signal - line(even, signal), 4 * len(signal)))**2
     peak = int(np.argmax(power))
-    if peak == 0 or power[int(0.6 * peak) : int(1.6 * peak) + 5].sum() < 0.4 * power.sum():
+    if peak == 0 or power[int(0.6 * peak): int(1.6 * peak) + 5].sum() < 0.4 * power.sum():
         return None
     return float(4 * len(signal) * (even[1] - even[0]) / peak)
 
@@ -90,6 +90,6 @@ def spikes(values: np.ndarray, grain: float) -> np.ndarray:
     off = values[2:-2] - (4 * (values[1:-3] + values[3:-1]) - values[:-4] - values[4:]) / 6
     scatter = 1.4826 * pd.Series(np.abs(off)).rolling(101, center=True, min_periods=8).median().to_numpy()
     alone = np.abs(off) > SPIKE * np.maximum(scatter, grain)
-    for shift in (-1, 1):  # its neighbours are off by two thirds of it, the other way
+    for shift in (-1, 1):                        # its neighbours are off by two thirds of it, the other way
         alone &= np.abs(np.roll(off, shift) + 2 / 3 * off) < 0.35 * np.abs(off)
     return np.flatnonzero(alone) + 2

@@ -93,13 +93,8 @@ class BandWeights(NamedTuple):
 
 
 def band_weights(
-    count: int,
-    step: float,
-    low: float,
-    high: float,
-    segment: float | None = None,
-    overlap: float = 0.5,
-    window: str = "hann",
+    count: int, step: float, low: float, high: float,
+    segment: float | None = None, overlap: float = 0.5, window: str = "hann",
 ) -> BandWeights:
     """For records of `count` samples every `step` (s) and the band from `low` to `high` (Hz); options of `power_spectrum`.
 

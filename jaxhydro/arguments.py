@@ -192,7 +192,9 @@ Calibrated = Annotated[
     Path | None,
     typer.Option("--calibration", help="A calibration.json or diagnosis.json whose values, and effects found, are used."),
 ]
-Step = Annotated[float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")]
+Step = Annotated[
+    float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")
+]
 Tests = Annotated[
     Fitted | None,
     typer.Option(

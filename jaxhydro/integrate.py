@@ -58,7 +58,9 @@ class Grid(eqx.Module):
         return x, v, a
 
 
-def _by_loop(method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
+def _by_loop(
+    method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
+) -> Motion:
     """A scheme as one of this package's own loops: positions and body velocities at the ends of the steps."""
     y, unravel = ravel_pytree(state)
     loop = adams_bashforth if method == "ab4" else runge_kutta

@@ -148,7 +148,9 @@ def _finding(one: Finding) -> dict[str, Any]:
         "rms": or_null(float(for_people(one.channel, one.rms))),
         "noise": or_null(float(for_people(one.channel, one.noise))),
         "relative": or_null(one.relative),
-        "bands": [{"low": float(low), "high": float(high), "rms_over_noise": or_null(ratio)} for low, high, ratio in one.bands],
+        "bands": [
+            {"low": float(low), "high": float(high), "rms_over_noise": or_null(ratio)} for low, high, ratio in one.bands
+        ],
         "words": one.words,
     }
 

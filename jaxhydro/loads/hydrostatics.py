@@ -47,7 +47,9 @@ class Buoyancy(AbstractLoad):
         weight_density = now.environment.density * now.environment.gravity
         return Action(body_force=self.force(now.position, now.rotation, weight_density))
 
-    def geometry(self, heave: Float[Array, ""], vertical: Float[Array, "3"]) -> tuple[Float[Array, " p"], Float[Array, "3 p"]]:
+    def geometry(
+        self, heave: Float[Array, ""], vertical: Float[Array, "3"]
+    ) -> tuple[Float[Array, " p"], Float[Array, "3 p"]]:
         """Wetted volume (m3) of every piece and its first moment about the reference point (m4, body axes).
 
         `vertical` is the vertical in body axes, `heave` (m) that of the reference point.
@@ -115,10 +117,8 @@ def buoyancy(members: Sequence[Member]) -> Buoyancy:
         start = edges[:-1] if not member.column or span[2] > 0 else edges[1:]
         first, second = member.directions
         directions = np.stack([first, second], axis=1)
-        shape = (
-            np.pi / 64 * size**4
-            if member.circular
-            else np.stack([size[:, 1] * size[:, 0] ** 3 / 12, size[:, 0] * size[:, 1] ** 3 / 12], axis=-1)
+        shape = np.pi / 64 * size**4 if member.circular else np.stack(
+            [size[:, 1] * size[:, 0] ** 3 / 12, size[:, 0] * size[:, 1] ** 3 / 12], axis=-1
         )
         for i in range(len(middle)):
             thickness = 0.0 if member.column else float(np.abs(directions[2]) @ size[i])

@@ -172,9 +172,7 @@ def fold(waves: Components, environment: Environment, reduce: Reduce, kinds: Seq
 
 
 def elevation_spectrum(
-    waves: Components,
-    environment: Environment,
-    position: tuple[float, float] | Float[Array, "2"],
+    waves: Components, environment: Environment, position: tuple[float, float] | Float[Array, "2"],
     kinds: Sequence[Kind] = KINDS,
 ) -> Complex[Array, " b"]:
     """Second-order elevation at a horizontal position (m): c_b (m) of eta = Re sum c_b exp(i b 2 pi t / period).

@@ -82,7 +82,9 @@ def _fields(k: np.ndarray, x: np.ndarray, z: np.ndarray, depth: float) -> np.nda
     kd = np.maximum(k * depth, 1e-9)
     sinh = np.where(k * depth > 1e-6, (down - up) / -np.expm1(-2 * kd), 1 + z[:, None] / depth)
     waves = (np.cos(phase), np.sin(phase))
-    return np.concatenate([(wave[:, None] * profile[None]).reshape(-1, k.size) for wave in waves for profile in (cosh, sinh)])
+    return np.concatenate(
+        [(wave[:, None] * profile[None]).reshape(-1, k.size) for wave in waves for profile in (cosh, sinh)]
+    )
 
 
 def weights(table: Float[Array, "g r"], spacing: float, k: Float[Array, " n"]) -> Float[Array, "n r"]:
