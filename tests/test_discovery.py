@@ -83,6 +83,15 @@ def test_rows_hold_the_sum_of_squares():
     assert_allclose(rows(values[..., 0]), found[:, 0])
 
 
+def test_a_series_without_rows_keeps_its_place():
+    """A motion that a record lacks has no lines, and is counted all the same: what comes after it stays where it was."""
+    cut = bands_of(40.1, 0.1, 401, 12, 6.0)
+    nothing = cut._replace(member=np.zeros_like(cut.member))
+    rows = Rows.of([cut, nothing], 401)
+    assert rows.members == 2
+    assert set(rows.series) == {0}
+
+
 def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
     """What is declared is fitted, not looked for."""
     campaign = campaign_of(tmp_path, lambda x, v: 0.0)

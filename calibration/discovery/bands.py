@@ -52,10 +52,11 @@ class Rows(NamedTuple):
     """How some time series become one column of rows: real and imaginary parts of the Fourier lines that are in a band, scaled
     so that sums of squares over rows are those over samples (Parseval).
 
-    `take` (l,) are lines among those of all series, one series after the other; `scale` (l,) their factor; `series` (2l,) and
-    `band` (2l,) where a row belongs.
+    `members` is how many series there are, some perhaps without rows; `take` (l,) are lines among those of all series, one
+    series after the other; `scale` (l,) their factor; `series` (2l,) and `band` (2l,) where a row belongs.
     """
 
+    members: int
     take: np.ndarray
     scale: np.ndarray
     series: np.ndarray
@@ -70,7 +71,7 @@ class Rows(NamedTuple):
         series, line = np.nonzero(member.any(axis=1))
         scale = np.sqrt(np.where(line == 0, 1.0, 2.0) / samples)
         band = member.argmax(axis=1)[series, line]
-        return cls(series * lines + line, scale, np.repeat(series, 2), np.repeat(band, 2), lines)
+        return cls(len(cuts), series * lines + line, scale, np.repeat(series, 2), np.repeat(band, 2), lines)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Rows (2l, ...) of time series (s, t, ...)."""

@@ -48,8 +48,8 @@ YIELDS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hyster
 class Candidate:
     """An effect that may be missing. `amplitudes` are the labels that are null where it is not; `shapes` those that mean
     nothing then, freed with it, and tried at the values of `grid` first; `positive`, amplitudes that physics wants above
-    zero. `needs`: "waves" where only these show it. `telling`: the test that would tell it from others. One's own law comes
-    with its `load` at null and, by label, `sizes` of its amplitudes that are noticeable."""
+    zero. `telling`: the test that would tell it from others. One's own law comes with its `load` at null and, by label,
+    `sizes` of its amplitudes that are noticeable."""
 
     effect: str
     dof: str | None
@@ -57,7 +57,6 @@ class Candidate:
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
     positive: tuple[str, ...] = ()
-    needs: str = ""
     telling: str = ""
     source: str = ""
     load: AbstractLoad | None = None
@@ -287,7 +286,6 @@ def catalogue(
                 "wave_drift",
                 dof,
                 [linear(f"wave_drift{of}{way}", s.force / wave_variance) for way in ways],
-                needs="waves",
                 telling="the same irregular sea at another height: drift goes as Hs^2",
                 source=WaveDrift.source,
             )
@@ -295,7 +293,6 @@ def catalogue(
                 "wave_drift_damping",
                 dof,
                 [linear(f"wave_drift_damping{of}coefficient", s.force / s.rate / wave_variance)],
-                needs="waves",
                 passive=True,
                 telling=f"a {dof} decay in regular waves of two heights",
                 source=WaveDriftDamping.source,
@@ -363,7 +360,6 @@ def catalogue(
             "sea_state_dependent_drag",
             None,
             [linear("sea_state_dependent_drag.low_share", 0.1, 1.0)],
-            needs="waves",
             telling="a decay in surge in still water against one in waves",
             source="OpenFAST HydroDyn, pull request 2895",
         )
@@ -372,7 +368,6 @@ def catalogue(
             "sensor_lag",
             None,
             [linear("sensor_lag.delay", 0.05)],
-            needs="waves",
             telling="tap the wave gauge and the tracker at once",
             source=SensorLag.source,
         )
@@ -380,7 +375,6 @@ def catalogue(
             "wave_gauge_position",
             None,
             [linear("wave_gauge_position.distance", 1.0)],
-            needs="waves",
             telling="regular waves of three periods with a second gauge",
             source=WaveGaugePosition.source,
         )

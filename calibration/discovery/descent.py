@@ -17,10 +17,9 @@ POOR = 0.25  # of what was predicted: slopes that give no more are stale
 
 
 class Reached(NamedTuple):
-    """Where a fit is: what was seen there, what it costs, and whether it has settled."""
+    """Where a fit is: what was seen there, and whether it has settled."""
 
     look: Look
-    cost: float
     iterations: int
     settled: bool
 
@@ -84,4 +83,4 @@ def fit(
         elif gain <= 0:
             damping = max(damping * 8, 1e-2)
             settled = damping > 1e6
-    return Reached(study.look(look.place, look.active) if looks and not fresh else look, now, taken, settled)
+    return Reached(study.look(look.place, look.active) if looks and not fresh else look, taken, settled)

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import boxcox
 
 from calibration.discovery.study import Look, Place, Prior, Study
 
@@ -18,19 +19,22 @@ POWER = 0.2  # p: 0 is the logarithm
 ROUNDS = 6  # of weights
 
 
+def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
+    """n (m^p - 1) / p of every series and band (s, b), n ln m for p = 0; n (m - 1) below the noise."""
+    mean_square = study.mean_squares(residual)
+    return study.dof * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
+
+
 def cost_of(study: Study, look: Look, residual: np.ndarray, place: Place, used: np.ndarray, prior: Prior) -> float:
     """What is minimised, of the `used` series (s,) and the priors, with this residual at this place."""
-    mean_square = study.mean_squares(residual)
-    above = (np.maximum(mean_square, 1.0) ** POWER - 1) / POWER
-    value = float((used[:, None] * study.dof * (above + np.minimum(mean_square - 1, 0.0))).sum())
+    value = float(deviances(study, residual, POWER)[used].sum())
     value += float((((study.steps(place.x) - prior.mean) / prior.width)[list(look.active)] ** 2).sum())
     return value + float(((place.own / study.own_width) ** 2).sum())
 
 
 def likelihoods(study: Study, residual: np.ndarray) -> np.ndarray:
     """-2 ln L of every series (s,)."""
-    mean_square = study.mean_squares(residual)
-    return (study.dof * (np.log(np.maximum(mean_square, 1.0)) + np.minimum(mean_square - 1, 0.0))).sum(axis=1)
+    return deviances(study, residual, 0.0).sum(axis=1)
 
 
 def weights(study: Study, residual: np.ndarray) -> np.ndarray:

@@ -59,13 +59,12 @@ class Scored(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, by how much an error falls
-    over what matters, and why it is refused ("" where it is not)."""
+    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, and why it is refused (""
+    where it is not)."""
 
     bic: float
     held: float
     clear: float
-    matters: float
     refused: str
 
 
@@ -222,7 +221,7 @@ class Search:
         used = self.study.used
         bic = float((before.likelihood - after.likelihood)[used].sum()) - len(one.labels) * math.log(self.count)
         held, told = self.held_gain(before, after)
-        clear, matters = self.clearness(one, after), self.matters(before, after)
+        clear = self.clearness(one, after)
         refused = ""
         values = {label: self.study.value(label, after.look.place.x) for label in one.positive if len(one.amplitudes) == 1}
         wrong = [label for label, value in values.items() if value < 0]
@@ -234,9 +233,9 @@ class Search:
             refused = f"the held-out tests' error above noise changes by {-100 * held:+.0f} % only"
         elif clear < LEAST_CLEAR:
             refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
-        elif matters < 1:
+        elif self.matters(before, after) < 1:
             refused = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times the noise"
-        return Verdict(bic, held, clear, matters, refused)
+        return Verdict(bic, held, clear, refused)
 
     def matters(self, before: State, after: State) -> float:
         """By how much a motion's error above noise falls at most, over what matters; of held-out tests where there are any. Of
@@ -292,7 +291,10 @@ class Search:
         for best in good:
             new, chosen = best.candidate, best.state.chosen
             name = f"round {number}: {new.name} it is"
-            places = (best.state.look.place, self.released(best.state.look.place, chosen))
+            # what is only nearly known was bent by what the model lacked
+            effects = {label for one in chosen for label in one.labels}
+            bent = [nuisance for nuisance in self.posed.nuisances if nuisance not in effects]
+            places = (best.state.look.place, self.renewed(best.state.look.place, bent))
             every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
             after = min(every, key=lambda state: float(state.likelihood[self.study.used].sum()))
             verdict = self.judge(state, after, new)
@@ -308,21 +310,16 @@ class Search:
             return after
         return None
 
-    def released(self, place: Place, chosen: Sequence[Candidate]) -> Place:
-        """A place where what is only nearly known is as declared again: it was bent by what the model lacked."""
-        effects = {label for one in chosen for label in one.labels}
-        bent = [name for name in self.posed.nuisances if name not in effects]
-        at = np.abs(self.study.directions[self.study.index(bent)]).sum(axis=0) > 0
+    def renewed(self, place: Place, names: Sequence[str]) -> Place:
+        """A place where some directions are as the study starts."""
+        at = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
         return replace(place, x=np.where(at, np.asarray(self.study.space.start), place.x))
 
     def pruned(self, state: State) -> State:
         """The model without what later effects have made needless: every effect but the last is tried to be taken out."""
         for one in state.chosen[:-1]:
             rest = tuple(other for other in state.chosen if other is not one)
-            x, null = state.look.place.x.copy(), np.asarray(self.study.space.start)
-            at = [self.study.labels.index(label) for label in one.labels]
-            x[at] = null[at]
-            look = self.study.look(replace(state.look.place, x=x), self.active(rest))
+            look = self.study.look(self.renewed(state.look.place, one.labels), self.active(rest))
             without = self.refit(look, rest, f"without {one.name}", 0.97)
             verdict = self.judge(without, state, one)
             if verdict.refused:

@@ -23,6 +23,7 @@ from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem
 from calibration.transforms import LogInterval
+from jaxhydro.model import Model
 
 Seen = Literal["all", "fit"]
 
@@ -97,7 +98,7 @@ class Study:
     decays and of every sea; `linear_seas` the seas without the second order that their records have."""
 
     space: ParameterSpace
-    model: Any
+    model: Model
     names: tuple[str, ...]
     directions: np.ndarray
     width: int
@@ -137,7 +138,7 @@ class Study:
     @cached_property
     def row_series(self) -> np.ndarray:
         """Number of every row's series."""
-        begins = np.cumsum([0, *(1 + one.series.max() for one in self.cuts)])
+        begins = np.cumsum([0, *(one.members for one in self.cuts)])
         return np.concatenate([one.series + begin for one, begin in zip(self.cuts, begins)])
 
     @cached_property
