@@ -46,7 +46,7 @@ def study():
     noise = np.random.default_rng(1).normal(0, NOISE, (3, SAMPLES))
     uses = ("fit", "fit", "holdout")
     series = tuple(
-        Series(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES)
+        Series(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES, np.full(12, NOISE))
         for i, use in enumerate(uses)
     )  # fmt: skip
     free = tuple(SimpleNamespace(label=name, transform=None) for name in ("rate", "decay"))

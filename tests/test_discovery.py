@@ -123,6 +123,16 @@ def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
     assert held[0].rms < left * before[0].rms
 
 
+def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path):
+    """A coefficient that two blocks give follows the third one, too."""
+    campaign_of(tmp_path, lambda x, v: -500.0 * x**3)
+    manifest = tmp_path / "campaign.yaml"
+    manifest.write_text(manifest.read_text().replace("holdout", "fit"))
+    found = diagnose(load_campaign(tmp_path))
+    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
+    assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
+
+
 class Sine(AbstractLoad):
     """A torque in roll of one's own: -k sin(10 x)."""
 

@@ -10,7 +10,8 @@ import numpy as np
 from calibration.discovery.result import Finding
 
 if TYPE_CHECKING:
-    from calibration.discovery.search import Search, State
+    from calibration.discovery.judgement import State
+    from calibration.discovery.search import Search
 
 QUIET = 1.3  # rms over noise below which nothing is said
 
@@ -18,7 +19,8 @@ QUIET = 1.3  # rms over noise below which nothing is said
 def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
     """Of every motion that the tests are about, what is left."""
     study = search.study
-    mean_square, dof = study.mean_squares(state.residual), study.dof
+    noise = np.array([[one.noise] for one in study.series])
+    mean_square, dof = study.mean_squares(state.residual) * study.floor**2 / noise**2, study.dof
     found = []
     for one, squares, freedom in zip(study.series, mean_square, dof):
         if one.channel not in search.posed.motions or not freedom.sum():
@@ -45,26 +47,25 @@ def _words(one, ratio: float, bands) -> str:
 
 
 def signature(search: Search, before: State, after: State) -> tuple[float, str]:
-    """Share of what was above the noise that is left, and what is known of it."""
+    """Share of the error's energy above the floor that is left in what the tests are about, every motion over its own, and what
+    is known of it."""
     study = search.study
-    total = float(before.left.sum())
-    share = float(after.left.sum()) / total if total > 0 else 0.0
-    dof = study.dof.sum(axis=1)
-    excess = after.left / np.maximum(dof, 1.0)
-    if not (excess > QUIET**2 - 1).any():
+    told = study.main & np.array([one.channel in search.posed.motions for one in study.series])
+    spread = np.array([one.spread for one in study.series])
+    total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
+    share = left / total if total > 0 else 0.0
+    if not (after.left.squares > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
         return share, "white at the declared noise level"
     by_motion: dict[tuple[str, str], float] = {}
-    for one, e in zip(study.series, excess):
-        kind = "decays" if one.kind == "decay" else "waves"
-        key = (one.channel, kind)
-        by_motion[key] = max(by_motion.get(key, 0.0), float(np.sqrt(e) * one.noise / one.spread))
+    for one, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):
+        key = (one.channel, "decays" if one.kind == "decay" else "waves")
+        by_motion[key] = max(by_motion.get(key, 0.0), float(relative))
     rows = sorted(by_motion.items(), key=lambda item: -item[1])[:3]
     said = ", ".join(
         f"{channel} in {kind} ({100 * value:.0f} % of the motion)" for (channel, kind), value in rows if value > 0.005
     )
-    mean_square = study.mean_squares(after.residual)
-    i = int(np.argmax(after.left))
-    k = int(np.argmax(mean_square[i] * study.series[i].dof))
+    i = int(np.argmax(np.where(told, after.left.error / spread, 0.0)))
     one = study.series[i]
+    k = int(np.argmax((study.mean_squares(after.residual)[i] - 1) * one.dof * one.floor**2))
     where = f"largest in {one.channel} of {one.test}, {one.low[k]:.3g} to {one.high[k]:.3g} Hz"
     return share, f"{said or 'small in every motion'}; {where}"

@@ -76,6 +76,13 @@ class Rows(NamedTuple):
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Rows (2l, ...) of time series (s, t, ...)."""
         lines = np.fft.rfft(values, axis=1)[:, : self.lines]
-        kept = lines.reshape(-1, *values.shape[2:])[self.take]
+        kept = lines.reshape(lines.shape[0] * lines.shape[1], *values.shape[2:])[self.take]
         kept = kept * self.scale.reshape(-1, *[1] * (values.ndim - 2))
-        return np.stack([kept.real, kept.imag], axis=1).reshape(-1, *values.shape[2:])
+        return np.stack([kept.real, kept.imag], axis=1).reshape(2 * len(kept), *values.shape[2:])
+
+
+def powers(cut: Bands, values: np.ndarray) -> np.ndarray:
+    """Mean square of a time series (t,) in every band (b,), by degree of freedom: of white noise its variance in each."""
+    rows = Rows.of([cut], len(values))
+    found = np.bincount(rows.band, rows(values[None]) ** 2, len(cut.lines))
+    return np.where(cut.lines > 0, found / np.where(cut.lines > 0, 2 * cut.lines, 1.0), 0.0)

@@ -21,7 +21,8 @@ from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 
 if TYPE_CHECKING:
-    from calibration.discovery.search import Search, State
+    from calibration.discovery.judgement import State
+    from calibration.discovery.search import Search
 
 LEFT = {"decay": 0.03, "waves": 0.5}  # of a motion: what is left beyond it is not for noise, nor for a model's last digits
 
@@ -36,8 +37,8 @@ def conclude(
     share, words = signature(search, before, after)
     left = anatomy(search, after)
     kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
-    main = {record.id: record.degree_of_freedom for record in search.study.decay_records}
-    told = [one for one in left if one.use == "fit" and one.channel == main.get(one.test, one.channel)]
+    main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
+    told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
     much = any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
     verdict = "found" if effects else ("unexplained" if much else "nothing_missing")
     wanted = [one.telling for one in after.chosen if one.telling]
@@ -173,9 +174,9 @@ def _bands(series: Sequence[Series], step: float, record: Record, campaign: Camp
 def effect_of(search: Search, one: Candidate, after: State) -> Effect:
     """An effect that is in the model at the end, with its evidence."""
     found, used = search.found[one.name], search.study.used
-    left, now = float(found.before.left[used].sum()), float(found.after.left[used].sum())
+    left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
     about = search.study.model.about(one.amplitudes[0])
-    held = found.verdict.held if (~used).any() else float("nan")
+    held = found.verdict.held if found.verdict.unseen else float("nan")
     return Effect(
         one.effect, one.dof, about.meaning, one.source, estimates_of(search, after, one.labels),
         Evidence(found.score, found.verdict.bic, held, found.verdict.clear), max(0.0, 1 - now / left) if left > 0 else 0.0,

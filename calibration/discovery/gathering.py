@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.discovery.bands import Bands, Rows, bands_of
+from calibration.discovery.bands import Bands, Rows, bands_of, powers
 from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.study import Series, Study
 from calibration.fit import STEPS_PER_PERIOD
@@ -26,6 +26,9 @@ from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
 BANDS = 14
 EXCURSIONS = 1.5  # of EXCURSION: how far a sea is prepared for
 OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
+# of the motion that a test is about, in every band: what strips with constant coefficients, and a measured wave, are not asked
+# to follow, however quiet the sensors are
+FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 HIGHEST = 6.0  # times the highest natural frequency: what is looked at
 
 
@@ -42,19 +45,17 @@ def study_of(
     records = [r for r in campaign.records if r.use in ("fit", "holdout")]
     decaying = tuple(r for r in records if r.kind == "decay")
     waving = {r.id for r in records if r.kind in KINDS}
-    periods = natural_modes(model).period
-    highest = HIGHEST / float(periods.min()) if len(periods) else 1.0
+    highest = highest_of(model)
     from_rest = campaign.manifest.zero is not None
     series: list[Series] = []
     cuts: list[Rows] = []
     decays, own_width = None, np.zeros((0, 0))
     if decaying:
-        shortest = min([float(periods.min()), *(dominant_period(r) for r in decaying)])
-        data = gather(decaying, model, shortest / STEPS_PER_PERIOD)
-        decays = Problem(model, data, space, from_rest, None if from_rest else equilibrium(model))
-        found, own_width = _decay_series(decaying, data, highest)
-        series += [one for one, _ in found]
-        cuts.append(Rows.of([cut for _, cut in found], data.time.shape[1]))
+        shortest = min([HIGHEST / highest, *(dominant_period(r) for r in decaying)])
+        step = shortest / STEPS_PER_PERIOD
+        decays, found, own_width, rows = of_decays(decaying, model, space, from_rest, step, highest)
+        series += found
+        cuts.append(rows)
     seas, linear = [], []
     if waving:
         step = sea_step(model, options)
@@ -65,12 +66,9 @@ def study_of(
             sea = _sea_record(run, made.sea, tests, model, space, from_rest, step)
             if options.order == 2:
                 linear.append(_sea_record(run, made.sea, tests, model, space, from_rest, step, linear=True))
-            measured = np.asarray(sea.measured)
-            n = measured.shape[-1]
-            cut = bands_of(n * run.step, run.step, n, BANDS, highest)
-            channels = [DOFS[dof] for dof in sea.dofs]
-            series += [_series(r, c, v, cut) for r, values in zip(tests, measured) for c, v in zip(channels, values)]
-            cuts.append(Rows.of([cut] * (len(tests) * len(channels)), n))
+            found, rows = series_of_sea(sea, tests, highest)
+            series += found
+            cuts.append(rows)
             seas.append(sea)
     return Study(
         space, model, tuple(names), directions, width, decays, tuple(seas), tuple(linear), tuple(series), decaying, own_width,
@@ -78,9 +76,40 @@ def study_of(
     )  # fmt: skip
 
 
-def _series(record: Record, channel: str, values: np.ndarray, cut: Bands) -> Series:
+def highest_of(model: Model) -> float:
+    """The highest frequency (Hz) that is looked at."""
+    periods = natural_modes(model).period
+    return HIGHEST / float(periods.min()) if len(periods) else 1.0
+
+
+def of_decays(
+    records: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float, highest: float
+) -> tuple[Problem, list[Series], np.ndarray, Rows]:
+    """Decays in arrays, simulated in steps of at most `step` (s); every motion's series, how far their own unknowns may go, and
+    their rows up to `highest` (Hz)."""
+    data = gather(records, model, step)
+    decays = Problem(model, data, space, from_rest, None if from_rest else equilibrium(model))
+    found, own_width = _decay_series(records, data, highest)
+    return decays, [one for one, _ in found], own_width, Rows.of([cut for _, cut in found], data.time.shape[1])
+
+
+def series_of_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[Series], Rows]:
+    """Every motion of every test of a run, and their rows up to `highest` (Hz)."""
+    measured, step = np.asarray(sea.measured), float(sea.times[1] - sea.times[0])
+    n = measured.shape[-1]
+    cut = bands_of(n * step, step, n, BANDS, highest)
+    names = [DOFS[dof] for dof in sea.dofs]
+    found = [_series(r, name, v, cut, powers(cut, v)) for r, rows in zip(records, measured) for name, v in zip(names, rows)]
+    return found, Rows.of([cut] * len(found), n)
+
+
+def _series(record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray) -> Series:
+    """`motion` (b,) is the mean square of what the test is about, in the channel's unit."""
     noise, spread = record.noise[channel], float(np.std(values))
-    return Series(record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values))
+    floor = np.sqrt(noise**2 + FLOOR[record.kind] ** 2 * motion)
+    return Series(
+        record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values), floor
+    )  # fmt: skip
 
 
 def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[Series, Bands]], np.ndarray]:
@@ -90,14 +119,17 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
     for i, record in enumerate(records):
         n, dt = len(record.time), float(np.median(np.diff(record.time)))
         cut = bands_of(n * dt, dt, data.time.shape[1], BANDS, highest)
+        main = data.dofs.index(DOFS.index(record.degree_of_freedom))
+        motion = powers(cut, np.asarray(data.measured[i, main])) / float(data.unit[i, main]) ** 2
         for j, dof in enumerate(data.dofs):
             channel = DOFS[dof]
             if channel in record.values:
-                one = _series(record, channel, record.values[channel], cut)
+                one = _series(record, channel, record.values[channel], cut, motion * float(data.unit[i, j]) ** 2)
                 found.append((one, cut))
             else:  # a row of nothing keeps the arrays' shape
                 nothing = cut._replace(member=np.zeros_like(cut.member))
-                one = Series(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * cut.lines, cut.low, cut.high, n)
+                none = np.ones(BANDS)
+                one = Series(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none)
                 found.append((one, nothing))
             width[i, 2, j] = (OFFSET * one.spread + 3 * one.noise / np.sqrt(n)) / float(data.unit[i, j])
     return found, width.reshape(len(records), -1)

@@ -1,9 +1,9 @@
 """Least squares with the decays' own unknowns eliminated: weights, equations, steps, and what a step would gain.
 
--2 ln L = sum over motions and bands of n ln m, n the band's degrees of freedom and m the mean square over the noise's (Whittle
+-2 ln L = sum over motions and bands of n ln m, n the band's degrees of freedom and m the mean square over the floor's (Whittle
 1953, Arkiv for Matematik 2, 423-434, with a spectrum that is constant over a band and estimated), and the priors' squares. The
-spectrum is the noise's at least: where m < 1 the term is n (m - 1). A fit minimises n (m^p - 1) / p in place of n ln m (Box and
-Cox 1964, Journal of the Royal Statistical Society B 26, 211-252): near the noise the same, but a record that is not followed is
+spectrum is the floor's at least: where m < 1 the term is n (m - 1). A fit minimises n (m^p - 1) / p in place of n ln m (Box and
+Cox 1964, Journal of the Royal Statistical Society B 26, 211-252): near the floor the same, but a record that is not followed is
 not given up for others.
 """
 
@@ -20,7 +20,7 @@ ROUNDS = 6  # of weights
 
 
 def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
-    """n (m^p - 1) / p of every series and band (s, b), n ln m for p = 0; n (m - 1) below the noise."""
+    """n (m^p - 1) / p of every series and band (s, b), n ln m for p = 0; n (m - 1) below the floor."""
     mean_square = study.mean_squares(residual)
     return study.dof * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
 
@@ -39,7 +39,7 @@ def likelihoods(study: Study, residual: np.ndarray) -> np.ndarray:
 
 def weights(study: Study, residual: np.ndarray) -> np.ndarray:
     """By which rows' squares count where `cost_of` is taken as quadratic."""
-    each = np.maximum(study.mean_squares(residual), 1.0) ** (POWER - 1) / study.noise**2 * (study.dof > 0)
+    each = np.maximum(study.mean_squares(residual), 1.0) ** (POWER - 1) / study.floor**2 * (study.dof > 0)
     return each.ravel()[study.cell]
 
 

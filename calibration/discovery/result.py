@@ -11,7 +11,7 @@ from calibration.result import Calibration, Estimate
 class Evidence:
     """Why an effect is believed: `score`, by how much -2 ln L of the fitted tests falls at first order when it is let in, what
     the fitted parameters can do instead projected out; `delta_bic` after the refit (above 0 speaks for it); `holdout_gain`, the
-    share of the held-out tests' error above noise that it takes away (1: all of it); `clear`, the parameter over its standard
+    share of the held-out tests' squared error that it takes away (1: all of it); `clear`, the parameter over its standard
     deviation."""
 
     score: float
@@ -80,7 +80,7 @@ class Diagnosis:
     """A campaign's model as declared and fitted (`baseline`), what it lacks, and the model with that (`augmented`).
 
     `verdict` is "found", "nothing_missing" or "unexplained". `anatomy_before` and `anatomy_after` are the residuals of both,
-    motion by motion; `unexplained_share`, of the residual's energy above noise that is left at the end, `signature` what
+    motion by motion; `unexplained_share`, of the error's energy above the floor that is left at the end, `signature` what
     is known of it in words; `next_test` what to measure next.
     """
 

@@ -41,7 +41,7 @@ class Refused(Open):
 
 
 class Unexplained(Open):
-    """What is left: its share of the energy above noise, and what is known of it."""
+    """What is left: its share of the error's energy, and what is known of it."""
 
     share: Number
     signature: str

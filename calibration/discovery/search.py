@@ -3,15 +3,18 @@
 import math
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from calibration.campaign import Campaign
+from calibration.discovery.blocks import Blocks
 from calibration.discovery.catalogue import Candidate
 from calibration.discovery.conclusion import conclude
 from calibration.discovery.descent import Reached, fit
+from calibration.discovery.judgement import Grounds, Left, State, Verdict, judge
 from calibration.discovery.linear import Predicted, likelihoods, predict
 from calibration.discovery.pose import WIDE, Posed, pose
 from calibration.discovery.records import options_for
@@ -27,27 +30,7 @@ FAR = 0.3  # of what a refitted effect gains: what gains less at first order is 
 ITERATIONS = 8  # of a refit
 LAST = 25  # ... of what is let in
 LOOKS = 4  # slopes taken anew in that
-# thresholds, set by what they do on campaigns with nothing missing
-LEAST_BIC = 30.0
-LEAST_GAIN = 0.15  # share of the held-out error above noise
-LEAST_CLEAR = 3.0  # standard deviations
-LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
-LEAST_SEEN = 3.0  # ... and less than that many times the noise, is no business of engineers, nor sure of its name
 ALIKE = 0.1  # of the winner's gain: what comes as near cannot be told from it
-
-
-@dataclass(frozen=True)
-class State:
-    """Effects in the model and the fit with them: its look, the residual of all tests, and by series -2 ln L and the error
-    above noise."""
-
-    chosen: tuple[Candidate, ...]
-    look: Look
-    residual: np.ndarray
-    settled: bool
-    iterations: int
-    likelihood: np.ndarray
-    left: np.ndarray
 
 
 class Scored(NamedTuple):
@@ -56,16 +39,6 @@ class Scored(NamedTuple):
     candidate: Candidate
     predicted: Predicted
     look: Look
-
-
-class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the held-out error that goes, how clear it is, and why it is refused (""
-    where it is not)."""
-
-    bic: float
-    held: float
-    clear: float
-    refused: str
 
 
 class Tried(NamedTuple):
@@ -172,9 +145,8 @@ class Search:
         if study.decays is not None and not study.fitted_decays.all():
             alone = fit(study, look.along(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
             look = replace(alone, active=look.active, slopes=look.slopes)
-        residual = study.residual(look.place, "all")
-        excess = (study.dof * np.maximum(study.mean_squares(residual) - 1, 0)).sum(axis=1)
-        return State(tuple(chosen), look, residual, reached.settled, reached.iterations, likelihoods(study, residual), excess)
+        residual, settled, taken = study.residual(look.place, "all"), reached.settled, reached.iterations
+        return State(tuple(chosen), look, residual, settled, taken, likelihoods(study, residual), Left.of(study, residual))
 
     def score(self, state: State, number: int, fraction: float) -> list[Scored]:
         """Every candidate that is not in the model, at its null, the fitted directions projected out; the best first."""
@@ -216,59 +188,25 @@ class Search:
                 return True
         return False
 
-    def judge(self, before: State, after: State, one: Candidate) -> Verdict:
-        """Whether an effect is believed."""
-        used = self.study.used
-        bic = float((before.likelihood - after.likelihood)[used].sum()) - len(one.labels) * math.log(self.count)
-        held, told = self.held_gain(before, after)
-        clear = self.clearness(one, after)
-        refused = ""
-        values = {label: self.study.value(label, after.look.place.x) for label in one.positive if len(one.amplitudes) == 1}
-        wrong = [label for label, value in values.items() if value < 0]
-        if wrong:
-            refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow"
-        elif bic < LEAST_BIC:
-            refused = f"it gains too little in the fitted tests (BIC {bic:+.0f})"
-        elif told and held < LEAST_GAIN:
-            refused = f"the held-out tests' error above noise changes by {-100 * held:+.0f} % only"
-        elif clear < LEAST_CLEAR:
-            refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
-        elif self.matters(before, after) < 1:
-            refused = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times the noise"
-        return Verdict(bic, held, clear, refused)
+    def judge(self, before: State, after: State, one: Candidate, last: bool = False) -> Verdict:
+        """Whether an effect is believed: by the tests held out; where there are none by the fitted ones, and at `last` by their
+        blocks left out in turn."""
+        study, prior = self.study, self.prior(after.chosen)
+        grounds = Grounds(study, ~study.used, before.left, after.left, True)
+        if study.used.all():
+            grounds = grounds._replace(asked=study.used, unseen=False)
+            if last and self.blocks is not None:
+                without, with_it = (self.blocks.left(state, self.prior(state.chosen)) for state in (before, after))
+                grounds = Grounds(self.blocks.study, np.ones(len(without.error), bool), without, with_it, True)
+        return judge(study, before, after, one, prior, self.count, grounds)
 
-    def matters(self, before: State, after: State) -> float:
-        """By how much a motion's error above noise falls at most, over what matters; of held-out tests where there are any. Of
-        what a decay is not about the noise alone is a measure."""
-        series, used = self.study.series, self.study.used
-        main = {record.id: record.degree_of_freedom for record in self.study.decay_records}
-        share = [LEAST_MATTER if one.channel == main.get(one.test, one.channel) else math.inf for one in series]
-        least = np.array([min(m * one.spread / one.noise, LEAST_SEEN) for m, one in zip(share, series)])
-        size = 1 / (least * np.sqrt([one.samples for one in series]))
-        asked = ~used if (~used).any() else used
-        return float((size * (np.sqrt(before.left) - np.sqrt(after.left)))[asked].max(initial=0.0))
-
-    def held_gain(self, before: State, after: State) -> tuple[float, bool]:
-        """Mean share of the error above noise that is gone, over the held-out motions that have any; else the fitted. And
-        whether there is anything to tell."""
-        used = self.study.used
-        held = ~used if (~used).any() else used
-        dof = self.study.dof.sum(axis=1)
-        some = held & (np.maximum(before.left, after.left) > 0.2 * dof) & (dof > 0)
-        if not some.any():
-            return 0.0, bool((~used).any())
-        ratio = np.log((after.left[some] + 0.1 * dof[some]) / (before.left[some] + 0.1 * dof[some]))
-        weight = np.array([one.weight for one, s in zip(self.study.series, some) if s])
-        return float(1 - math.exp(float((weight * ratio).sum() / weight.sum()))), True
-
-    def clearness(self, one: Candidate, state: State) -> float:
-        """The effect's parameters over their standard deviations: of several together, as one normal variable would be."""
-        look = state.look
-        columns = [look.active.index(i) for i in self.study.index(one.amplitudes)]
-        covariance = predict(self.study, look, self.prior(state.chosen)).covariance[np.ix_(columns, columns)]
-        steps = self.study.steps(look.place.x)[self.study.index(one.amplitudes)]
-        wald = float(steps @ np.linalg.pinv(covariance, hermitian=True) @ steps)
-        return math.sqrt(max(wald - len(columns) + 1, 0.0))
+    @cached_property
+    def blocks(self) -> Blocks | None:
+        """The fitted tests in blocks; None where none can be cut."""
+        try:
+            return Blocks(self.study, self.campaign.records)
+        except ValueError:
+            return None
 
     def grow(self, state: State, number: int) -> State | None:
         """The best effect let in; None where none survives."""
@@ -297,7 +235,8 @@ class Search:
             places = (best.state.look.place, self.renewed(best.state.look.place, bent))
             every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
             after = min(every, key=lambda state: float(state.likelihood[self.study.used].sum()))
-            verdict = self.judge(state, after, new)
+            self.say(f"{name}: blocks left out in turn" if self.study.used.all() else name, done + 0.17)
+            verdict = self.judge(state, after, new, last=True)
             self.refuse(new, verdict.refused)
             if verdict.refused:
                 continue
@@ -321,7 +260,7 @@ class Search:
             rest = tuple(other for other in state.chosen if other is not one)
             look = self.study.look(self.renewed(state.look.place, one.labels), self.active(rest))
             without = self.refit(look, rest, f"without {one.name}", 0.97)
-            verdict = self.judge(without, state, one)
+            verdict = self.judge(without, state, one, last=True)
             if verdict.refused:
                 self.refuse(one, f"with what was found after it, {verdict.refused}")
                 state = without
@@ -349,7 +288,7 @@ class Search:
         fitted, held = float(gains[self.study.used].sum()), float(gains[~self.study.used].sum())
         for i, score in enumerate(self.scores):
             if score.round == number and (score.effect, score.degree_of_freedom) == (one.effect, one.dof):
-                self.scores[i] = replace(score, refitted=fitted, refitted_holdout=verdict.held)
+                self.scores[i] = replace(score, refitted=fitted, refitted_holdout=verdict.held if verdict.unseen else None)
         worth = fitted + max(held, -1e3) - len(one.labels) * math.log(self.count)
         return Tried(one, scored.predicted.fitted, after, verdict, worth)
 

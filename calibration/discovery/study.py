@@ -30,8 +30,9 @@ Seen = Literal["all", "fit"]
 
 @dataclass(frozen=True)
 class Series:
-    """One motion of one test: what the residual of it is compared with. `dof` (b,) are degrees of freedom by band, `samples`
-    how many there are."""
+    """One motion of one test: what the residual of it is compared with. `noise` is the sensor's; `floor` (b,), by band, has
+    beside it what no model of strips is asked to follow. `dof` (b,) are degrees of freedom by band, `samples` how many there
+    are."""
 
     test: str
     kind: str
@@ -43,11 +44,17 @@ class Series:
     low: np.ndarray
     high: np.ndarray
     samples: int
+    floor: np.ndarray
+
+    @property
+    def least(self) -> float:
+        """The floor over all bands (m, rad)."""
+        return float(np.sqrt(self.noise**2 + (self.dof * (self.floor**2 - self.noise**2)).sum() / self.samples))
 
     @property
     def weight(self) -> float:
-        """Motions count by how much of them there is over their noise, up to a point."""
-        return min(self.spread / self.noise, 50.0)
+        """Motions count by how much of them there is over their floor, up to a point."""
+        return min(self.spread / self.least, 50.0)
 
 
 @dataclass(frozen=True)
@@ -126,14 +133,20 @@ class Study:
         return np.stack([one.dof for one in self.series])
 
     @cached_property
-    def noise(self) -> np.ndarray:
-        """Standard deviations of noise (s, 1)."""
-        return np.array([one.noise for one in self.series])[:, None]
+    def floor(self) -> np.ndarray:
+        """Standard deviations (s, b) below which an error is none."""
+        return np.stack([one.floor for one in self.series])
 
     @cached_property
     def used(self) -> np.ndarray:
         """Which series are of fitted tests (s,)."""
         return np.array([one.use == "fit" for one in self.series])
+
+    @cached_property
+    def main(self) -> np.ndarray:
+        """Which series are what their tests are about (s,): a decay's own motion, any in waves."""
+        own = {record.id: record.degree_of_freedom for record in self.decay_records}
+        return np.array([one.channel == own.get(one.test, one.channel) for one in self.series])
 
     @cached_property
     def row_series(self) -> np.ndarray:
@@ -243,6 +256,6 @@ class Study:
         return Look(place, tuple(active), np.concatenate(residual), np.concatenate(slopes), own)
 
     def mean_squares(self, residual: np.ndarray) -> np.ndarray:
-        """Mean square over the noise's by series and band (s, b)."""
+        """Mean square over the floor's by series and band (s, b)."""
         power = np.bincount(self.cell, residual**2, self.dof.size).reshape(self.dof.shape)
-        return np.where(self.dof > 0, power / np.where(self.dof > 0, self.dof, 1.0) / self.noise**2, 0.0)
+        return np.where(self.dof > 0, power / np.where(self.dof > 0, self.dof, 1.0) / self.floor**2, 0.0)

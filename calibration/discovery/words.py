@@ -97,7 +97,8 @@ def fall(saved: SavedDiagnosis) -> str:
     if before.holdout and after.holdout is not None:
         return f"{added} of tests that were not fitted {change(before.holdout, after.holdout)}"
     said = f"{added} of the fitted tests {change(before.fit, after.fit)}"
-    return f"{said}; no test was held out to check it"
+    checked = any(one.evidence.holdout_gain is not None for one in saved.missing.effects)
+    return said if checked else f"{said}; no test was held out to check it"
 
 
 def change(before: float, after: float) -> str:
@@ -123,12 +124,14 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     said = [f"{strength(evidence).capitalize()} evidence on the fitted tests: BIC falls by {number(evidence.delta_bic, 3)} "
             "(above 10 is very strong)."]  # fmt: skip
     gain = evidence.holdout_gain
-    if gain is None or not held:
+    if gain is None:
         said.append("No test was held out to check it.")
+    elif not held:
+        said.append(f"Of blocks of the tests, left out in turn, it takes away {percent(gain)} of the squared error.")
     elif gain >= 0:
-        said.append(f"It takes away {percent(gain)} of the error above noise of tests that were not fitted.")
+        said.append(f"It takes away {percent(gain)} of the squared error of tests that were not fitted.")
     else:
-        said.append(f"The error above noise of tests that were not fitted grows by {percent(-gain)}.")
+        said.append(f"The squared error of tests that were not fitted grows by {percent(-gain)}.")
     said.append(f"It explains {percent(one.share_of_residual_explained)} of what the fitted tests left unexplained.")
     if evidence.clear is not None:
         said.append(f"Its size is {number(evidence.clear, 2)} standard deviations away from none.")
@@ -150,5 +153,6 @@ def alternatives(one: Found) -> str:
 def left_over(saved: SavedDiagnosis) -> str:
     """What nothing explains."""
     left = saved.missing.unexplained
-    said = f"{percent(left.share)} of the residual's energy above noise is left unexplained"
+    share = f"{percent(left.share)} of the error's energy is left unexplained"
+    said = share if saved.missing.effects else "What is left"
     return f"{said}: {left.signature.rstrip('.')}." if left.signature else f"{said}."

@@ -1,0 +1,90 @@
+"""By what an effect is believed: what counts in every band, and gains in what was not fitted."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from calibration.discovery.bands import bands_of, powers
+from calibration.discovery.blocks import COUNT, parts
+from calibration.discovery.judgement import LEAST_MATTER, Grounds, Left
+from calibration.discovery.study import Series
+from calibration.records import Record
+
+CUT = bands_of(400.0, 0.1, 4000, 14, 1.0)
+TIME = 0.1 * np.arange(4000)
+
+
+def test_powers_of_white_noise_are_its_variance_in_every_band():
+    """And a sine's are all in the band that has it: n / 2 times its square."""
+    white = np.mean([powers(CUT, np.random.default_rng(k).normal(0, 0.3, 4000)) for k in range(60)], axis=0)
+    assert_allclose(white[CUT.lines > 0], 0.09, rtol=0.35)
+    sine = powers(CUT, np.sin(2 * np.pi * 0.2 * TIME))
+    band = int(np.flatnonzero((CUT.low <= 0.2) & (CUT.high > 0.2))[0])
+    assert sine.argmax() == band
+    assert_allclose(2 * CUT.lines[band] * sine[band], 2000.0, rtol=1e-6)
+
+
+def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0, use: str = "holdout") -> Series:
+    return Series("t", "decay", use, channel, noise, spread, 2 * CUT.lines, CUT.low, CUT.high, 4000, np.full(14, floor))
+
+
+def study_of(*found: Series) -> SimpleNamespace:
+    dof = np.stack([one.dof for one in found])
+    return SimpleNamespace(dof=dof, series=found, main=np.array([one.channel == "surge" for one in found]))
+
+
+def test_a_quiet_sensor_does_not_make_a_motion_count_more():
+    """A series' least is its floor over all bands, and its weight is by that, up to a point."""
+    assert_allclose(series("surge", 0.01).least, 0.01)
+    share = CUT.lines.sum() * 2 / 4000  # of the samples' degrees of freedom that is looked at
+    assert_allclose(series("surge", 0.1).least, np.sqrt(0.01**2 + share * (0.1**2 - 0.01**2)))
+    assert series("surge", 0.5, noise=1e-6).weight == pytest.approx(1 / (0.5 * np.sqrt(share)))
+    assert series("surge", 1e-6, noise=1e-6).weight == 50.0
+
+
+def test_what_is_left_is_a_root_mean_square():
+    """Of a residual that is a sine of 0.2 m: 0.2 / sqrt(2), less what the floor hides."""
+    one = series("surge", 1e-4)
+    study = SimpleNamespace(
+        dof=one.dof[None], series=(one,), floor=one.floor[None],
+        mean_squares=lambda values: powers(CUT, values)[None] / one.floor**2,
+    )  # fmt: skip
+    found = Left.of(study, 0.2 * np.sin(2 * np.pi * 0.2 * TIME))
+    assert_allclose(found.error, 0.2 / np.sqrt(2), rtol=1e-4)
+    assert Left.of(study, 0.5e-4 * np.ones(4000) / np.sqrt(4000)).squares.max() == 0.0
+
+
+def test_gain_is_of_what_is_asked():
+    """The held-out motion's error halves, the other's is as it was: a gain of three quarters of its square."""
+    study = study_of(series("surge", 0.01), series("surge", 0.01, use="fit"))
+    dof = study.dof.sum(axis=1)
+    before, after = Left(400 * dof, np.array([0.2, 0.2])), Left(np.array([100, 400]) * dof, np.array([0.1, 0.2]))
+    gain, told = Grounds(study, np.array([True, False]), before, after, True).gain()
+    assert told
+    assert gain == pytest.approx(0.75, abs=1e-3)
+    assert Grounds(study, np.array([False, True]), before, after, True).gain()[0] == pytest.approx(0.0)
+    nothing = Left(0 * dof, np.zeros(2))
+    assert Grounds(study, np.array([True, True]), nothing, nothing, True).gain() == (0.0, True)
+    assert Grounds(study, np.array([True, True]), nothing, nothing, False).gain() == (0.0, False)
+
+
+@pytest.mark.parametrize(("channel", "least"), [("surge", LEAST_MATTER), ("pitch", 0.3)])
+def test_what_matters_of_a_decay(channel, least):
+    """Its own motion: a share of it; of another the floor alone is a measure, here 0.1."""
+    study = study_of(series(channel, 0.1, noise=0.1))
+    for share, matters in ((0.99, False), (1.01, True)):
+        after = 0.5 - share * least
+        grounds = Grounds(study, np.array([True]), Left(np.ones(1), np.array([0.5])), Left(np.ones(1), np.array([after])), True)
+        assert (grounds.matters() >= 1) == matters
+
+
+def test_blocks_are_consecutive_and_whole():
+    """No sample twice, none lost, each beginning where the one before it ends."""
+    whole = Record("d", "decay", "fit", "surge", TIME, {"surge": np.sin(TIME)}, None, None, {}, True, 0.0, None, "d.csv")
+    cut = parts(whole)
+    assert len(cut) == COUNT
+    assert len({one.id for one in cut}) == COUNT
+    assert_allclose(np.concatenate([one.time for one in cut]), TIME)
+    assert_allclose(np.concatenate([one.values["surge"] for one in cut]), np.sin(TIME))
