@@ -133,6 +133,28 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path):
     assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
 
 
+def test_a_diagnosis_that_was_killed_goes_on(tmp_path):
+    """What was reached is there, whole, and is what a search goes on from; of another campaign it is not taken."""
+    campaign, kept, seen = campaign_of(tmp_path, lambda x, v: -500.0 * x**3), tmp_path / "under-way", []
+
+    def killed(progress):
+        seen.append(progress.stage)
+        if progress.stage.startswith("round 2"):
+            raise RuntimeError("killed")
+
+    with pytest.raises(RuntimeError, match="killed"):
+        diagnose(campaign, progress=killed, kept=kept)
+    assert any(stage.startswith("calibrating") for stage in seen)
+    seen.clear()
+    found = diagnose(campaign, progress=lambda progress: seen.append(progress.stage), kept=kept)
+    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
+    assert not any(stage.startswith(("calibrating", "round 1")) for stage in seen)
+    other = campaign_of(tmp_path, lambda x, v: -400.0 * x**3)
+    with pytest.raises(RuntimeError, match="killed"):
+        diagnose(other, progress=killed, kept=kept)
+    assert any(stage.startswith("round 1") for stage in seen[seen.index("reading the records", 1) :])
+
+
 class Sine(AbstractLoad):
     """A torque in roll of one's own: -k sin(10 x)."""
 

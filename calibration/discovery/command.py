@@ -6,6 +6,7 @@ from pathlib import Path
 from calibration import tables as calibrations
 from calibration.command import load
 from calibration.discovery import tables, words
+from calibration.discovery.kept import FILE
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Diagnosis
 from calibration.discovery.saved import SavedDiagnosis, read_diagnosis
@@ -17,7 +18,8 @@ from jaxhydro.console import complain, progress, say, table
 
 
 def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
-    """Diagnose a campaign, write and print the result; of a search that the user stops, what was reached.
+    """Diagnose a campaign, write and print the result; of a search that the user stops, what was reached. One that was killed
+    goes on from the last effect that it had let in.
 
     False where a fit did not converge: the result is marked so, or there is none. Raises InputError, and KeyboardInterrupt
     where nothing was reached.
@@ -27,7 +29,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     campaign = load(path, out, (COMPARISON, RESULT, "motion.csv"), lambda c: calibrations.counted(c, ("decay", *KINDS)))
     try:
         with progress() as show:
-            result = diagnose(campaign, progress=show)
+            result = diagnose(campaign, progress=show, kept=out / FILE)
     except Diverged as error:
         complain(f"{error}; nothing was written")
         return False
@@ -41,6 +43,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     except NotFinite as error:
         complain(f"not converged: {error}; nothing was written")
         return False
+    (out / FILE).unlink(missing_ok=True)
     saved = read_diagnosis(out / DIAGNOSIS)
     warned = {str(finding) for finding in campaign.findings}
     show_diagnosis(saved, [note for note in saved.notes if note not in warned])

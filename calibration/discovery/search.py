@@ -5,6 +5,7 @@ import time as clock
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,8 @@ from calibration.discovery.blocks import Blocks
 from calibration.discovery.catalogue import Candidate
 from calibration.discovery.conclusion import conclude
 from calibration.discovery.descent import Reached, fit
-from calibration.discovery.judgement import Grounds, Left, State, Verdict, judge
+from calibration.discovery.judgement import LEAST_BIC, Grounds, Left, State, Verdict, judge
+from calibration.discovery.kept import keep, resumed
 from calibration.discovery.linear import Predicted, likelihoods, predict
 from calibration.discovery.pose import WIDE, Posed, pose
 from calibration.discovery.records import options_for
@@ -68,6 +70,7 @@ class Search:
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
         self.notes: list[str] = []
+        self.linear = False  # seas of the first order alone
         self.base = self.study.index([*posed.base, *posed.nuisances])
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
@@ -114,19 +117,23 @@ class Search:
         state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
         if not self.study.linear_seas:
             return state
-        bound, self.study = self.study, replace(self.study, seas=self.study.linear_seas)
+        self.take_linear_seas()
         name = "declared model in waves of first order"
         reached = self.fit(self.study.look(state.look.place, self.base), (), ITERATIONS, 0, name, 0.12)
         first = self.state((), reached)
         better = float((state.likelihood - first.likelihood)[self.study.used].sum())
         if better < LEAST_BIC:
-            self.study = bound
+            self.study, self.linear = self.posed.study, False
             return state
         self.notes.append(
             "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions "
             f"are followed worse (by {better:.0f} in -2 ln L)"
         )
         return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
+
+    def take_linear_seas(self) -> None:
+        """Seas without the second order that their records have, from now on."""
+        self.study, self.linear = replace(self.study, seas=self.study.linear_seas), True
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""
@@ -299,11 +306,13 @@ def diagnose(
     candidates: Sequence[Candidate] = (),
     progress: Callable[[Progress], None] | None = None,
     options: Options | None = None,
+    kept: Path | None = None,
 ) -> Diagnosis:
     """What the declared model of a campaign lacks: found, added, judged by the tests marked `holdout`.
 
-    `candidates` of one's own take part beside the catalogue's. Raises InputError where a campaign has nothing to diagnose, and
-    KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
+    `candidates` of one's own take part beside the catalogue's. `kept` is a file that has what was reached by round; where it is
+    there, of the same campaign, the search goes on from it. Raises InputError where a campaign has nothing to diagnose,
+    and KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
     """
     begun = clock.monotonic()
 
@@ -311,17 +320,28 @@ def diagnose(
         if progress is not None:
             progress(Progress(stage, 0, math.nan, fraction, "-2 ln L"))
 
+    states: list[State] = []
+
+    def reach(state: State) -> None:
+        states.append(state)
+        if kept is not None:
+            keep(kept, search, states)
+
     say("reading the records", 0.0)
     options, notes = options_for(campaign) if options is None else (options, ())
     search = Search(campaign, pose(campaign, options, candidates), say)
-    states = [search.declared()]
+    states += [] if kept is None else resumed(kept, search)
+    if states:
+        say(f"going on from what was reached before: round {len(states)}", 0.15)
+    else:
+        reach(search.declared())
 
     def concluded() -> Diagnosis:
         return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes), clock.monotonic() - begun)
 
     try:
         while len(states) <= ROUNDS and (after := search.grow(states[-1], len(states))) is not None:
-            states.append(after)
+            reach(after)
         states.append(search.pruned(states[-1]))
     except KeyboardInterrupt as stopped:
         stopped.partial = concluded()  # type: ignore[attr-defined]

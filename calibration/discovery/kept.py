@@ -1,0 +1,84 @@
+"""What a diagnosis has reached, kept on disk from round to round, so that one that was killed goes on."""
+
+import hashlib
+import os
+import pickle
+import secrets
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calibration.discovery.judgement import State
+
+if TYPE_CHECKING:
+    from calibration.discovery.search import Search
+
+FILE = ".diagnosis-under-way"
+
+
+def keep(path: Path, search: "Search", states: list[State]) -> None:
+    """Write what was reached, whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    content = {
+        "of": fingerprint(search),
+        "linear": search.linear,
+        "states": [named(state) for state in states],
+        "found": {
+            name: one._replace(before=named(one.before), after=named(one.after)) for name, one in search.found.items()
+        },
+        "scores": search.scores,
+        "rejected": search.rejected,
+        "notes": search.notes,
+    }  # fmt: skip
+    temporary = path.with_name(f"{path.name}-{secrets.token_hex(4)}")
+    try:
+        temporary.write_bytes(pickle.dumps(content))
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def resumed(path: Path, search: "Search") -> list[State]:
+    """The states that an earlier run of the same diagnosis reached, the search as it was then; none where there was none."""
+    try:
+        content: dict[str, Any] = pickle.loads(path.read_bytes())
+    except (OSError, pickle.UnpicklingError, AttributeError, EOFError, ImportError, TypeError, ValueError):
+        return []
+    if not isinstance(content, dict) or content.get("of") != fingerprint(search):
+        return []
+    by_name = {one.name: one for one in search.posed.candidates}
+
+    def whole(state: State) -> State:
+        return replace(state, chosen=tuple(by_name[str(name)] for name in state.chosen))
+
+    if content["linear"]:
+        search.take_linear_seas()
+    found = {name: one._replace(before=whole(one.before), after=whole(one.after)) for name, one in content["found"].items()}
+    search.found, search.scores, search.rejected = found, content["scores"], content["rejected"]
+    search.notes = content["notes"]
+    return [whole(state) for state in content["states"]]
+
+
+def named(state: State) -> State:
+    """A state with its effects' names in their place: a load of one's own may not be written."""
+    return replace(state, chosen=tuple(one.name for one in state.chosen))  # type: ignore[misc]
+
+
+def fingerprint(search: "Search") -> str:
+    """Of all that a diagnosis depends on: records, platform, candidates, and this program's version and sources."""
+    study, campaign = search.posed.study, search.campaign
+    digest = hashlib.sha256()
+    for text in (version("jaxhydro"), repr(campaign.manifest), repr(campaign.platform), repr(study.names)):
+        digest.update(text.encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    arrays = [study.directions, study.floor, study.dof, np.asarray(study.space.start)]
+    arrays += [] if study.decays is None else [np.asarray(study.decays.data.measured)]
+    for sea in study.seas:
+        arrays += [np.asarray(sea.measured), np.asarray(sea.sea.series[:: max(1, len(sea.sea.series) // 50)])]
+    for one in arrays:
+        digest.update(np.ascontiguousarray(one).tobytes())
+    return digest.hexdigest()
