@@ -1,6 +1,5 @@
 """The command line. What is heavy is imported by the command that needs it."""
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -237,21 +236,10 @@ def _calibrate(
 
 
 def _start() -> None:
-    """Set JAX up: double precision, and a compilation cache that lasts, unless its folder cannot be written."""
-    import jax
+    """Set JAX up."""
+    from jaxhydro.start import start
 
-    jax.config.update("jax_enable_x64", True)
-    home = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache")
-    try:
-        default = Path(home).expanduser() / "jaxhydro" / "xla"
-        folder = Path(os.environ.get("JAX_COMPILATION_CACHE_DIR") or default)
-        folder.mkdir(parents=True, exist_ok=True)
-    except (OSError, RuntimeError):
-        return
-    if os.access(folder, os.W_OK):
-        jax.config.update("jax_compilation_cache_dir", str(folder))
-        jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
-        jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+    start()
 
 
 def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, how: dict[str, Any]) -> None:
