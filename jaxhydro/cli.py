@@ -204,6 +204,32 @@ def demo(out: Out = Path("jaxhydro-demo")) -> None:
     _calibrate(folder, out, True, TRUTH)
 
 
+@app.command(epilog=arguments.SWEEPING)
+def sweep(
+    file: Annotated[Path, typer.Argument(help="A sweep file.", metavar="SWEEP")],
+    out: Out,
+    workers: arguments.Workers = None,
+    batch: arguments.Batch = None,
+    scheduler: arguments.Scheduler = None,
+    restart: Annotated[bool, typer.Option("--restart", help="Forget the runs that are in the folder.")] = False,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Do runs that failed again.")] = False,
+) -> None:
+    """All sea states of a scatter table, from all headings, with all seeds: results.zarr, lifetime statistics, figures.
+
+    Stopped or killed, the same command goes on where it was.
+    """
+    out = options.results_folder(out, "sweep.json")
+    _start()
+    from jaxhydro.sweep import command
+
+    try:
+        if not command.run(file, out, workers, batch, restart, retry_failed, scheduler):
+            raise typer.Exit(NOT_CONVERGED)
+    except command.Stopped as error:
+        complain(str(error))
+        raise typer.Exit(STOPPED) from None
+
+
 @app.command()
 def platforms() -> None:
     """List the built-in platforms."""

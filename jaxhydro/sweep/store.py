@@ -123,8 +123,9 @@ class Store:
 
 
 def open_results(folder: Path) -> xr.Dataset:
-    """The results of a sweep, loaded from disk where they are used."""
-    return xr.open_zarr(folder / RESULTS)
+    """The results of a sweep; variables are loaded from disk where they are used."""
+    data = xr.open_zarr(folder / RESULTS)
+    return data.assign_coords({name: coordinate.load() for name, coordinate in data.coords.items()})
 
 
 def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
