@@ -223,7 +223,7 @@ def sweep(
     from jaxhydro.sweep import command
 
     try:
-        if not command.run(file, out, workers, batch, restart, retry_failed, scheduler):
+        if not command.sweep(file, out, workers, batch, restart, retry_failed, scheduler):
             raise typer.Exit(NOT_CONVERGED)
     except command.Stopped as error:
         complain(str(error))

@@ -79,7 +79,8 @@ def progress() -> Iterator[Callable[[Any], None]]:
 
 @contextmanager
 def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], None]]:
-    """A line on standard error with how many of `total` are done, how fast, and the time left; to be told the number and a remark.
+    """A line on standard error with how many of `total` are done, how fast, and the time left; to be told the number and a
+    remark.
 
     Without a terminal it is a line every `EVERY` seconds, and one at the end.
     """

@@ -10,7 +10,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
 
 from jaxhydro import adams_bashforth
 from jaxhydro.command import model_of, with_calibration
@@ -112,8 +112,8 @@ def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
 def together(
     model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float
 ) -> list[Float[np.ndarray, "t 6"] | None]:
-    """Positions (m, rad) in seas of one band and period, in steps of at most `limit` (s), by one vectorised program for all seas of
-    one shape; None where the platform leaves the box that the sea was prepared for, or does not rest."""
+    """Positions (m, rad) in seas of one band and period, in steps of at most `limit` (s), by one vectorised program for all
+    seas of one shape; None where the platform leaves the box that the sea was prepared for, or does not rest."""
     found: list[np.ndarray | None] = [None] * len(seas)
     shapes: dict[Any, list[tuple[int, Any]]] = {}
     for i, sea in enumerate(seas):
@@ -124,8 +124,8 @@ def together(
             continue
         prepared, step, steps = prepared_for(here, sea, times, limit)
         one = (here, prepared, start)
-        arrays, rest = eqx.partition(one, eqx.is_array)
-        key = (jax.tree.structure(one), tuple(x.shape for x in jax.tree.leaves(arrays)), step, steps)
+        shape = tuple(x.shape for x in jax.tree.leaves(eqx.filter(one, eqx.is_array)))
+        key = (jax.tree.structure(one), shape, step, steps)
         shapes.setdefault(key, []).append((i, one))
     points = jnp.asarray(model.hull.extremities())
     for (_, _, step, steps), same in shapes.items():
@@ -183,8 +183,8 @@ def _line_count(model: Model) -> int:
 
 
 @eqx.filter_jit
-def _tensions(model: Model, position: Float[np.ndarray, "t 6"]) -> Any:
-    """(t, lines), N: `MooringLines.tension` at every sample."""
+def _tensions(model: Model, position: Float[Array, "t 6"]) -> Float[Array, "t l"]:
+    """N: `MooringLines.tension` at every sample."""
     lines = _lines(model)
     assert lines is not None
     return jax.vmap(lambda q: lines.tension(q, rotation(q[3:]))[0])(position)

@@ -1,4 +1,5 @@
-"""What a sweep runs, in order: every case, a sea state from a heading, with every seed. Plain values, as they are kept on disk."""
+"""What a sweep runs, in order: every case, a sea state from a heading, with every seed. Plain values, as they are kept on disk.
+"""
 
 import json
 from collections.abc import Iterator
@@ -97,20 +98,23 @@ def _short(value: Any) -> str:
 def plan_of(sweep: Sweep, source: str) -> tuple[Plan, int]:
     """The plan of a sweep whose files are read, and the number of cases of probability 0, which are left out.
 
-    Shares of sea states and of headings multiply, and are divided by their sum. Raises InputError that names `source` where none
-    is above 0.
+    Shares of sea states and of headings multiply, and are divided by their sum. Raises InputError that names `source` where
+    none is above 0.
     """
     states: tuple[SeaState, ...] = sweep.scatter.states() if isinstance(sweep.scatter, Grid) else sweep.scatter  # type: ignore[assignment]
     towards = [one if isinstance(one, Heading) else Heading(heading=float(one)) for one in sweep.headings]
     every = [
-        Case(state.hs, state.tp, state.gamma, one.heading, state.probability * one.probability) for state in states for one in towards
+        Case(state.hs, state.tp, state.gamma, one.heading, state.probability * one.probability)
+        for state in states
+        for one in towards
     ]
     total = sum(case.probability for case in every)
     if not total > 0:
         raise InputError(source, [Problem("scatter", "a probability above 0", "none")])
     cases = tuple(case._replace(probability=case.probability / total) for case in every if case.probability > 0)
     seeds = tuple(range(sweep.seeds)) if isinstance(sweep.seeds, int) else sweep.seeds
-    same = ("spectrum", "amplitudes", "duration", "start", "time_step", "step", "order", "stretching", "diffraction", "low",
-            "cutoff", "motions", "time_series")  # fmt: skip
-    fatigue = {"exponents": sweep.fatigue.exponents, "equivalent_frequency": sweep.fatigue.equivalent_frequency}
-    return Plan(cases, seeds, **{name: getattr(sweep, name) for name in same}, **fatigue), len(every) - len(cases)
+    same: tuple[str, ...] = ("spectrum", "amplitudes", "duration", "start", "time_step", "step", "order", "stretching",
+    "diffraction", "low", "cutoff", "motions", "time_series")  # fmt: skip
+    fatigue: dict[str, Any] = {"exponents": sweep.fatigue.exponents, "equivalent_frequency": sweep.fatigue.equivalent_frequency}
+    options: dict[str, Any] = {name: getattr(sweep, name) for name in same}
+    return Plan(cases, seeds, **options, **fatigue), len(every) - len(cases)

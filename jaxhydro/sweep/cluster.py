@@ -12,7 +12,8 @@ Found = list[tuple[int, bool]]
 
 
 def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: str, at_once: bool = False) -> Iterator[Found]:
-    """Each batch's runs when they are in the store, in the order in which they come. Workers must see `folder` by the same path.
+    """Each batch's runs when they are in the store, in the order in which they come. Workers must see `folder` by the same
+    path.
 
     A worker that is lost costs the runs that it had in hand: they are done again elsewhere. Runs that end `RETRIES` workers are
     failed. Raises InputError where dask is not there or nothing answers at the address.
@@ -20,8 +21,8 @@ def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: s
     try:
         from distributed import Client, as_completed
     except ImportError:
-        found = "no package `distributed`"
-        raise InputError("--scheduler", [Problem("", "dask.distributed", found, "pip install 'jaxhydro[distributed]'")]) from None
+        problem = Problem("", "dask.distributed", "no such package", "pip install 'jaxhydro[distributed]'")
+        raise InputError("--scheduler", [problem]) from None
     try:
         client = Client(scheduler, timeout=PATIENCE)
     except (OSError, ValueError) as error:
@@ -36,6 +37,6 @@ def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: s
             if future.status == "finished":
                 yield future.result()
             else:
-                error = future.exception()
-                yield fail_runs(place, futures[future], f"lost on the cluster ({type(error).__name__}: {error})"[:500])
+                lost = future.exception()
+                yield fail_runs(place, futures[future], f"lost on the cluster ({type(lost).__name__}: {lost})"[:500])
             future.release()

@@ -4,10 +4,11 @@ from pathlib import Path
 
 from jaxhydro.command import print_rest
 from jaxhydro.console import complain, counting, say, table
+from jaxhydro.problems import InputError, Problem
+from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.outputs import Summary, summary_of, write_outputs
 from jaxhydro.sweep.resources import chosen
 from jaxhydro.sweep.run import Prepared, Progress, Ran, opened, prepared, run_all, to_do
-from jaxhydro.sweep.schema import load_sweep
 from jaxhydro.sweep.store import RESULTS, open_results
 
 LISTED = 5  # failures that are printed
@@ -17,7 +18,7 @@ class Stopped(Exception):
     """Stopped by a key: what is done is kept."""
 
 
-def run(
+def sweep(
     source: Path,
     out: Path,
     workers: int | None = None,
@@ -45,6 +46,9 @@ def run(
         with counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
             try:
                 ran = run_all(out, made, numbers, how, scheduler, lambda now: show(now.done + now.failed, _remark(now)))
+            except OSError as error:
+                said = str(error.strerror or error)
+                raise InputError("--out", [Problem("", "a folder that can be written", f"{str(out)!r} ({said})")]) from None
             except KeyboardInterrupt:
                 raise Stopped(f"stopped; what is done is in {out / RESULTS}, and the same command goes on") from None
         say(f"{ran.runs} runs in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
@@ -73,7 +77,7 @@ def _print_plan(made: Prepared) -> None:
         ("Runs", f"{len(plan)} of {plan.duration:g} s, statistics from {plan.start:g} s on"),
         ("Step at most", f"{made.setup.limit:.3g} s"),
     ]
-    table("Sweep", ("", ""), rows, left=2)
+    table("Sweep", ("Property", "Value"), rows, left=2)
     if made.left_out:
         say(f"Note: {made.left_out} cases of probability 0 are left out")
 
@@ -89,9 +93,8 @@ def _print_results(summary: Summary, exponents) -> None:
     if summary.failed:
         share = f"; {summary.missing:.2%} of the time has no run that did not" if summary.missing else ""
         complain(f"{summary.failed} of {summary.total} runs failed{share}")
-        for one in summary.failures[:LISTED]:
-            where = f"Hs {one['hs']:g} m, Tp {one['tp']:g} s, heading {one['heading']:g} deg, seed {one['seed']}"
-            complain(f"{where}: {one['reason']}")
+        for run in summary.failures[:LISTED]:
+            where = f"Hs {run['hs']:g} m, Tp {run['tp']:g} s, heading {run['heading']:g} deg, seed {run['seed']}"
+            complain(f"{where}: {run['reason']}")
         if summary.failed > LISTED:
             complain(f"and {summary.failed - LISTED} more: see sweep.json")
-

@@ -1,5 +1,6 @@
 """Statistics over the life of a platform: runs weighed by the probability of their cases. Pure."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,8 +13,8 @@ class Lifetime(NamedTuple):
     """Of one channel, in its unit. `spread` are standard deviations over seeds, NaN of one seed.
 
     `mean`; `standard_deviation` about each run's own mean, root of the weighted mean of variances; `ranges` by exponent m,
-    (sum p R^m)^(1/m), those that do the same damage in the same time; `maximum` and `minimum` of all runs; `maximum_of_seed` and
-    `minimum_of_seed`, the same of every seed's runs, averaged over seeds.
+    (sum p R^m)^(1/m), those that do the same damage in the same time; `maximum` and `minimum` of all runs; `maximum_of_seed`
+    and `minimum_of_seed`, the same of every seed's runs, averaged over seeds.
     """
 
     mean: float
@@ -34,7 +35,7 @@ def weighted(probability: Float[np.ndarray, " case"], values: Runs) -> float:
     count = there.sum(axis=1)
     share = np.where(count > 0, probability, 0.0)
     means = np.where(there, values, 0.0).sum(axis=1) / np.maximum(count, 1)
-    return float(share @ means / share.sum()) if share.sum() > 0 else float("nan")
+    return float(share @ means / share.sum()) if share.sum() > 0 else math.nan
 
 
 def lifetime(
@@ -53,17 +54,14 @@ def lifetime(
         return largest * weighted(probability, (np.abs(values) / largest) ** power) ** (1 / power) if largest > 0 else 0.0
 
     def over_seeds(values: np.ndarray) -> float:
-        there = values[np.isfinite(values)]
-        return float(there.std(ddof=1)) if len(there) > 1 else float("nan")
+        return float(values.std(ddof=1)) if len(values) > 1 else math.nan
 
     if not np.isfinite(deviation).any():
-        nothing = float("nan")
-        return Lifetime(*(np.full(len(exponents), nothing) if name == "ranges" else nothing for name in Lifetime._fields))  # type: ignore[arg-type]
-    with np.errstate(invalid="ignore"):
-        each = np.array([root(deviation[:, [k]], 2) if np.isfinite(deviation[:, k]).any() else np.nan for k in range(deviation.shape[1])])
-        highest = np.array([np.max(column, initial=-np.inf, where=np.isfinite(column)) for column in most.T])
-        lowest = np.array([np.min(column, initial=np.inf, where=np.isfinite(column)) for column in least.T])
-    seen, under = highest[np.isfinite(highest)], lowest[np.isfinite(lowest)]
+        none = math.nan
+        return Lifetime(none, none, none, np.full(len(exponents), none), none, none, none, none, none, none)
+    seeds = [k for k in range(deviation.shape[1]) if np.isfinite(deviation[:, k]).any()]
+    each = np.array([root(deviation[:, [k]], 2) for k in seeds])
+    seen, under = np.nanmax(most[:, seeds], axis=0), np.nanmin(least[:, seeds], axis=0)
     return Lifetime(
         weighted(probability, mean),
         root(deviation, 2),

@@ -26,7 +26,7 @@ class Worker:
     def _started(self) -> "subprocess.Popen[str]":
         command = [sys.executable, "-m", "jaxhydro.sweep.worker", str(self.folder)]
         # a session of its own: a key pressed in the terminal stops this process only, which ends the others
-        self.words = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")
+        self.words = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")  # noqa: SIM115
         return subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.words, text=True,
             env=environment(self.device), start_new_session=True,
@@ -66,7 +66,8 @@ class Worker:
 def simulated(
     folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = (), at_once: bool = False
 ) -> Iterator[Found]:
-    """Each batch's runs when they are in the store, in the order in which they come. `devices` are GPUs, one for each worker."""
+    """Each batch's runs when they are in the store, in the order in which they come. `devices` are GPUs, one for each worker.
+    """
     left: queue.SimpleQueue[Sequence[int]] = queue.SimpleQueue()
     for batch in batches:
         left.put(batch)

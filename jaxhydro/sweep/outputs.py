@@ -40,16 +40,14 @@ def summary_of(data: xr.Dataset) -> Summary:
     probability = data.probability.values
     names, exponents = [str(name) for name in data.statistic.values], data.exponent.values
 
-    def of(channel: str, name: str) -> np.ndarray:
-        return found.sel(channel=channel).values[..., names.index(name)]
-
-    lifetimes = {
-        channel: lifetime(
-            probability, *(of(channel, name) for name in ("mean", "standard_deviation", "minimum", "maximum")),
-            data.ranges.sel(channel=channel).values, exponents,
+    lifetimes = {}
+    for channel in map(str, data.channel.values):
+        values = found.sel(channel=channel).values
+        mean, deviation, least, most = (
+            values[..., names.index(name)] for name in ("mean", "standard_deviation", "minimum", "maximum")
         )
-        for channel in map(str, data.channel.values)
-    }  # fmt: skip
+        ranges = data.ranges.sel(channel=channel).values
+        lifetimes[channel] = lifetime(probability, mean, deviation, least, most, ranges, exponents)
     failures = []
     for row, column in zip(*np.nonzero(status == FAILED)):
         case = {name: float(data[name].values[row]) for name in ("hs", "tp", "heading", "probability")}

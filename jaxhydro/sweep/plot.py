@@ -23,7 +23,8 @@ def scatter_figure(
     label: str,
     title: str,
 ) -> Figure:
-    """Sea states over Tp (s) and Hs (m), as large as they are probable and coloured by a standard deviation; hollow: none is known.
+    """Sea states over Tp (s) and Hs (m), as large as they are probable and coloured by a standard deviation; hollow: none is
+    known.
 
     Cases of one sea state are one mark: its probability is their sum, its deviation the root of their weighted mean square.
     """

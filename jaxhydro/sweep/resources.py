@@ -17,7 +17,8 @@ MOST = 512  # runs at once: beyond, a GPU gains nothing
 
 
 class Chosen(NamedTuple):
-    """Worker processes, runs that each takes at a time, GPUs by number (none: the cores), bytes of a run, and all that in words."""
+    """Worker processes, runs that each takes at a time, GPUs by number (none: the cores), bytes of a run, and all that in
+    words."""
 
     workers: int
     batch: int
@@ -39,8 +40,8 @@ def bytes_of_run(setup: Setup) -> float:
 
 
 def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Chosen:
-    """Workers and batch as given, else those that fit: on the CPU one run per core at a time (more at once are no faster), on GPUs
-    as many as their memory holds, at most `MOST`."""
+    """Workers and batch as given, else those that fit: on the CPU one run per core at a time (more at once are no faster), on
+    GPUs as many as their memory holds, at most `MOST`."""
     size = bytes_of_run(setup)
     gpus = [device for device in jax.local_devices() if device.platform == "gpu"]
     if gpus:

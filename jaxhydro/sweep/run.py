@@ -14,9 +14,10 @@ from jaxhydro.platform_schema import builtin_platforms
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import plan_of
+from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.local import Found, simulated
 from jaxhydro.sweep.resources import Chosen, chosen
-from jaxhydro.sweep.schema import Sweep, load_sweep
+from jaxhydro.sweep.schema import Sweep
 from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, check_same, create, discard, open_results
 
 
@@ -48,7 +49,8 @@ class Ran(NamedTuple):
 
 
 def prepared(sweep: Sweep, source: str) -> Prepared:
-    """Read what the sweep names, and build the model: all mistakes but those of single seas show here. `source` names it in errors.
+    """Read what the sweep names, and build the model: all mistakes but those of single seas show here. `source` names it in
+    errors.
 
     Raises InputError, EquilibriumError.
     """
@@ -119,9 +121,9 @@ def run_sweep(
 ) -> xr.Dataset:
     """Run a sweep, or what is left of it, and open its results, in the folder `out`: see docs/sweeps.md.
 
-    `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart` forgets
-    the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a dask.distributed one.
-    Raises InputError for a sweep that cannot be, or a folder with runs of another one; EquilibriumError.
+    `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart`
+    forgets the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a
+    dask.distributed one. Raises InputError for a sweep that cannot be, or a folder with runs of another one; EquilibriumError.
     """
     source = "sweep" if isinstance(sweep, Sweep) else str(sweep)
     made = prepared(sweep if isinstance(sweep, Sweep) else load_sweep(source), source)

@@ -1,13 +1,12 @@
 """The sweep file: which seas, how often, for how long. Checked, and as plain values; s, Hz, m, degrees."""
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from jaxhydro.environment import DOFS
-from jaxhydro.problems import Faults, Flag, InputError, NonNegative, Number, Positive, Problem, Schema, Text, read_yaml, validate
+from jaxhydro.problems import Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
 from jaxhydro.waves.sea import Stretching
 
 Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
@@ -49,9 +48,7 @@ class Grid(Schema):
         """Row by row."""
         shares = self.probability or ((1.0,) * len(self.tp),) * len(self.hs)
         return tuple(
-            SeaState(hs=hs, tp=tp, probability=share)
-            for hs, row in zip(self.hs, shares)
-            for tp, share in zip(self.tp, row)
+            SeaState(hs=hs, tp=tp, probability=share) for hs, row in zip(self.hs, shares) for tp, share in zip(self.tp, row)
         )
 
 
@@ -146,24 +143,3 @@ class Sweep(Schema):
     def start(self) -> float:
         """Time (s) from which on statistics are taken."""
         return min(TRANSIENT, 0.25 * self.duration) if self.transient is None else self.transient
-
-
-def load_sweep(path: str | Path) -> Sweep:
-    """The sweep in a YAML file, its paths and its scatter table resolved: those in it are relative to the file.
-
-    Raises InputError with all that is wrong in it, or with the first row of a scatter table that is.
-    """
-    path = Path(path)
-    sweep = validate(Sweep, read_yaml(path), str(path))
-    changed: dict[str, Any] = {}
-    if isinstance(sweep.scatter, str):
-        from jaxhydro.sweep.scatter import read_scatter
-
-        changed["scatter"] = read_scatter(path.parent / sweep.scatter, f"{path}: scatter")
-        if sweep.spectrum != "jonswap" and any(state.gamma is not None for state in changed["scatter"]):
-            raise InputError(str(path), [Problem("spectrum", "jonswap, for a table with gamma", sweep.spectrum)])
-    if (near := path.parent / sweep.platform).is_file():
-        changed["platform"] = str(near)
-    if sweep.calibration is not None:
-        changed["calibration"] = str(path.parent / sweep.calibration)
-    return sweep.model_copy(update=changed)

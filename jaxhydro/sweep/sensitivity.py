@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import equinox as eqx
@@ -22,8 +23,8 @@ from jaxhydro.waves.sea_state import SeaState, state_of
 
 
 class Sensitivity(NamedTuple):
-    """Lifetime standard deviation of a motion (m, rad), and its derivative to each coefficient by label (per its unit); the same
-    of every run (case, seed)."""
+    """Lifetime standard deviation of a motion (m, rad), and its derivative to each coefficient by label (per its unit); the
+    same of every run (case, seed)."""
 
     value: float
     gradient: dict[str, float]
@@ -34,19 +35,15 @@ class Sensitivity(NamedTuple):
 def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge") -> Sensitivity:
     """d/dc of sqrt(sum p s^2), s the standard deviation of a motion about its mean in each run, by forward mode.
 
-    The seas, their probabilities, steps and transient are those of the sweep; coefficients that follow a law of the sea state move
-    with their value at the reference. The static equilibrium is held: right for whatever does not move it, drag and damping and
-    added mass; not for stiffness. Runs are done one after the other in this process: for some tens of them.
+    The seas, their probabilities, steps and transient are those of the sweep; coefficients that follow a law of the sea state
+    move with their value at the reference. The static equilibrium is held: right for whatever does not move it, drag and
+    damping and added mass; not for stiffness. Runs are done one after the other in this process: for some tens of them.
 
-    Raises KeyError for an unknown label or motion, InputError, EquilibriumError, ValueError for a sea that cannot be or a platform
-    that leaves the box that its sea was prepared for.
+    Raises KeyError for an unknown label or motion, InputError, EquilibriumError, ValueError for a sea that cannot be or a
+    platform that leaves the box that its sea was prepared for.
     """
     plan, _ = plan_of(sweep, "sweep")
-    setup = setup_of(plan, sweep.platform, None)
-    if sweep.calibration is not None:
-        from pathlib import Path
-
-        setup = setup_of(plan, sweep.platform, Path(sweep.calibration))
+    setup = setup_of(plan, sweep.platform, None if sweep.calibration is None else Path(sweep.calibration))
     for label in labels:
         setup.model.about(label)
     column = DOFS.index(dof) if dof in DOFS else _no_motion(dof)
@@ -64,7 +61,8 @@ def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge"
         how = (setup.model, prepared, start, state, times, kept, jnp.asarray(step), steps, tuple(labels), column)
         found, slope, reached = _with_slope(values, *how)
         if not float(reached) <= prepared.half:
-            raise ValueError(f"the platform moves {float(reached):.3g} m along the waves in run {number}: too far for a derivative")
+            far = f"moves {float(reached):.3g} m along the waves in run {number}"
+            raise ValueError(f"the platform {far}: too far for a derivative")
         deviation[run.row, run.column], slopes[:, run.row, run.column] = float(found), np.asarray(slope)
     probability = np.array([case.probability for case in plan.cases])[:, None] / len(plan.seeds)
     value = math.sqrt(float(np.sum(probability * deviation**2)))

@@ -19,8 +19,8 @@ HIGHEST = 0.5  # Hz, that spectra are kept to
 
 
 class Kept(NamedTuple):
-    """Of one run, by channel (m, deg, N): `STATISTICS`, density at `frequencies` (unit^2/Hz), integral over `BANDS` (unit^2; NaN:
-    there is no such band), damage-equivalent ranges by exponent (unit), and the whole record or None."""
+    """Of one run, by channel (m, deg, N): `STATISTICS`, density at `frequencies` (unit^2/Hz), integral over `BANDS` (unit^2;
+    NaN: there is no such band), damage-equivalent ranges by exponent (unit), and the whole record or None."""
 
     statistics: Float[np.ndarray, "c s"]
     density: Float[np.ndarray, "c f"]
@@ -61,17 +61,16 @@ def kept_of(
         values = still(values[inside])
         spectrum = power_spectrum(when, values)
         limits = bands_in(name, peak_period)
-        areas = [band_integral(spectrum, *limits[band]) if band in limits else math.nan for band in BANDS]
-        ranges = equivalent_ranges(values, exponents, equivalent_frequency * (when[-1] - when[0]))
-        found.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(areas), ranges))
-    columns = [np.stack(column) for column in zip(*found)]
-    return Kept(*columns, np.stack(list(channels.values())))
+        integrals = [band_integral(spectrum, *limits[band]) if band in limits else math.nan for band in BANDS]
+        damage = equivalent_ranges(values, exponents, equivalent_frequency * (when[-1] - when[0]))
+        found.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))
+    of_statistics, density, areas, ranges = (np.stack(column) for column in zip(*found))
+    return Kept(of_statistics, density, areas, ranges, np.stack(list(channels.values())))
 
 
-def equivalent_ranges(
-    values: Float[np.ndarray, " t"], exponents: Sequence[float], cycles: float
-) -> Float[np.ndarray, " m"]:
-    """(sum n r^m / N)^(1/m): the range (unit of the record) of N even `cycles` that do the damage of the record's own n of range r.
+def equivalent_ranges(values: Float[np.ndarray, " t"], exponents: Sequence[float], cycles: float) -> Float[np.ndarray, " m"]:
+    """(sum n r^m / N)^(1/m): the range (unit of the record) of N even `cycles` that do the damage of the record's own n of
+    range r.
 
     Miner's (1945) sum with an S-N curve of slope m, its cycles by rainflow (ASTM E1049-85, 5.4.4), halves counted as halves.
     """

@@ -1,7 +1,7 @@
 """The store of a sweep: results.zarr (zarr v3, for `xarray.open_zarr`) and the inputs it was made of. Whole from the beginning.
 
-One chunk of every variable per run: writers never share one. A run's numbers are written first and its status last, each chunk by
-renaming a finished file, so that a process killed at any moment leaves a run that is done or one to be done again.
+One chunk of every variable per run: writers never share one. A run's numbers are written first and its status last, each chunk
+by renaming a finished file, so that a process killed at any moment leaves a run that is done or one to be done again.
 """
 
 import hashlib
@@ -124,7 +124,7 @@ class Store:
 
 def open_results(folder: Path) -> xr.Dataset:
     """The results of a sweep; variables are loaded from disk where they are used."""
-    data = xr.open_zarr(folder / RESULTS)
+    data = xr.open_zarr(folder / RESULTS, chunks=None)
     return data.assign_coords({name: coordinate.load() for name, coordinate in data.coords.items()})
 
 
@@ -159,11 +159,13 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
         _coordinate(group, "unit", ("channel",), [unit(channel) for channel in channels], "")
         _coordinate(group, "band_limits", ("case", "channel", "band", "edge"), limits, "Hz")
         runs = (len(plan.cases), len(plan.seeds))
-        flags = {"flag_values": [TO_DO, DONE, FAILED], "flag_meanings": "to_do done failed"}
-        for name, dtype, fill, about in (("status", "u1", TO_DO, flags), ("reason", "string", "", {"long_name": "of a failure"})):
+        flags: dict[str, Any] = {"flag_values": [TO_DO, DONE, FAILED], "flag_meanings": "to_do done failed"}
+        said: dict[str, Any] = {"long_name": "why a run failed"}
+        for name, dtype, fill, about in (("status", "u1", TO_DO, flags), ("reason", "string", "", said)):
             group.create_array(
-                name, shape=runs, chunks=(1, 1), dtype=dtype, fill_value=fill, dimension_names=("case", "seed"), attributes=about
-            )
+                name, shape=runs, chunks=(1, 1), dtype=dtype, fill_value=fill, dimension_names=("case", "seed"),
+                attributes=about,
+            )  # fmt: skip
         for name, (dims, text) in KEPT.items():
             if name == "series" and not plan.time_series:
                 continue
@@ -178,10 +180,11 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
 def _coordinate(group: zarr.Group, name: str, dims: tuple[str, ...], values: Any, units: str) -> None:
     text = not isinstance(values, np.ndarray)
     data = np.array(list(values), dtype=np.dtypes.StringDType()) if text else values
-    about = {"units": units} if units else {}
+    about: dict[str, Any] = {"units": units} if units else {}
     array = group.create_array(
-        name, shape=data.shape, chunks=data.shape, dtype="string" if text else data.dtype, dimension_names=dims, attributes=about
-    )
+        name, shape=data.shape, chunks=data.shape, dtype="string" if text else data.dtype, dimension_names=dims,
+        attributes=about,
+    )  # fmt: skip
     array[...] = data
 
 

@@ -1,7 +1,7 @@
 """A process that simulates runs of a sweep and writes them to its store: `python -m jaxhydro.sweep.worker FOLDER`.
 
-Lists of run numbers come in on standard input, one line each; the same with what became of them goes out, one line each. It ends
-with its standard input: when the process that started it ends, however it does.
+Lists of run numbers come in on standard input, one line each; the same with what became of them goes out, one line each. It
+ends with its standard input: when the process that started it ends, however it does.
 """
 
 import json

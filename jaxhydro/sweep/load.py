@@ -1,13 +1,33 @@
-"""A scatter table in a CSV file: Hs, Tp, probability and perhaps gamma in columns, one sea state in a row."""
+"""A sweep read from its files: the YAML, and a scatter table in a CSV file, one sea state in a row."""
 
 import csv
 import math
 from pathlib import Path
+from typing import Any
 
-from jaxhydro.problems import InputError, Problem, shown, suggest
-from jaxhydro.sweep.schema import COLUMNS, SeaState
+from jaxhydro.problems import InputError, Problem, read_yaml, shown, suggest, validate
+from jaxhydro.sweep.schema import COLUMNS, SeaState, Sweep
 
 LIMITS = {"hs": (0.0, "a number > 0"), "tp": (0.0, "a number > 0"), "probability": (-1e-300, "a number >= 0")}
+
+
+def load_sweep(path: str | Path) -> Sweep:
+    """The sweep in a YAML file, its paths and its scatter table resolved: those in it are relative to the file.
+
+    Raises InputError with all that is wrong in it, or with the first row of a scatter table that is.
+    """
+    path = Path(path)
+    sweep = validate(Sweep, read_yaml(path), str(path))
+    changed: dict[str, Any] = {}
+    if isinstance(sweep.scatter, str):
+        changed["scatter"] = read_scatter(path.parent / sweep.scatter, f"{path}: scatter")
+        if sweep.spectrum != "jonswap" and any(state.gamma is not None for state in changed["scatter"]):
+            raise InputError(str(path), [Problem("spectrum", "jonswap, for a table with gamma", sweep.spectrum)])
+    if (near := path.parent / sweep.platform).is_file():
+        changed["platform"] = str(near)
+    if sweep.calibration is not None:
+        changed["calibration"] = str(path.parent / sweep.calibration)
+    return sweep.model_copy(update=changed)
 
 
 def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
