@@ -40,6 +40,7 @@ def scatter_figure(
     size = np.clip(420 * share / share.max(), 18, None) * min(1.0, 30 / len(states))
     solid = np.isfinite(colour)
     order = np.argsort(-size)
+    order = order[solid[order]]
     marks = ax.scatter(
         states[order, 1], states[order, 0], s=size[order], c=colour[order], cmap=COLOURS, lw=0.4, edgecolors="white", zorder=2
     )

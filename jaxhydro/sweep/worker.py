@@ -22,7 +22,8 @@ def environment(device: str | None = None) -> dict[str, str]:
     """Environment variables of a worker: one thread of arithmetic, on the GPU `device` where one is named."""
     found = dict(os.environ)
     found["NPROC"] = "1"  # threads of XLA's pool
-    found["XLA_FLAGS"] = f"{found.get('XLA_FLAGS', '')} {FLAG}".strip()
+    if FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
+        found["XLA_FLAGS"] = f"{flags} {FLAG}".strip()
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         found[name] = "1"
     if device is not None:
