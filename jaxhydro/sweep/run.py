@@ -2,6 +2,7 @@
 
 import time as clock
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from importlib import resources
 from os import PathLike
 from pathlib import Path
@@ -57,6 +58,8 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     plan, left_out = plan_of(sweep, source)
     calibration = None if sweep.calibration is None else _calibration_file(Path(sweep.calibration))
     setup = setup_of(plan, sweep.platform, calibration)
+    # as chosen for this platform: workers need not choose again
+    setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     return Prepared(Inputs(plan, _platform_text(sweep.platform), text), setup, sweep.platform, left_out)
 

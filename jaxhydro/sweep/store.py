@@ -191,7 +191,7 @@ def _coordinate(group: zarr.Group, name: str, dims: tuple[str, ...], values: Any
 def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
     plan = json.loads(inputs.plan.to_json())
     options = {name: value for name, value in plan.items() if name not in ("cases", "seeds") and value is not None}
-    about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.diffraction, "step_at_most": setup.limit}
+    about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.diffraction}
     coordinates = "hs tp heading probability unit band_limits"
     return options | about | {
         "source": f"jaxhydro {jaxhydro.__version__}",
