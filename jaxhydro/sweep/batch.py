@@ -31,6 +31,7 @@ from jaxhydro.sweep.statistics import Kept, kept_of
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import IrregularSea, SupportSea
 from jaxhydro.waves.sea_state import state_of
+from jaxhydro.waves.second_order import elevation_spectrum
 
 PLATFORM, CALIBRATION, PLAN = "platform.yaml", "calibration.json", "plan.json"  # in a sweep's folder of inputs
 
@@ -163,7 +164,7 @@ def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray) -> Ke
     plan, times = setup.plan, setup.times
     if not (numbers := np.isfinite(position).all(axis=1)).all():
         raise ValueError(f"the motion grows beyond all bounds at {times[np.argmin(numbers)]:.4g} s: a smaller step, perhaps")
-    channels = {"wave": np.asarray(sea.gauge(times))}
+    channels = {"wave": elevation(sea, times)}
     channels |= {dof: for_people(dof, position[:, DOFS.index(dof)]) for dof in plan.motions}
     if _line_count(setup.model):
         model = setup.model.in_sea(state_of(sea.components))
@@ -171,6 +172,25 @@ def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray) -> Ke
         channels |= {f"line{i + 1}": column for i, column in enumerate(tension.T)}
     kept = kept_of(times, plan.start, channels, run.case.tp, plan.exponents, plan.equivalent_frequency)
     return kept if plan.time_series else kept._replace(series=None)
+
+
+def elevation(sea: IrregularSea, times: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
+    """`IrregularSea.gauge` at the origin (m) at even times (s) from 0 on, by one Fourier transform where they divide the period."""
+    waves, step = sea.components, float(times[1] - times[0])
+    period, (first, last) = float(waves.period), waves.harmonics
+    count = round(period / step)
+    if abs(count * step - period) > 1e-9 * period or count <= 4 * last:
+        return sea.gauge(times)
+    spectrum = np.zeros(count // 2 + 1, complex)
+    spectrum[first : last + 1] = np.asarray(waves.complex_amplitude())
+    if sea.order == 2:
+        bound = np.asarray(_bound(waves, sea.environment, jnp.zeros(2), sea.kinds))
+        spectrum[: len(bound)] += bound
+    spectrum[0] *= 2
+    return np.resize(np.fft.irfft(spectrum, count) * (count / 2), len(times))
+
+
+_bound = eqx.filter_jit(elevation_spectrum)
 
 
 def _lines(model: Model) -> MooringLines | None:
