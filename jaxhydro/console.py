@@ -85,17 +85,18 @@ def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], 
     Without a terminal it is a line every `EVERY` seconds, and one at the end.
     """
     shown = console(stderr=True)
-    since = last = clock.monotonic()
     if not shown.is_terminal:
+        told: list[tuple[float, int]] = []  # when how many were done
 
         def note(now: int, remark: str) -> None:
-            nonlocal last
             time = clock.monotonic()
-            if now < total and time - last < EVERY:
+            if told and now < total and time - told[-1][0] < EVERY:
                 return
-            last = time
-            left = (time - since) * (total - now) / max(now - done, 1)
-            shown.print(Text(f"{now} of {total} {what}, {remark}, {_span(left)} left"), soft_wrap=True)
+            left = ""
+            if told and now > told[0][1]:  # the first one takes compilation along
+                left = f", {_span((time - told[0][0]) * (total - now) / (now - told[0][1]))} left"
+            told.append((time, now))
+            shown.print(Text(f"{now} of {total} {what}, {remark}{left}"), soft_wrap=True)
 
         yield note
         return

@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter
 from jaxhydro.plot import GREY, MEASURED, SIMULATED, stack
 from jaxhydro.sweep.lifetime import exceedance
 
-WRITTEN = 40  # sea states, up to which their probability is written into the diagram
+WRITTEN = 16  # sea states, up to which their probability is written into the diagram
 COLOURS = "viridis"
 Figure = Any
 
@@ -36,7 +36,6 @@ def scatter_figure(
     square = np.bincount(of, probability * np.where(there, deviation, 0.0) ** 2, len(states))
     colour = np.sqrt(square / np.where(known > 0, known, np.nan))
     figure, (ax,) = stack([2.3])
-    # marks as large as their neighbours leave room for
     size = np.clip(420 * share / share.max(), 18, None) * min(1.0, 30 / len(states))
     solid = np.isfinite(colour)
     order = np.argsort(-size)
@@ -47,9 +46,9 @@ def scatter_figure(
     if not solid.all():
         ax.scatter(states[~solid, 1], states[~solid, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3)
     if len(states) <= WRITTEN:
-        for (height, period), one in zip(states, share):
+        for (height, period), one, area in zip(states, share, size):
             ax.annotate(
-                f"{100 * one:.2g} %", (period, height), textcoords="offset points", xytext=(0, 12), ha="center", fontsize=6.5,
+                f"{100 * one:.2g} %", (period, height), textcoords="offset points", xytext=(0, np.sqrt(area / np.pi) + 2), ha="center", fontsize=6.5,
                 color=MEASURED,
             )  # fmt: skip
     ax.margins(0.16)
@@ -59,7 +58,7 @@ def scatter_figure(
     bar = figure.colorbar(marks, ax=ax, pad=0.02, aspect=28)
     bar.set_label(label)
     bar.outline.set_visible(False)
-    figure.suptitle(title, x=0.015, ha="left", fontsize=8, fontweight="bold")
+    figure.suptitle(f"{title}, areas by probability", x=0.015, ha="left", fontsize=8, fontweight="bold")
     return figure
 
 
@@ -89,10 +88,10 @@ def exceedance_figure(
         ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         ax.minorticks_off()
         ax.set_xlabel(f"Maximum of {name}")
-        ax.set_ylabel("Exceeded in")
+        ax.set_ylabel("Share of runs above")
     legend = figure.legend(
         list(artists.values()), list(artists), loc="outside upper left", ncols=2, alignment="left",
-        title=f"{title}\nshare of runs of {duration:g} s",
+        title=f"{title}, runs of {duration:g} s",
     )  # fmt: skip
     legend.get_title().set_fontweight("bold")
     return figure
