@@ -170,7 +170,7 @@ def test_a_worker_that_is_killed_loses_nothing(file, whole, tmp_path) -> None:
     worker = Worker(tmp_path / "o", None)
     try:
         worker.process.kill()
-        assert worker.ask([9], False) == [(9, True)]
+        assert worker.ask([9]) == [(9, True)]
     finally:
         worker.end()
     status = Store(tmp_path / "o").status()

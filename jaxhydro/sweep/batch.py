@@ -61,11 +61,19 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     return Setup(plan, model, times, limit)
 
 
-@lru_cache(maxsize=2)
 def setup_in(inputs: Path) -> Setup:
-    """From a sweep's folder of inputs."""
-    calibration = inputs / CALIBRATION
-    plan = Plan.from_json((inputs / PLAN).read_text(encoding="utf-8"))
+    """From a sweep's folder of inputs; kept for as long as it stays as it is."""
+    return _setup_in(inputs, (inputs / PLAN).stat().st_mtime_ns)
+
+
+def plan_in(inputs: Path) -> Plan:
+    """The plan in a sweep's folder of inputs."""
+    return Plan.from_json((inputs / PLAN).read_text(encoding="utf-8"))
+
+
+@lru_cache(maxsize=2)
+def _setup_in(inputs: Path, stamp: int) -> Setup:
+    calibration, plan = inputs / CALIBRATION, plan_in(inputs)
     return setup_of(plan, inputs / PLATFORM, calibration if calibration.is_file() else None)
 
 
@@ -97,7 +105,7 @@ def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
             seas[run.number] = sea_of(setup, run)
         except Exception as error:
             found[run.number] = reason_of(error)
-    positions = together(setup.model, list(seas.values()), setup.times, setup.limit) if seas else []
+    positions = _in_halves(setup, list(seas.values()))
     moved = dict(zip(seas, positions))
     for run in runs:
         if (position := moved.get(run.number)) is not None:
@@ -108,6 +116,17 @@ def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
         elif run.number in seas:  # out of the box that its sea was made for, or without equilibrium
             found[run.number] = outcome(setup, run)
     return [found[run.number] for run in runs]
+
+
+def _in_halves(setup: Setup, seas: list[IrregularSea]) -> list[np.ndarray | None]:
+    """`together`, half as many at once where the memory does not hold all."""
+    if not seas:
+        return []
+    try:
+        return together(setup.model, seas, setup.times, setup.limit)
+    except jax.errors.JaxRuntimeError:
+        half = len(seas) // 2
+        return _in_halves(setup, seas[:half]) + _in_halves(setup, seas[half:]) if half else [None]
 
 
 def together(
@@ -175,7 +194,8 @@ def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray) -> Ke
 
 
 def elevation(sea: IrregularSea, times: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
-    """`IrregularSea.gauge` at the origin (m) at even times (s) from 0 on, by one Fourier transform where they divide the period."""
+    """`IrregularSea.gauge` at the origin (m) at even times (s) from 0 on, by one Fourier transform where they divide the
+    period."""
     waves, step = sea.components, float(times[1] - times[0])
     period, (first, last) = float(waves.period), waves.harmonics
     count = round(period / step)

@@ -11,7 +11,7 @@ PATIENCE = 30.0  # s, for the scheduler to answer
 Found = list[tuple[int, bool]]
 
 
-def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: str, at_once: bool = False) -> Iterator[Found]:
+def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: str) -> Iterator[Found]:
     """Each batch's runs when they are in the store, in the order in which they come. Workers must see `folder` by the same
     path.
 
@@ -30,9 +30,7 @@ def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: s
         raise InputError("--scheduler", [Problem("", "a scheduler that answers", f"{scheduler!r} ({said})")]) from None
     with client:
         place = str(folder.resolve())
-        futures = {
-            client.submit(simulate_runs, place, list(batch), at_once, pure=False, retries=RETRIES): batch for batch in batches
-        }
+        futures = {client.submit(simulate_runs, place, list(batch), pure=False, retries=RETRIES): batch for batch in batches}
         for future in as_completed(futures):
             if future.status == "finished":
                 yield future.result()

@@ -1,5 +1,6 @@
 """The sweep command: from a sweep file to its store, tables and figures."""
 
+import os
 from pathlib import Path
 
 from jaxhydro.command import print_rest
@@ -31,6 +32,7 @@ def sweep(
 
     Raises InputError for bad input, EquilibriumError where the platform does not rest, Stopped.
     """
+    os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
     made = prepared(load_sweep(source), str(source))
     # bad input is told before anything is begun
     resumed = opened(out, made, restart)

@@ -20,7 +20,7 @@ class Worker:
     """A process that simulates runs, and its pipes."""
 
     def __init__(self, folder: Path, device: str | None) -> None:
-        self.folder, self.device = folder, device
+        self.folder, self.device, self.ended = folder, device, False
         self.process = self._started()
 
     def _started(self) -> "subprocess.Popen[str]":
@@ -32,20 +32,22 @@ class Worker:
             env=environment(self.device), start_new_session=True,
         )  # fmt: skip
 
-    def ask(self, numbers: Sequence[int], at_once: bool) -> Found:
+    def ask(self, numbers: Sequence[int]) -> Found:
         """Have runs simulated and written; a killed process is replaced, and its runs are done again."""
         said = ""
         for _ in range(TRIES):
             process = self.process
             assert process.stdin and process.stdout
             try:
-                process.stdin.write(json.dumps({"numbers": list(numbers), "at_once": at_once}) + "\n")
+                process.stdin.write(json.dumps(list(numbers)) + "\n")
                 process.stdin.flush()
                 if answer := process.stdout.readline():
                     return [(number, done) for number, done in json.loads(answer)]
             except BrokenPipeError:
                 pass
             said = self._last_words()
+            if self.ended:
+                return []
             self.process = self._started()
         return fail_runs(str(self.folder), numbers, f"the process that simulated it ended {TRIES} times ({said})")
 
@@ -58,16 +60,14 @@ class Worker:
         return lines[-1][:300] if lines else f"exit status {code}"
 
     def end(self) -> None:
-        """End the process."""
+        """End the process for good."""
+        self.ended = True
         self.process.kill()
         self.process.wait()
 
 
-def simulated(
-    folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = (), at_once: bool = False
-) -> Iterator[Found]:
-    """Each batch's runs when they are in the store, in the order in which they come. `devices` are GPUs, one for each worker.
-    """
+def simulated(folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = ()) -> Iterator[Found]:
+    """Each batch's runs when they are in the store, in the order in which they come. `devices` are GPUs, one per worker."""
     left: queue.SimpleQueue[Sequence[int]] = queue.SimpleQueue()
     for batch in batches:
         left.put(batch)
@@ -78,7 +78,7 @@ def simulated(
     def serve(worker: Worker) -> None:
         try:
             while not stopped.is_set():
-                answers.put(worker.ask(left.get_nowait(), at_once))
+                answers.put(worker.ask(left.get_nowait()))
         except queue.Empty:
             pass
         except BaseException as error:

@@ -48,8 +48,8 @@ def scatter_figure(
     if len(states) <= WRITTEN:
         for (height, period), one, area in zip(states, share, size):
             ax.annotate(
-                f"{100 * one:.2g} %", (period, height), textcoords="offset points", xytext=(0, np.sqrt(area / np.pi) + 2), ha="center", fontsize=6.5,
-                color=MEASURED,
+                f"{100 * one:.2g} %", (period, height), textcoords="offset points", xytext=(0, np.sqrt(area / np.pi) + 2),
+                ha="center", fontsize=6.5, color=MEASURED,
             )  # fmt: skip
     ax.margins(0.16)
     ax.set_ylim(0, ax.get_ylim()[1])

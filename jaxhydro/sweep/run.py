@@ -103,12 +103,11 @@ def run_all(
 
 
 def _answers(folder: Path, batches: list[list[int]], how: Chosen, scheduler: str | None) -> Iterator[Found]:
-    at_once = bool(how.devices)
     if scheduler is None:
-        return simulated(folder, batches, how.workers, how.devices, at_once)
+        return simulated(folder, batches, how.workers, how.devices)
     from jaxhydro.sweep.cluster import simulated_there
 
-    return simulated_there(folder, batches, scheduler, at_once)
+    return simulated_there(folder, batches, scheduler)
 
 
 def run_sweep(

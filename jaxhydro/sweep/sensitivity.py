@@ -58,7 +58,18 @@ def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge"
         there = setup.model.in_sea(state)
         start = State(equilibrium(there), jnp.zeros(6), there.settled(jnp.zeros(6)))
         prepared, step, steps = prepared_for(there, sea, setup.times, setup.limit)
-        how = (setup.model, prepared, start, SeaState(*map(jnp.asarray, state)), times, kept, jnp.asarray(step), steps, tuple(labels), column)
+        how = (
+            setup.model,
+            prepared,
+            start,
+            jax.tree.map(jnp.asarray, state),
+            times,
+            kept,
+            jnp.asarray(step),
+            steps,
+            tuple(labels),
+            column,
+        )
         found, slope, reached = _with_slope(values, *how)
         if not float(reached) <= prepared.half:
             far = f"moves {float(reached):.3g} m along the waves in run {number}"

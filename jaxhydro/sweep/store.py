@@ -89,6 +89,9 @@ def check_same(folder: Path, inputs: Inputs) -> None:
     for name, what in (("platform", "platform file"), ("calibration", "calibration")):
         if getattr(old, name) != getattr(inputs, name):
             problems.append(Problem(name, f"the {what} of the runs that are there", "another", WAYS))
+    made_by = str(zarr.open_group(folder / RESULTS, mode="r", use_consolidated=False).attrs.get("source"))
+    if made_by != (mine := f"jaxhydro {jaxhydro.__version__}"):
+        problems.append(Problem("", f"{made_by}, which made the runs that are there", mine, WAYS))
     if problems:
         raise InputError(f"--out {folder}", problems[:1])
 
@@ -114,6 +117,8 @@ class Store:
             self.arrays["reason"][at] = found
             self.arrays["status"][at] = FAILED
             return False
+        if self.arrays["status"][at] == FAILED:
+            self.arrays["reason"][at] = ""
         for name in KEPT:
             values = getattr(found, name)
             if values is not None:

@@ -26,30 +26,33 @@ def environment(device: str | None = None) -> dict[str, str]:
         found["XLA_FLAGS"] = f"{flags} {FLAG}".strip()
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         found[name] = "1"
+    found.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # of GPU memory, which the processes share
     if device is not None:
         found["CUDA_VISIBLE_DEVICES"] = device
     return found
 
 
-def simulate_runs(folder: str, numbers: Sequence[int], at_once: bool = False) -> list[tuple[int, bool]]:
-    """Simulate runs and write them; each with whether it is done. What is done already is left alone."""
+def simulate_runs(folder: str, numbers: Sequence[int]) -> list[tuple[int, bool]]:
+    """Simulate runs and write them, on a GPU all at once; each with whether it is done."""
     prepare()
-    from jaxhydro.sweep.batch import outcome, outcomes, setup_in
-    from jaxhydro.sweep.store import INPUTS
+    import jax
 
-    store, setup = _store(Path(folder)), setup_in(Path(folder) / INPUTS)
+    from jaxhydro.sweep.batch import outcome, outcomes, setup_in
+    from jaxhydro.sweep.store import INPUTS, Store
+
+    store, setup = Store(Path(folder)), setup_in(Path(folder) / INPUTS)
     runs = [setup.plan.run(number) for number in numbers]
-    if at_once:
+    if jax.default_backend() != "cpu":
         return [(run.number, store.write(run, found)) for run, found in zip(runs, outcomes(setup, runs))]
     return [(run.number, store.write(run, outcome(setup, run))) for run in runs]
 
 
 def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> list[tuple[int, bool]]:
     """Write that runs failed; for those whose process was lost."""
-    from jaxhydro.sweep.batch import setup_in
-    from jaxhydro.sweep.store import INPUTS
+    from jaxhydro.sweep.batch import plan_in
+    from jaxhydro.sweep.store import INPUTS, Store
 
-    store, plan = _store(Path(folder)), setup_in(Path(folder) / INPUTS).plan
+    store, plan = Store(Path(folder)), plan_in(Path(folder) / INPUTS)
     return [(number, store.write(plan.run(number), reason)) for number in numbers]
 
 
@@ -58,13 +61,6 @@ def prepare() -> None:
     """Set JAX up, once in a process, and to one thread where it has not begun yet."""
     os.environ.update({name: value for name, value in environment().items() if name not in os.environ or name == "XLA_FLAGS"})
     start()
-
-
-@lru_cache(maxsize=1)
-def _store(folder: Path):
-    from jaxhydro.sweep.store import Store
-
-    return Store(folder)
 
 
 def main() -> None:
@@ -81,9 +77,7 @@ def main() -> None:
 
     threading.Thread(target=listen, daemon=True).start()
     while True:
-        asked = json.loads(lines.get())
-        found = simulate_runs(folder, asked["numbers"], asked["at_once"])
-        answers.write(json.dumps(found) + "\n")
+        answers.write(json.dumps(simulate_runs(folder, json.loads(lines.get()))) + "\n")
 
 
 if __name__ == "__main__":
