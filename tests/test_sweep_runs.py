@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 import jaxhydro as jh
 from jaxhydro import cli
-from jaxhydro.sweep import lifetime_sensitivity, load_sweep, run_sweep
+from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
 from jaxhydro.sweep.batch import outcome, outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
 from jaxhydro.sweep.local import Worker
@@ -183,15 +183,15 @@ def test_a_cluster_that_loses_a_worker_gives_the_same(file, whole, tmp_path) -> 
     killed: list[int] = []
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, host="127.0.0.1"
-    ) as cluster:
+    ) as local:
 
         def kill_one(now) -> None:
             if not killed:
-                killed.append(next(iter(cluster.workers.values())).pid)
+                killed.append(next(iter(local.workers.values())).pid)
                 os.kill(killed[0], signal.SIGKILL)
                 assert now.done + now.failed < RUNS - 4
 
-        run_sweep(file, tmp_path / "o", scheduler=cluster.scheduler_address, progress=kill_one)
+        run_sweep(file, tmp_path / "o", scheduler=local.scheduler_address, progress=kill_one)
     assert killed
     assert_bitwise(tmp_path / "o", whole)
 
@@ -239,6 +239,13 @@ def test_another_platform_is_not_mixed_in(whole, tmp_path) -> None:
 def test_bad_input_leaves_nothing_behind(tmp_path, changes, words) -> None:
     file = written(tmp_path / "in", **changes)
     assert words in command("sweep", file, "--out", tmp_path / "o", status=2)
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_scheduler_that_does_not_answer_leaves_nothing_behind(file, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
+    words = ("sweep", file, "--out", tmp_path / "o", "--scheduler", "tcp://127.0.0.1:9")
+    assert "--scheduler: expected a scheduler that answers" in command(*words, status=2)
     assert not (tmp_path / "o").exists()
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from jaxhydro.command import print_rest
 from jaxhydro.console import complain, counting, say, table
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.sweep.cluster import client_of
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.outputs import Summary, summary_of, write_outputs
 from jaxhydro.sweep.resources import chosen
@@ -35,6 +36,8 @@ def sweep(
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
     made = prepared(load_sweep(source), str(source))
     # bad input is told before anything is begun
+    if scheduler is not None:
+        client_of(scheduler).close()
     resumed = opened(out, made, restart)
     numbers = to_do(out, retry_failed)
     _print_plan(made)
