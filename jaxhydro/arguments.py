@@ -20,6 +20,7 @@ EPILOG = "\n\n".join((
     "jaxhydro demo --out demo",
     "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --out sea",
     "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
+    "jaxhydro sweep sweep.yaml --out life",
     "jaxhydro calibrate my-campaign --out results",
     "jaxhydro diagnose my-campaign --out diagnosis",
     "[bold]Formats[/bold]",
@@ -48,6 +49,16 @@ DIAGNOSING = "\n\n".join((
     "[bold]What it writes[/bold]",
     "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "
     "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so.",
+))  # fmt: skip
+
+SWEEPING = "\n\n".join((
+    "[bold]A sweep file[/bold]",
+    "platform: volturnus-s",
+    "scatter: scatter.csv           # columns Hs,Tp,probability",
+    "headings: [0, 30]              # deg",
+    "seeds: 6",
+    "All keys, and what it writes: docs/sweeps.md.",
+    "Exit status: 0 done; 2 the input is wrong; 3 runs failed, each with its reason in sweep.json; 130 stopped.",
 ))  # fmt: skip
 
 
@@ -213,3 +224,17 @@ GlobalSearch = Annotated[
 SearchSeed = Annotated[int, typer.Option(help="Of the search.", min=0)]
 SearchSeconds = Annotated[float, typer.Option(help="CPU time of the search, s.", min=1.0)]
 Begin = Annotated[Path | None, typer.Option(help="A calibration.json whose coefficients are begun from.")]
+Workers = Annotated[
+    int | None, typer.Option(help="Processes, one core or GPU each.", show_default="as many as cores and memory hold", min=1)
+]
+Batch = Annotated[
+    int | None,
+    typer.Option(
+        help="Runs that each takes at a time: on a GPU at once, else one after the other. Results do not depend on it.",
+        show_default="1; on a GPU what its memory holds",
+        min=1,
+    ),
+]
+Scheduler = Annotated[
+    str | None, typer.Option(help="Address of a dask.distributed scheduler, whose workers run the sweep.", metavar="ADDRESS")
+]

@@ -1,6 +1,5 @@
 """The command line. What is heavy is imported by the command that needs it."""
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -205,6 +204,32 @@ def demo(out: Out = Path("jaxhydro-demo")) -> None:
     _calibrate(folder, out, True, TRUTH)
 
 
+@app.command(epilog=arguments.SWEEPING)
+def sweep(
+    file: Annotated[Path, typer.Argument(help="A sweep file.", metavar="SWEEP")],
+    out: Out,
+    workers: arguments.Workers = None,
+    batch: arguments.Batch = None,
+    scheduler: arguments.Scheduler = None,
+    restart: Annotated[bool, typer.Option("--restart", help="Forget the runs that are in the folder.")] = False,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Do runs that failed again.")] = False,
+) -> None:
+    """All sea states of a scatter table, from all headings, with all seeds: results.zarr, lifetime statistics, figures.
+
+    Stopped or killed, the same command goes on where it was.
+    """
+    out = options.results_folder(out, "sweep.json")
+    _start()
+    from jaxhydro.sweep import command
+
+    try:
+        if not command.sweep(file, out, workers, batch, restart, retry_failed, scheduler):
+            raise typer.Exit(NOT_CONVERGED)
+    except command.Stopped as error:
+        complain(str(error))
+        raise typer.Exit(STOPPED) from None
+
+
 @app.command()
 def platforms() -> None:
     """List the built-in platforms."""
@@ -237,21 +262,10 @@ def _calibrate(
 
 
 def _start() -> None:
-    """Set JAX up: double precision, and a compilation cache that lasts, unless its folder cannot be written."""
-    import jax
+    """Set JAX up."""
+    from jaxhydro.start import start
 
-    jax.config.update("jax_enable_x64", True)
-    home = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache")
-    try:
-        default = Path(home).expanduser() / "jaxhydro" / "xla"
-        folder = Path(os.environ.get("JAX_COMPILATION_CACHE_DIR") or default)
-        folder.mkdir(parents=True, exist_ok=True)
-    except (OSError, RuntimeError):
-        return
-    if os.access(folder, os.W_OK):
-        jax.config.update("jax_compilation_cache_dir", str(folder))
-        jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
-        jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+    start()
 
 
 def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, how: dict[str, Any]) -> None:

@@ -2,6 +2,7 @@
 
 import math
 import sys
+import time as clock
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -12,6 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from rich.table import Table
 from rich.text import Text
 
+EVERY = 10.0  # s between lines of progress that go to a file
 WIDTH = 120  # where there is no terminal to ask
 
 
@@ -73,6 +75,46 @@ def progress() -> Iterator[Callable[[Any], None]]:
             bar.update(task, description=str(now.stage), completed=furthest, state=_reached(now))
 
         yield update
+
+
+@contextmanager
+def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], None]]:
+    """A line on standard error with how many of `total` are done, how fast, and the time left; to be told the number and a
+    remark.
+
+    Without a terminal it is a line every `EVERY` seconds, and one at the end.
+    """
+    shown = console(stderr=True)
+    if not shown.is_terminal:
+        told: list[tuple[float, int]] = []  # when how many were done
+
+        def note(now: int, remark: str) -> None:
+            time = clock.monotonic()
+            if told and now < total and time - told[-1][0] < EVERY:
+                return
+            left = ""
+            if told and now > told[0][1]:  # the first one takes compilation along
+                left = f", {_span((time - told[0][0]) * (total - now) / (now - told[0][1]))} left"
+            told.append((time, now))
+            shown.print(Text(f"{now} of {total} {what}, {remark}{left}"), soft_wrap=True)
+
+        yield note
+        return
+    columns = (
+        TextColumn("{task.completed:.0f} of {task.total:.0f} {task.description}"), BarColumn(bar_width=24),
+        TextColumn("{task.fields[remark]}"), TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
+    )  # fmt: skip
+    with Progress(*columns, console=shown, transient=True) as bar:
+        task = bar.add_task(what, total=total, completed=done, remark="compiling")
+        yield lambda now, remark: bar.update(task, completed=now, remark=remark)
+
+
+def _span(seconds: float) -> str:
+    """A time in words."""
+    for size, name in ((86400, "d"), (3600, "h"), (60, "min")):
+        if seconds >= size:
+            return f"{seconds / size:.1f} {name}"
+    return f"{seconds:.0f} s"
 
 
 def _reached(now: Any) -> str:

@@ -65,11 +65,12 @@ def for_people(channel: str, values: np.ndarray | float) -> np.ndarray:
     return np.rad2deg(values) if unit_of(channel) == "deg" else np.asarray(values)
 
 
-def stack(heights: list[float]) -> tuple[Figure, list[Axes]]:
-    """A half-page figure of panels over each other on one horizontal axis; heights in inches. Call within STYLE."""
-    figure = Figure(figsize=(WIDTH, sum(heights) + 0.75), layout="constrained")
+def stack(heights: list[float], shared: bool = True) -> tuple[Figure, list[Axes]]:
+    """A half-page figure of panels over each other, on one horizontal axis where it is shared; heights in inches. Call within
+    STYLE."""
+    figure = Figure(figsize=(WIDTH, sum(heights) + (0.75 if shared else 0.45 * (len(heights) + 1))), layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.subplots(len(heights), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights})
+    grid = figure.subplots(len(heights), 1, sharex=shared, squeeze=False, gridspec_kw={"height_ratios": heights})
     axes = list(grid[:, 0])
     for ax, height in zip(axes, heights, strict=True):
         ax.yaxis.set_major_locator(MaxNLocator(5 if height > 1 else 3, steps=[1, 2, 2.5, 5, 10]))

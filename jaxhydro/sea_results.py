@@ -33,17 +33,18 @@ def summary(time: np.ndarray, channels: Mapping[str, np.ndarray], peak_period: f
     }
 
 
-def _still(values: np.ndarray) -> np.ndarray:
+def still(values: np.ndarray) -> np.ndarray:
+    """Values, or their mean where they do not move."""
     return np.full_like(values, np.round(values.mean(), 9) + 0.0) if np.ptp(values) < STILL else values
 
 
 def _statistics(time: np.ndarray, channel: str, values: np.ndarray) -> dict[str, Any]:
-    found = statistics(time, _still(values))._asdict()
+    found = statistics(time, still(values))._asdict()
     return {"unit": unit_of(channel), **{key: value if math.isfinite(value) else None for key, value in found.items()}}
 
 
 def _bands(time: np.ndarray, channel: str, values: np.ndarray, peak_period: float | None) -> dict[str, Any]:
-    spectrum, found = power_spectrum(time, _still(values)), {}
+    spectrum, found = power_spectrum(time, still(values)), {}
     for name, (low, high) in bands_of(channel, peak_period).items():
         area = band_integral(spectrum, low, high)
         found[name] = {"band": [low, high], "integral": area, "standard_deviation": math.sqrt(area)}

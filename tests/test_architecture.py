@@ -28,7 +28,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response"),
     ("jaxhydro.simulate",),
     # files in, files out: the edge
-    ("jaxhydro.declared", "jaxhydro.analysis"),
+    ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start"),
     ("jaxhydro.problems",),
     ("jaxhydro.body_schema", "jaxhydro.files"),
     ("jaxhydro.platform_schema",),
@@ -41,6 +41,15 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.sea_options",),
     ("jaxhydro.command", "jaxhydro.arguments"),
     ("jaxhydro.sea_command",),
+    ("jaxhydro.sweep.schema", "jaxhydro.sweep.lifetime", "jaxhydro.sweep.statistics"),
+    ("jaxhydro.sweep.load", "jaxhydro.sweep.cases", "jaxhydro.sweep.plot"),
+    ("jaxhydro.sweep.batch",),
+    ("jaxhydro.sweep.store", "jaxhydro.sweep.resources", "jaxhydro.sweep.sensitivity"),
+    ("jaxhydro.sweep.worker",),
+    ("jaxhydro.sweep.local", "jaxhydro.sweep.cluster"),
+    ("jaxhydro.sweep.run", "jaxhydro.sweep.outputs"),
+    ("jaxhydro.sweep",),
+    ("jaxhydro.sweep.command",),
     ("jaxhydro.cli",),
 )
 SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
@@ -52,14 +61,15 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
 }
 NUMERICS = [name for layer in LAYERS[:13] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
-    "matplotlib": {"jaxhydro.plot"}
+    "matplotlib": {"jaxhydro.plot", "jaxhydro.sweep.plot"}
     | {f"calibration.{name}" for name in ("plot", "seas_plot", "sea_laws_plot", "uncertainty_plot")}
     | {f"calibration.discovery.{name}" for name in ("plots", "search_plots")},
     "PIL": {"jaxhydro.plot"},
     "ruamel": {"jaxhydro.problems"},
     "yaml": set(),
     "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals")},
-    "xarray": {"jaxhydro.export", "calibration.outputs", "calibration.readers", "calibration.seas_outputs"},
+    "xarray": {f"jaxhydro.sweep.{name}" for name in ("outputs", "run", "store")}
+    | {"jaxhydro.export", "calibration.outputs", "calibration.readers", "calibration.seas_outputs"},
     "typer": {"jaxhydro.cli", "jaxhydro.options", "jaxhydro.arguments"},
     "rich": {"jaxhydro.console"},
 }
@@ -155,7 +165,7 @@ def test_numerics_are_pure(name: str) -> None:
         assert roots <= STANDARD | ARRAYS | {"jaxhydro"}, f"{name} imports {sorted(roots - STANDARD - ARRAYS)}"
     called = {ast.unparse(node.func) for node in ast.walk(modules()[name]) if isinstance(node, ast.Call)}
     assert "print" not in called
-    assert name == "jaxhydro.cli" or not any(function.endswith("config.update") for function in called)
+    assert name == "jaxhydro.start" or not any(function.endswith("config.update") for function in called)
 
 
 def test_matplotlib_has_no_global_state_in_the_packages() -> None:

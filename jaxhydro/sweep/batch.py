@@ -1,0 +1,239 @@
+"""Runs of a sweep simulated: one after the other by one compiled program, or several at once."""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro import adams_bashforth
+from jaxhydro.command import model_of, with_calibration
+from jaxhydro.environment import DOFS
+from jaxhydro.integrate import clock, integrate
+from jaxhydro.loads import MooringLines
+from jaxhydro.model import Model, State
+from jaxhydro.platform_schema import load_platform
+from jaxhydro.plot import for_people
+from jaxhydro.problems import InputError
+from jaxhydro.rotations import rotation
+from jaxhydro.sea_command import RESOLVED, build_sea
+from jaxhydro.sea_options import Asked
+from jaxhydro.simulate import SEA_STEP, default_step, farthest, simulate
+from jaxhydro.statics import EquilibriumError, equilibrium
+from jaxhydro.sweep.cases import Plan, Run
+from jaxhydro.sweep.statistics import Kept, kept_of
+from jaxhydro.waves.irregular import fourier_length
+from jaxhydro.waves.irregular_sea import IrregularSea, SupportSea
+from jaxhydro.waves.sea_state import state_of
+from jaxhydro.waves.second_order import elevation_spectrum
+
+PLATFORM, CALIBRATION, PLAN = "platform.yaml", "calibration.json", "plan.json"  # in a sweep's folder of inputs
+
+
+class Setup(NamedTuple):
+    """What all runs of a sweep share: times (s) of the records, largest step (s)."""
+
+    plan: Plan
+    model: Model
+    times: Float[np.ndarray, " t"]
+    limit: float
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """wave, the motions asked for, mooring lines."""
+        return "wave", *self.plan.motions, *(f"line{i + 1}" for i in range(_line_count(self.model)))
+
+
+def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setup:
+    """From a platform's name or file and a calibration's file. Raises InputError, EquilibriumError."""
+    declared = load_platform(platform)
+    model = model_of(declared, plan.diffraction)
+    if calibration is not None:
+        model = with_calibration(model, str(platform), calibration)[0]
+    times = plan.time_step * np.arange(math.floor(plan.duration / plan.time_step * (1 + 1e-12)) + 1)
+    limit = min(SEA_STEP, default_step(model), RESOLVED / plan.cutoff) if plan.step is None else plan.step
+    return Setup(plan, model, times, limit)
+
+
+def setup_in(inputs: Path) -> Setup:
+    """From a sweep's folder of inputs; kept for as long as it stays as it is."""
+    return _setup_in(inputs, (inputs / PLAN).stat().st_mtime_ns)
+
+
+def plan_in(inputs: Path) -> Plan:
+    """The plan in a sweep's folder of inputs."""
+    return Plan.from_json((inputs / PLAN).read_text(encoding="utf-8"))
+
+
+@lru_cache(maxsize=2)
+def _setup_in(inputs: Path, stamp: int) -> Setup:
+    calibration, plan = inputs / CALIBRATION, plan_in(inputs)
+    return setup_of(plan, inputs / PLATFORM, calibration if calibration.is_file() else None)
+
+
+def sea_of(setup: Setup, run: Run) -> IrregularSea:
+    """The sea of a run, as `jaxhydro simulate` makes it. Raises InputError for one that cannot be."""
+    plan, case = setup.plan, run.case
+    kind = plan.spectrum.replace("_", "-")
+    how = (plan.low, plan.cutoff, plan.order, plan.stretching, case.heading, plan.start)
+    asked = Asked(case.hs, case.tp, case.gamma, kind, run.seed, plan.amplitudes, *how)
+    return build_sea(setup.model, asked, plan.duration).sea
+
+
+def outcome(setup: Setup, run: Run) -> Kept | str:
+    """What is kept of a run, or why it failed."""
+    try:
+        sea = sea_of(setup, run)
+        position = np.asarray(simulate(setup.model, setup.times, sea, step=setup.limit).position)
+        return _kept(setup, run, sea, position)
+    except Exception as error:  # whatever it is, it is this run's, and the others go on
+        return reason_of(error)
+
+
+def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
+    """As `outcome`, of several runs simulated at once: for GPUs. Numbers differ from `outcome`'s by rounding."""
+    found: dict[int, Kept | str] = {}
+    seas = {}
+    for run in runs:
+        try:
+            seas[run.number] = sea_of(setup, run)
+        except Exception as error:
+            found[run.number] = reason_of(error)
+    positions = _in_halves(setup, list(seas.values()))
+    moved = dict(zip(seas, positions))
+    for run in runs:
+        if (position := moved.get(run.number)) is not None:
+            try:
+                found[run.number] = _kept(setup, run, seas[run.number], position)
+            except Exception as error:
+                found[run.number] = reason_of(error)
+        elif run.number in seas:  # out of the box that its sea was made for, or without equilibrium
+            found[run.number] = outcome(setup, run)
+    return [found[run.number] for run in runs]
+
+
+def _in_halves(setup: Setup, seas: list[IrregularSea]) -> list[np.ndarray | None]:
+    """`together`, half as many at once where the memory does not hold all."""
+    if not seas:
+        return []
+    try:
+        return together(setup.model, seas, setup.times, setup.limit)
+    except jax.errors.JaxRuntimeError:
+        half = len(seas) // 2
+        return _in_halves(setup, seas[:half]) + _in_halves(setup, seas[half:]) if half else [None]
+
+
+def together(
+    model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+) -> list[Float[np.ndarray, "t 6"] | None]:
+    """Positions (m, rad) in seas of one band and period, in steps of at most `limit` (s), by one vectorised program for all
+    seas of one shape; None where the platform leaves the box that the sea was prepared for, or does not rest."""
+    found: list[np.ndarray | None] = [None] * len(seas)
+    shapes: dict[Any, list[tuple[int, Any]]] = {}
+    for i, sea in enumerate(seas):
+        here = model.in_sea(state_of(sea.components))
+        try:
+            start = State(equilibrium(here), jnp.zeros(6), here.settled(jnp.zeros(6)))
+        except EquilibriumError:
+            continue
+        prepared, step, steps = prepared_for(here, sea, times, limit)
+        one = (here, prepared, start)
+        shape = tuple(x.shape for x in jax.tree.leaves(eqx.filter(one, eqx.is_array)))
+        key = (jax.tree.structure(one), shape, step, steps)
+        shapes.setdefault(key, []).append((i, one))
+    points = jnp.asarray(model.hull.extremities())
+    for (_, _, step, steps), same in shapes.items():
+        parts = [eqx.partition(one, eqx.is_array) for _, one in same]
+        stacked = jax.tree.map(lambda *x: jnp.stack(x), *(arrays for arrays, _ in parts))
+        at = jnp.asarray(times)
+        position, reached = _vectorised(stacked, parts[0][1], points, at, jnp.asarray(step), steps)
+        for (i, one), moved, far in zip(same, np.asarray(position), np.asarray(reached)):
+            if not far > one[1].half:
+                found[i] = moved
+    return found
+
+
+def prepared_for(
+    model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
+) -> tuple[SupportSea, float, int]:
+    """The sea for the model's hull, and the steps taken: size (s) and number, those of `simulate`."""
+    period, duration = float(sea.components.period), float(times[-1] - times[0])
+    step = period / fourier_length(period / limit)
+    steps = max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
+    return sea.prepared(model.hull.extremities(), model.cylinders, clock("ab4", float(times[0]), step, steps)), step, steps
+
+
+@eqx.filter_jit
+def _vectorised(stacked, rest, points, times, step, steps):
+    def one(arrays):
+        model, sea, start = eqx.combine(arrays, rest)
+        position = integrate(model, sea, start, times[0], step, steps, "ab4").at(times)[0]
+        return position, farthest(position, points, model.through(sea))
+
+    return jax.vmap(one)(stacked)
+
+
+def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray) -> Kept:
+    plan, times = setup.plan, setup.times
+    if not (numbers := np.isfinite(position).all(axis=1)).all():
+        raise ValueError(f"the motion grows beyond all bounds at {times[np.argmin(numbers)]:.4g} s: a smaller step, perhaps")
+    channels = {"wave": elevation(sea, times)}
+    channels |= {dof: for_people(dof, position[:, DOFS.index(dof)]) for dof in plan.motions}
+    if _line_count(setup.model):
+        model = setup.model.in_sea(state_of(sea.components))
+        tension = np.asarray(_tensions(model, jnp.asarray(position)))
+        channels |= {f"line{i + 1}": column for i, column in enumerate(tension.T)}
+    kept = kept_of(times, plan.start, channels, run.case.tp, plan.exponents, plan.equivalent_frequency)
+    return kept if plan.time_series else kept._replace(series=None)
+
+
+def elevation(sea: IrregularSea, times: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
+    """`IrregularSea.gauge` at the origin (m) at even times (s) from 0 on, by one Fourier transform where they divide the
+    period."""
+    waves, step = sea.components, float(times[1] - times[0])
+    period, (first, last) = float(waves.period), waves.harmonics
+    count = round(period / step)
+    if abs(count * step - period) > 1e-9 * period or count <= 4 * last:
+        return sea.gauge(times)
+    spectrum = np.zeros(count // 2 + 1, complex)
+    spectrum[first : last + 1] = np.asarray(waves.complex_amplitude())
+    if sea.order == 2:
+        bound = np.asarray(_bound(waves, sea.environment, jnp.zeros(2), sea.kinds))
+        spectrum[: len(bound)] += bound
+    spectrum[0] *= 2
+    return np.resize(np.fft.irfft(spectrum, count) * (count / 2), len(times))
+
+
+_bound = eqx.filter_jit(elevation_spectrum)
+
+
+def _lines(model: Model) -> MooringLines | None:
+    return next((load for load in model.loads if isinstance(load, MooringLines)), None)
+
+
+def _line_count(model: Model) -> int:
+    lines = _lines(model)
+    return 0 if lines is None else lines.anchor.shape[1]
+
+
+@eqx.filter_jit
+def _tensions(model: Model, position: Float[Array, "t 6"]) -> Float[Array, "t l"]:
+    """N: `MooringLines.tension` at every sample."""
+    lines = _lines(model)
+    assert lines is not None
+    return jax.vmap(lambda q: lines.tension(q, rotation(q[3:]))[0])(position)
+
+
+def reason_of(error: Exception) -> str:
+    """Why a run failed, in one line."""
+    if isinstance(error, InputError):
+        return "; ".join(f"expected {problem.expected}, found {problem.found}" for problem in error.problems)
+    expected = isinstance(error, ValueError | EquilibriumError)
+    said = " ".join(str(error).split())[:500]
+    return said if expected and said else f"{type(error).__name__}: {said}"

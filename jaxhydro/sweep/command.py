@@ -1,0 +1,105 @@
+"""The sweep command: from a sweep file to its store, tables and figures."""
+
+import os
+from pathlib import Path
+
+from jaxhydro.command import print_rest
+from jaxhydro.console import complain, counting, say, table
+from jaxhydro.problems import InputError, Problem
+from jaxhydro.sweep.cluster import client_of
+from jaxhydro.sweep.load import load_sweep
+from jaxhydro.sweep.outputs import Summary, summary_of, write_outputs
+from jaxhydro.sweep.resources import chosen
+from jaxhydro.sweep.run import Prepared, Progress, Ran, opened, prepared, run_all, to_do
+from jaxhydro.sweep.store import RESULTS, open_results
+
+LISTED = 5  # failures that are printed
+
+
+class Stopped(Exception):
+    """Stopped by a key: what is done is kept."""
+
+
+def sweep(
+    source: Path,
+    out: Path,
+    workers: int | None = None,
+    batch: int | None = None,
+    restart: bool = False,
+    retry_failed: bool = False,
+    scheduler: str | None = None,
+) -> bool:
+    """Run a sweep or what is left of it, write and print; False where runs failed.
+
+    Raises InputError for bad input, EquilibriumError where the platform does not rest, Stopped.
+    """
+    os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
+    made = prepared(load_sweep(source), str(source))
+    # bad input is told before anything is begun
+    if scheduler is not None:
+        client_of(scheduler).close()
+    resumed = opened(out, made, restart)
+    numbers = to_do(out, retry_failed)
+    _print_plan(made)
+    if resumed:
+        done = len(made.inputs.plan) - len(numbers)
+        say(f"{out} has {done} of {len(made.inputs.plan)} runs" + (": they stay" if numbers else ": nothing is left to do"))
+    ran = Ran(0, 0, 0.0, 0.0)
+    if numbers:
+        how = chosen(made.setup, len(numbers), workers, batch)
+        say(how.words if scheduler is None else f"On the cluster of {scheduler}, {how.batch} at a time", stderr=True)
+        with counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
+            try:
+                ran = run_all(out, made, numbers, how, scheduler, lambda now: show(now.done + now.failed, _remark(now)))
+            except OSError as error:
+                said = str(error.strerror or error)
+                raise InputError("--out", [Problem("", "a folder that can be written", f"{str(out)!r} ({said})")]) from None
+            except KeyboardInterrupt:
+                raise Stopped(f"stopped; what is done is in {out / RESULTS}, and the same command goes on") from None
+        say(f"{ran.runs} runs in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
+    data = open_results(out)
+    summary = summary_of(data)
+    write_outputs(out, data, summary, {"sweep": str(source), "platform": Path(made.platform).stem})
+    _print_results(summary, data.exponent.values)
+    say(f"Results are in {out}")
+    return not summary.failed
+
+
+def _remark(now: Progress) -> str:
+    failed = f"{now.failed} failed, " if now.failed else ""
+    return f"{failed}{now.speed:.0f} times real time"
+
+
+def _print_plan(made: Prepared) -> None:
+    plan = made.inputs.plan
+    print_rest(made.setup.model, made.platform)
+    headings = sorted({case.heading for case in plan.cases})
+    states = {(case.hs, case.tp, case.gamma) for case in plan.cases}
+    rows = [
+        ("Sea states", f"{len(states)}"),
+        ("Headings", ", ".join(f"{heading:g}" for heading in headings[:8]) + (" ..." if len(headings) > 8 else "") + " deg"),
+        ("Seeds", f"{len(plan.seeds)}"),
+        ("Runs", f"{len(plan)} of {plan.duration:g} s, statistics from {plan.start:g} s on"),
+        ("Step at most", f"{made.setup.limit:.3g} s"),
+    ]
+    table("Sweep", ("Property", "Value"), rows, left=2)
+    if made.left_out:
+        say(f"Note: {made.left_out} cases of probability 0 are left out")
+
+
+def _print_results(summary: Summary, exponents) -> None:
+    rows = []
+    for channel, one in summary.lifetimes.items():
+        numbers = (one.mean, one.standard_deviation, one.standard_deviation_spread, one.maximum_of_seed, one.maximum_spread)
+        shown = ("-" if value != value else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in (*numbers, *one.ranges))
+        rows.append((f"{channel} ({summary.units[channel]})", *shown))
+    heads = ("Channel", "Mean", "Standard deviation", "over seeds", "Maximum of a seed", "over seeds")
+    table("Over the life", (*heads, *(f"Equivalent range m = {m:g}" for m in exponents)), rows)
+    if summary.failed:
+        share = f"; {summary.missing:.2%} of the time has no run that did not" if summary.missing else ""
+        complain(f"{summary.failed} of {summary.total} runs failed{share}")
+        for run in summary.failures[:LISTED]:
+            where = f"Hs {run['hs']:g} m, Tp {run['tp']:g} s, heading {run['heading']:g} deg, seed {run['seed']}"
+            complain(f"{where}: {run['reason']}")
+        if summary.failed > LISTED:
+            complain(f"and {summary.failed - LISTED} more: see sweep.json")

@@ -1,0 +1,87 @@
+"""A sweep read from its files: the YAML, and a scatter table in a CSV file, one sea state in a row."""
+
+import csv
+import math
+from pathlib import Path
+from typing import Any
+
+from jaxhydro.problems import InputError, Problem, read_yaml, shown, suggest, validate
+from jaxhydro.sweep.schema import COLUMNS, SeaState, Sweep
+
+LIMITS = {"hs": (0.0, "a number > 0"), "tp": (0.0, "a number > 0"), "probability": (-1e-300, "a number >= 0")}
+
+
+def load_sweep(path: str | Path) -> Sweep:
+    """The sweep in a YAML file, its paths and its scatter table resolved: those in it are relative to the file.
+
+    Raises InputError with all that is wrong in it, or with the first row of a scatter table that is.
+    """
+    path = Path(path)
+    sweep = validate(Sweep, read_yaml(path), str(path))
+    changed: dict[str, Any] = {}
+    if isinstance(sweep.scatter, str):
+        changed["scatter"] = read_scatter(path.parent / sweep.scatter, f"{path}: scatter")
+        if sweep.spectrum != "jonswap" and any(state.gamma is not None for state in changed["scatter"]):
+            raise InputError(str(path), [Problem("spectrum", "jonswap, for a table with gamma", sweep.spectrum)])
+    if (near := path.parent / sweep.platform).is_file():
+        changed["platform"] = str(near)
+    if sweep.calibration is not None:
+        changed["calibration"] = str(path.parent / sweep.calibration)
+    return sweep.model_copy(update=changed)
+
+
+def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
+    """Sea states in the order of the rows. `asked` names the key that names the file.
+
+    Raises InputError for a file that is not there, columns that are not known or lacking, and rows with what is no number.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, and there is none")]) from None
+    except (OSError, ValueError) as error:
+        said = str(getattr(error, "strerror", None) or error)
+        raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({said})")]) from None
+    rows = [(number, row) for number, row in enumerate(csv.reader(text.splitlines()), 1) if any(cell.strip() for cell in row)]
+    if not rows:
+        raise InputError(str(path), [Problem("", f"a header {','.join(COLUMNS[:3])} and rows", "an empty file")])
+    names = [cell.strip().lower() for cell in rows[0][1]]
+    problems = []
+    for name in names:
+        if name not in COLUMNS or names.count(name) > 1:
+            found = shown(name) if name not in COLUMNS else f"{name} twice"
+            problems.append(Problem("line 1", f"columns among {', '.join(COLUMNS)}", found, suggest(name, COLUMNS)))
+    missing = [name for name in COLUMNS[:3] if name not in names]
+    if missing and not problems:
+        problems.append(Problem("line 1", f"a column {missing[0]}", ", ".join(names)))
+    if problems:
+        raise InputError(str(path), dict.fromkeys(problems))
+    states = []
+    for number, row in rows[1:]:
+        if len(row) != len(names):
+            problems.append(Problem(f"line {number}", f"{len(names)} cells", str(len(row))))
+            continue
+        values = {}
+        for name, cell in zip(names, row):
+            if name == "gamma" and not cell.strip():
+                continue
+            value = _number(cell)
+            above, expected = LIMITS.get(name, (-math.inf, "a number from 1 to 7"))
+            if not value > above or (name == "gamma" and not 1 <= value <= 7):
+                problems.append(Problem(f"line {number}, column {name}", expected, shown(cell.strip())))
+            values[name] = value
+        if not problems:
+            states.append(SeaState(**values))
+    if problems:
+        raise InputError(str(path), problems)
+    if not states:
+        raise InputError(str(path), [Problem("", "one row or more under the header", "none")])
+    return tuple(states)
+
+
+def _number(cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        return math.nan
+    return value if math.isfinite(value) else math.nan

@@ -1,0 +1,152 @@
+"""A sweep from its file to its results: made or resumed, run by run, with what failed recorded."""
+
+import time as clock
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from importlib import resources
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+
+from jaxhydro.files import check_folder
+from jaxhydro.platform_schema import builtin_platforms
+from jaxhydro.problems import InputError, Problem
+from jaxhydro.sweep.batch import Setup, setup_of
+from jaxhydro.sweep.cases import plan_of
+from jaxhydro.sweep.load import load_sweep
+from jaxhydro.sweep.local import Found, simulated
+from jaxhydro.sweep.resources import Chosen, chosen
+from jaxhydro.sweep.schema import Sweep
+from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, check_same, create, discard, open_results
+
+
+class Prepared(NamedTuple):
+    """A sweep that can be stored and run, the platform as it was asked for, and the cases of probability 0 left out."""
+
+    inputs: Inputs
+    setup: Setup
+    platform: str
+    left_out: int
+
+
+class Progress(NamedTuple):
+    """Runs done, failed, and to be done in all; simulated seconds per second of this session."""
+
+    done: int
+    failed: int
+    total: int
+    speed: float
+
+
+class Ran(NamedTuple):
+    """What a session did: runs simulated, of them failed, seconds it took, seconds simulated."""
+
+    runs: int
+    failed: int
+    seconds: float
+    simulated: float
+
+
+def prepared(sweep: Sweep, source: str) -> Prepared:
+    """Read what the sweep names, and build the model: all mistakes but those of single seas show here. `source` names it in
+    errors.
+
+    Raises InputError, EquilibriumError.
+    """
+    plan, left_out = plan_of(sweep, source)
+    calibration = None if sweep.calibration is None else _calibration_file(Path(sweep.calibration))
+    setup = setup_of(plan, sweep.platform, calibration)
+    # as chosen for this platform: workers need not choose again
+    setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
+    text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
+    return Prepared(Inputs(plan, _platform_text(sweep.platform), text), setup, sweep.platform, left_out)
+
+
+def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
+    """Make the folder's store where there is none, or anew; whether there are runs of it already.
+
+    Raises InputError for a store of other inputs.
+    """
+    if restart:
+        discard(folder)
+    if (folder / RESULTS).is_dir():
+        check_same(folder, made.inputs)
+        return True
+    create(folder, made.inputs, made.setup)
+    return False
+
+
+def to_do(folder: Path, retry_failed: bool = False) -> list[int]:
+    """Numbers of the runs to be done, in order."""
+    wanted = (TO_DO, FAILED) if retry_failed else (TO_DO,)
+    return [number for number, status in enumerate(Store(folder).status()) if status in wanted]
+
+
+def run_all(
+    folder: Path, made: Prepared, numbers: list[int], how: Chosen, scheduler: str | None = None,
+    progress: Callable[[Progress], None] = lambda now: None,
+) -> Ran:  # fmt: skip
+    """Simulate runs, each written as it is done."""
+    batches = [numbers[i : i + how.batch] for i in range(0, len(numbers), how.batch)]
+    before = Store(folder).status()
+    total, earlier = len(before), int((before == DONE).sum())
+    done = failed = 0
+    since = clock.perf_counter()
+    for found in _answers(folder, batches, how, scheduler):
+        done += sum(good for _, good in found)
+        failed += sum(not good for _, good in found)
+        speed = (done + failed) * made.inputs.plan.duration / (clock.perf_counter() - since)
+        progress(Progress(earlier + done, failed, total, speed))
+    return Ran(done + failed, failed, clock.perf_counter() - since, (done + failed) * made.inputs.plan.duration)
+
+
+def _answers(folder: Path, batches: list[list[int]], how: Chosen, scheduler: str | None) -> Iterator[Found]:
+    if scheduler is None:
+        return simulated(folder, batches, how.workers, how.devices)
+    from jaxhydro.sweep.cluster import simulated_there
+
+    return simulated_there(folder, batches, scheduler)
+
+
+def run_sweep(
+    sweep: Sweep | str | PathLike[str],
+    out: str | PathLike[str],
+    *,
+    workers: int | None = None,
+    batch: int | None = None,
+    restart: bool = False,
+    retry_failed: bool = False,
+    scheduler: str | None = None,
+    progress: Callable[[Progress], None] = lambda now: None,
+) -> xr.Dataset:
+    """Run a sweep, or what is left of it, and open its results, in the folder `out`: see docs/sweeps.md.
+
+    `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart`
+    forgets the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a
+    dask.distributed one. Raises InputError for a sweep that cannot be, or a folder with runs of another one; EquilibriumError.
+    """
+    source = "sweep" if isinstance(sweep, Sweep) else str(sweep)
+    made = prepared(sweep if isinstance(sweep, Sweep) else load_sweep(source), source)
+    folder = check_folder(out, "out")
+    opened(folder, made, restart)
+    if numbers := to_do(folder, retry_failed):
+        run_all(folder, made, numbers, chosen(made.setup, len(numbers), workers, batch), scheduler, progress)
+    return open_results(folder)
+
+
+def _platform_text(asked: str) -> str:
+    name = asked.lower()
+    if name in builtin_platforms() and not Path(asked).is_file():
+        return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
+    return Path(asked).read_text(encoding="utf-8-sig")
+
+
+def _calibration_file(path: Path) -> Path:
+    """The file that a calibration's path means."""
+    if path.is_dir():
+        path = next((path / name for name in ("diagnosis.json", "calibration.json") if (path / name).is_file()), path)
+    if not path.is_file():
+        raise InputError(str(path), [Problem("", "a calibration.json or diagnosis.json", "no such file")])
+    return path

@@ -1,0 +1,113 @@
+"""How a lifetime statistic changes with coefficients: exact derivatives through the same simulations."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.environment import DOFS
+from jaxhydro.integrate import integrate
+from jaxhydro.model import Model, State
+from jaxhydro.statics import equilibrium
+from jaxhydro.sweep.batch import prepared_for, sea_of, setup_of
+from jaxhydro.sweep.cases import plan_of
+from jaxhydro.sweep.schema import Sweep
+from jaxhydro.waves.irregular_sea import SupportSea
+from jaxhydro.waves.sea_state import SeaState, state_of
+
+
+class Sensitivity(NamedTuple):
+    """Lifetime standard deviation of a motion (m, rad), and its derivative to each coefficient by label (per its unit); the
+    same of every run (case, seed)."""
+
+    value: float
+    gradient: dict[str, float]
+    deviation: Float[np.ndarray, "case seed"]
+    gradients: dict[str, Float[np.ndarray, "case seed"]]
+
+
+def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge") -> Sensitivity:
+    """d/dc of sqrt(sum p s^2), s the standard deviation of a motion about its mean in each run, by forward mode.
+
+    The seas, their probabilities, steps and transient are those of the sweep; coefficients that follow a law of the sea state
+    move with their value at the reference. The static equilibrium is held: right for whatever does not move it, drag and
+    damping and added mass; not for stiffness. Runs are done one after the other in this process: for some tens of them.
+
+    Raises KeyError for an unknown label or motion, InputError, EquilibriumError, ValueError for a sea that cannot be or a
+    platform that leaves the box that its sea was prepared for.
+    """
+    plan, _ = plan_of(sweep, "sweep")
+    setup = setup_of(plan, sweep.platform, None if sweep.calibration is None else Path(sweep.calibration))
+    for label in labels:
+        setup.model.about(label)
+    column = DOFS.index(dof) if dof in DOFS else _no_motion(dof)
+    times, kept = jnp.asarray(setup.times), jnp.asarray(setup.times >= plan.start)
+    values = jnp.stack([jnp.asarray(setup.model.values[label], float) for label in labels])
+    deviation = np.zeros((len(plan.cases), len(plan.seeds)))
+    slopes = np.zeros((len(labels), *deviation.shape))
+    for number in range(len(plan)):
+        run = plan.run(number)
+        sea = sea_of(setup, run)
+        state = state_of(sea.components)
+        there = setup.model.in_sea(state)
+        start = State(equilibrium(there), jnp.zeros(6), there.settled(jnp.zeros(6)))
+        prepared, step, steps = prepared_for(there, sea, setup.times, setup.limit)
+        how = (
+            setup.model,
+            prepared,
+            start,
+            jax.tree.map(jnp.asarray, state),
+            times,
+            kept,
+            jnp.asarray(step),
+            steps,
+            tuple(labels),
+            column,
+        )
+        found, slope, reached = _with_slope(values, *how)
+        if not float(reached) <= prepared.half:
+            far = f"moves {float(reached):.3g} m along the waves in run {number}"
+            raise ValueError(f"the platform {far}: too far for a derivative")
+        deviation[run.row, run.column], slopes[:, run.row, run.column] = float(found), np.asarray(slope)
+    probability = np.array([case.probability for case in plan.cases])[:, None] / len(plan.seeds)
+    value = math.sqrt(float(np.sum(probability * deviation**2)))
+    total = (probability * deviation * slopes).sum(axis=(1, 2)) / value
+    return Sensitivity(value, dict(zip(labels, total.tolist())), deviation, dict(zip(labels, slopes)))
+
+
+@eqx.filter_jit
+def _with_slope(
+    values: Float[Array, " l"],
+    model: Model,
+    sea: SupportSea,
+    start: State,
+    state: SeaState,
+    times: Float[Array, " t"],
+    kept: Float[Array, " t"],
+    step: Float[Array, ""],
+    steps: int,
+    labels: tuple[str, ...],
+    column: int,
+) -> tuple[Float[Array, ""], Float[Array, " l"], Float[Array, ""]]:
+    """Standard deviation of a motion over the times kept, its derivatives, and how far the reference point comes (m)."""
+
+    def deviation(values: Float[Array, " l"]):
+        here = model.with_values(dict(zip(labels, values))).in_sea(state)
+        position = integrate(here, sea, start, times[0], step, steps, "ab4", "forward").at(times)[0]
+        x, count = position[:, column], kept.sum()
+        mean = jnp.sum(x * kept) / count
+        place = jnp.abs(position[:, :2] @ sea.along - sea.middle).max()
+        return jnp.sqrt(jnp.sum(kept * (x - mean) ** 2) / count), place
+
+    slope, reached = jax.jacfwd(deviation, has_aux=True)(values)
+    return deviation(values)[0], slope, reached
+
+
+def _no_motion(dof: str) -> int:
+    raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")

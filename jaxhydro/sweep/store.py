@@ -1,0 +1,212 @@
+"""The store of a sweep: results.zarr (zarr v3, for `xarray.open_zarr`) and the inputs it was made of. Whole from the beginning.
+
+One chunk of every variable per run: writers never share one. A run's numbers are written first and its status last, each chunk
+by renaming a finished file, so that a process killed at any moment leaves a run that is done or one to be done again.
+"""
+
+import hashlib
+import json
+import shutil
+import warnings
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+import zarr
+
+import jaxhydro
+from jaxhydro.files import staged
+from jaxhydro.problems import InputError, Problem
+from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
+from jaxhydro.sweep.cases import Plan, Run
+from jaxhydro.sweep.statistics import BANDS, STATISTICS, Kept, bands_in, frequencies, unit
+
+RESULTS, INPUTS, UNFINISHED = "results.zarr", "inputs", ".results"
+TO_DO, DONE, FAILED = 0, 1, 2
+KEPT = {  # variable: its dimensions after case and seed, and what it is
+    "statistics": (("channel", "statistic"), "in units of the channel; skewness and kurtosis 1, zero_crossing_period s"),
+    "density": (("channel", "frequency"), "one-sided power spectral density, unit of the channel squared per Hz"),
+    "bands": (("channel", "band"), "integral of the density over the band, unit of the channel squared"),
+    "ranges": (("channel", "exponent"), "damage-equivalent range, unit of the channel"),
+    "series": (("channel", "time"), "records, unit of the channel, transient included"),
+}
+
+
+class Inputs(NamedTuple):
+    """What a store is made of: the plan, the platform's file and the calibration's (None: none), as text."""
+
+    plan: Plan
+    platform: str
+    calibration: str | None
+
+    @property
+    def fingerprint(self) -> str:
+        """One hash of it all."""
+        return _hash("\n".join((self.plan.to_json(), self.platform, self.calibration or "")))
+
+
+def create(folder: Path, inputs: Inputs, setup: Setup) -> None:
+    """Make the folder's inputs and its store, with all runs to be done. Raises InputError where they cannot be written."""
+    discard(folder)
+    with staged(folder) as temporary:
+        made = temporary / INPUTS
+        made.mkdir()
+        (made / PLAN).write_text(inputs.plan.to_json(), encoding="utf-8")
+        (made / PLATFORM).write_text(inputs.platform, encoding="utf-8")
+        if inputs.calibration is not None:
+            (made / CALIBRATION).write_text(inputs.calibration, encoding="utf-8")
+    _arrays(folder / UNFINISHED, inputs, setup)
+    (folder / UNFINISHED).rename(folder / RESULTS)
+
+
+def discard(folder: Path) -> None:
+    """Take away a store, its inputs and what was made of it."""
+    shutil.rmtree(folder / UNFINISHED, ignore_errors=True)
+    if (folder / RESULTS).is_dir():
+        (folder / RESULTS).rename(folder / UNFINISHED)  # at once no store any more
+    for name in (UNFINISHED, INPUTS):
+        shutil.rmtree(folder / name, ignore_errors=True)
+    for name in ("sweep.json", "lifetime.csv", "scatter.png", "exceedance.png"):
+        (folder / name).unlink(missing_ok=True)
+
+
+def check_same(folder: Path, inputs: Inputs) -> None:
+    """Raises InputError where the folder's store was made of something else."""
+    there = folder / INPUTS
+    problems = []
+    try:
+        old = Inputs(
+            Plan.from_json((there / PLAN).read_text(encoding="utf-8")),
+            (there / PLATFORM).read_text(encoding="utf-8"),
+            (there / CALIBRATION).read_text(encoding="utf-8") if (there / CALIBRATION).is_file() else None,
+        )
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        found = f"{str(there)!r}, which cannot be read ({error})"
+        raise InputError("--out", [Problem("", "a folder with a sweep's inputs", found, WAYS)]) from None
+    for key, before, now in old.plan.differences(inputs.plan):
+        problems.append(Problem(key, f"{before}, as in the runs that are there", now, WAYS))
+    for name, what in (("platform", "platform file"), ("calibration", "calibration")):
+        if getattr(old, name) != getattr(inputs, name):
+            problems.append(Problem(name, f"the {what} of the runs that are there", "another", WAYS))
+    made_by = str(zarr.open_group(folder / RESULTS, mode="r", use_consolidated=False).attrs.get("source"))
+    if made_by != (mine := f"jaxhydro {jaxhydro.__version__}"):
+        problems.append(Problem("", f"{made_by}, which made the runs that are there", mine, WAYS))
+    if problems:
+        raise InputError(f"--out {folder}", problems[:1])
+
+
+WAYS = "Another --out keeps both; --restart begins anew."
+
+
+class Store:
+    """An open store, to write runs to."""
+
+    def __init__(self, folder: Path) -> None:
+        self.group = zarr.open_group(folder / RESULTS, mode="r+", use_consolidated=False)
+        self.arrays: dict[str, Any] = {name: array for name, array in self.group.arrays()}
+
+    def status(self) -> np.ndarray:
+        """Of every run by number: TO_DO, DONE or FAILED."""
+        return np.asarray(self.arrays["status"][:]).reshape(-1)
+
+    def write(self, run: Run, found: Kept | str) -> bool:
+        """Write what a run gave, or why it failed; whether it is done."""
+        at = (run.row, run.column)
+        if isinstance(found, str):
+            self.arrays["reason"][at] = found
+            self.arrays["status"][at] = FAILED
+            return False
+        if self.arrays["status"][at] == FAILED:
+            self.arrays["reason"][at] = ""
+        for name in KEPT:
+            values = getattr(found, name)
+            if values is not None:
+                self.arrays[name][at] = values
+        self.arrays["status"][at] = DONE
+        return True
+
+
+def open_results(folder: Path) -> xr.Dataset:
+    """The results of a sweep; variables are loaded from disk where they are used."""
+    data = xr.open_zarr(folder / RESULTS, chunks=None)
+    return data.assign_coords({name: coordinate.load() for name, coordinate in data.coords.items()})
+
+
+def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
+    plan, channels = inputs.plan, setup.channels
+    window = setup.times[setup.times >= plan.start]
+    sizes: dict[str, Any] = {
+        "case": np.arange(len(plan.cases)),
+        "seed": np.array(plan.seeds),
+        "channel": channels,
+        "statistic": STATISTICS,
+        "frequency": frequencies(window),
+        "band": BANDS,
+        "exponent": np.array(plan.exponents),
+        "time": setup.times,
+    }
+    if not plan.time_series:
+        del sizes["time"]
+    units = {"frequency": "Hz", "time": "s"}
+    limits = np.full((len(plan.cases), len(channels), len(BANDS), 2), np.nan)
+    for i, case in enumerate(plan.cases):
+        for j, channel in enumerate(channels):
+            for band, edges in bands_in(channel, case.tp).items():
+                limits[i, j, BANDS.index(band)] = edges
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of consolidated metadata, which xarray asks for
+        group = zarr.create_group(path, zarr_format=3, attributes=_about(inputs, setup))
+        for name, values in sizes.items():
+            _coordinate(group, name, (name,), values, units.get(name, ""))
+        for name, its in (("hs", "m"), ("tp", "s"), ("heading", "deg"), ("probability", "1")):
+            _coordinate(group, name, ("case",), np.array([getattr(case, name) for case in plan.cases], float), its)
+        _coordinate(group, "unit", ("channel",), [unit(channel) for channel in channels], "")
+        _coordinate(group, "band_limits", ("case", "channel", "band", "edge"), limits, "Hz")
+        runs = (len(plan.cases), len(plan.seeds))
+        flags: dict[str, Any] = {"flag_values": [TO_DO, DONE, FAILED], "flag_meanings": "to_do done failed"}
+        said: dict[str, Any] = {"long_name": "why a run failed"}
+        for name, dtype, fill, about in (("status", "u1", TO_DO, flags), ("reason", "string", "", said)):
+            group.create_array(
+                name, shape=runs, chunks=(1, 1), dtype=dtype, fill_value=fill, dimension_names=("case", "seed"),
+                attributes=about,
+            )  # fmt: skip
+        for name, (dims, text) in KEPT.items():
+            if name == "series" and not plan.time_series:
+                continue
+            shape = tuple(len(sizes[dim]) for dim in dims)
+            group.create_array(
+                name, shape=runs + shape, chunks=(1, 1, *shape), dtype="f8", fill_value=np.nan,
+                dimension_names=("case", "seed", *dims), attributes={"long_name": text},
+            )  # fmt: skip
+        zarr.consolidate_metadata(group.store)
+
+
+def _coordinate(group: zarr.Group, name: str, dims: tuple[str, ...], values: Any, units: str) -> None:
+    text = not isinstance(values, np.ndarray)
+    data = np.array(list(values), dtype=np.dtypes.StringDType()) if text else values
+    about: dict[str, Any] = {"units": units} if units else {}
+    array = group.create_array(
+        name, shape=data.shape, chunks=data.shape, dtype="string" if text else data.dtype, dimension_names=dims,
+        attributes=about,
+    )  # fmt: skip
+    array[...] = data
+
+
+def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
+    plan = json.loads(inputs.plan.to_json())
+    options = {name: value for name, value in plan.items() if name not in ("cases", "seeds") and value is not None}
+    about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.diffraction}
+    coordinates = "hs tp heading probability unit band_limits"
+    return options | about | {
+        "source": f"jaxhydro {jaxhydro.__version__}",
+        "fingerprint": inputs.fingerprint,
+        "fingerprint_platform": _hash(inputs.platform),
+        "fingerprint_calibration": _hash(inputs.calibration) if inputs.calibration is not None else "",
+        "units": "m, s, Hz, deg, N",
+        "coordinates": coordinates,
+    }  # fmt: skip
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]

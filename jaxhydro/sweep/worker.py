@@ -1,0 +1,84 @@
+"""A process that simulates runs of a sweep and writes them to its store: `python -m jaxhydro.sweep.worker FOLDER`.
+
+Lists of run numbers come in on standard input, one line each; the same with what became of them goes out, one line each. It
+ends with its standard input: when the process that started it ends, however it does.
+"""
+
+import json
+import os
+import queue
+import sys
+import threading
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+
+from jaxhydro.start import start
+
+FLAG = "--xla_cpu_multi_thread_eigen=false"
+
+
+def environment(device: str | None = None) -> dict[str, str]:
+    """Environment variables of a worker: one thread of arithmetic, on the GPU `device` where one is named."""
+    found = dict(os.environ)
+    found["NPROC"] = "1"  # threads of XLA's pool
+    if FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
+        found["XLA_FLAGS"] = f"{flags} {FLAG}".strip()
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        found[name] = "1"
+    found.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # of GPU memory, which the processes share
+    if device is not None:
+        found["CUDA_VISIBLE_DEVICES"] = device
+    return found
+
+
+def simulate_runs(folder: str, numbers: Sequence[int]) -> list[tuple[int, bool]]:
+    """Simulate runs and write them, on a GPU all at once; each with whether it is done."""
+    prepare()
+    import jax
+
+    from jaxhydro.sweep.batch import outcome, outcomes, setup_in
+    from jaxhydro.sweep.store import INPUTS, Store
+
+    store, setup = Store(Path(folder)), setup_in(Path(folder) / INPUTS)
+    runs = [setup.plan.run(number) for number in numbers]
+    if jax.default_backend() != "cpu":
+        return [(run.number, store.write(run, found)) for run, found in zip(runs, outcomes(setup, runs))]
+    return [(run.number, store.write(run, outcome(setup, run))) for run in runs]
+
+
+def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> list[tuple[int, bool]]:
+    """Write that runs failed; for those whose process was lost."""
+    from jaxhydro.sweep.batch import plan_in
+    from jaxhydro.sweep.store import INPUTS, Store
+
+    store, plan = Store(Path(folder)), plan_in(Path(folder) / INPUTS)
+    return [(number, store.write(plan.run(number), reason)) for number in numbers]
+
+
+@lru_cache(maxsize=1)
+def prepare() -> None:
+    """Set JAX up, once in a process, and to one thread where it has not begun yet."""
+    os.environ.update({name: value for name, value in environment().items() if name not in os.environ or name == "XLA_FLAGS"})
+    start()
+
+
+def main() -> None:
+    """Serve one sweep."""
+    folder = sys.argv[1]
+    answers = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(2, 1)  # whatever is printed on the way is no answer
+    lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+
+    def listen() -> None:
+        for line in sys.stdin:
+            lines.put(line)
+        os._exit(0)
+
+    threading.Thread(target=listen, daemon=True).start()
+    while True:
+        answers.write(json.dumps(simulate_runs(folder, json.loads(lines.get()))) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,178 @@
+"""What a sweep file may say and what it means; statistics over a life. No simulation."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fake_sweep import SWEEP, written
+
+from jaxhydro.problems import InputError, validate
+from jaxhydro.sweep.cases import Plan, plan_of
+from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted
+from jaxhydro.sweep.load import load_sweep
+from jaxhydro.sweep.plot import exceedance_figure, scatter_figure
+from jaxhydro.sweep.schema import Sweep
+from jaxhydro.sweep.statistics import equivalent_ranges, frequencies, kept_of
+
+
+def plan(**changes) -> Plan:
+    return plan_of(validate(Sweep, SWEEP | changes, "sweep"), "sweep")[0]
+
+
+# --- cases
+
+
+def test_cases_are_states_by_headings_by_seeds_in_order() -> None:
+    made = plan(scatter=[{"hs": 1, "tp": 5}, {"hs": 2, "tp": 8, "probability": 3, "gamma": 2}], seeds=[4, 7],
+                headings=[0, {"heading": 30, "probability": 3}])  # fmt: skip
+    assert [case.probability for case in made.cases] == [1 / 16, 3 / 16, 3 / 16, 9 / 16]
+    assert [(case.hs, case.gamma, case.heading) for case in made.cases] == [(1, None, 0), (1, None, 30), (2, 2, 0), (2, 2, 30)]
+    assert len(made) == 8
+    run = made.run(5)
+    assert (run.row, run.column, run.case, run.seed) == (2, 1, made.cases[2], 7)
+    assert Plan.from_json(made.to_json()) == made
+    assert made.start == 0.25 * made.duration
+
+
+def test_a_grid_is_all_heights_with_all_periods_and_what_never_happens_is_left_out() -> None:
+    made, left_out = plan_of(
+        validate(Sweep, SWEEP | {"scatter": {"hs": [1, 2], "tp": [5, 6, 7], "probability": [[1, 0, 1], [2, 2, 0]]}}, "sweep"),
+        "s" )
+    assert left_out == 2
+    found = [(case.hs, case.tp, case.probability) for case in made.cases]
+    assert found == [(1, 5, 1 / 6), (1, 7, 1 / 6), (2, 5, 1 / 3), (2, 6, 1 / 3)]
+
+
+def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
+    file = written(tmp_path, scatter="table.csv")
+    (tmp_path / "table.csv").write_text("Tp, Hs, Probability, gamma\n7, 1.5, 0.6,\n\n9, 3, 0.4, 2.5\n")
+    sweep = load_sweep(file)
+    assert [(row.hs, row.tp, row.probability, row.gamma) for row in sweep.scatter] == [(1.5, 7, 0.6, None), (3, 9, 0.4, 2.5)]
+    assert Path(sweep.platform) == tmp_path / "buoy.yaml"
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("Hs,Tp\n1,2\n", "line 1: expected a column probability, found hs, tp"),
+        ("Hs,Tp,probabilty\n1,2,3\n", "found 'probabilty'. Did you mean 'probability'?"),
+        ("Hs,Tp,probability\n1,2,3\n1,x,-1\n", "line 3, column tp: expected a number > 0, found 'x'"),
+        ("Hs,Tp,probability\n1,2\n", "line 2: expected 3 cells, found 2"),
+        ("Hs,Tp,probability\n", "expected one row or more under the header, found none"),
+        ("", "found an empty file"),
+    ],
+)
+def test_a_wrong_table_is_told_by_its_row(tmp_path, table, words) -> None:
+    file = written(tmp_path, scatter="table.csv")
+    (tmp_path / "table.csv").write_text(table)
+    with pytest.raises(InputError) as error:
+        load_sweep(file)
+    assert words in str(error.value) and "table.csv" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"scatter": None}, "scatter: expected a CSV file, a list of sea states (hs, tp, probability), or a grid"),
+        ({"scatter": []}, "scatter: expected"),
+        ({"scatter": [{"hs": -1, "tp": 5}]}, "scatter[0].hs: expected a number > 0, found -1"),
+        ({"scatter": {"hs": [1], "tp": [5], "probability": [[1, 2]]}}, "scatter.probability[0]: expected 1 numbers"),
+        ({"scatter": [{"hs": 1, "tp": 5, "probability": 0}]}, "expected a probability above 0, found none"),
+        ({"scatter": "none.csv"}, "none.csv', and there is none"),
+        ({"seed": 3}, "found 'seed'. Did you mean 'seeds'?"),
+        ({"seeds": [1, 1]}, "seeds: expected each one once, found 1 twice"),
+        ({"seeds": 0}, "seeds: expected a number of seeds"),
+        ({"headings": 30}, "headings: expected a list"),
+        ({"cutoff": 0.02}, "cutoff: expected a number above low, 0.03 Hz, found 0.02"),
+        ({"transient": 150}, "transient: expected less than the duration, 150 s, found 150"),
+        ({"duration": 40}, "duration: expected 100 samples or more after the transient of 10 s, found 60"),
+        ({"motions": ["surge", "drift"]}, "motions[1]: expected one of surge, sway"),
+        ({"fatigue": {"exponents": [0.5]}}, "fatigue.exponents[0]: expected a number >= 1"),
+        ({"order": 3}, "order: expected one of 1, 2, found 3"),
+    ],
+)  # fmt: skip
+def test_a_wrong_sweep_is_told_by_its_key(tmp_path, changes, words) -> None:
+    with pytest.raises(InputError) as error:
+        plan_of(load_sweep(written(tmp_path, **changes)), "sweep")
+    assert words in str(error.value)
+
+
+def test_what_differs_between_plans_is_named() -> None:
+    assert list(plan().differences(plan(duration=200.0))) == [
+        ("duration", "150.0", "200.0"), ("start", "37.5", "50.0")
+    ]  # fmt: skip
+    assert list(plan().differences(plan())) == []
+    assert next(plan().differences(plan(scatter=[{"hs": 2, "tp": 7}])))[0] == "cases"
+
+
+# --- statistics
+
+
+def test_ranges_are_those_of_even_cycles_and_of_the_standards_example() -> None:
+    time = np.arange(0.0, 100.0, 0.05)
+    values = 3.0 * np.sin(2 * math.pi * time / 5)
+    np.testing.assert_allclose(equivalent_ranges(values, (3.0, 5.0), 20.0), 6.0, rtol=2e-2)
+    # ASTM E1049-85, figure 6: ranges 3, 4, 6, 8, 9 with 0.5, 1.5, 0.5, 1, 0.5 cycles
+    example = np.array([-2.0, 1, -3, 5, -1, 3, -4, 4, -2])
+    damage = 0.5 * 3**4 + 1.5 * 4**4 + 0.5 * 6**4 + 8**4 + 0.5 * 9**4
+    assert equivalent_ranges(example, (4.0,), 10.0)[0] == pytest.approx((damage / 10) ** 0.25)
+    assert equivalent_ranges(np.ones(50), (3.0,), 10.0)[0] == 0
+
+
+def test_what_is_kept_of_records_leaves_the_transient_out() -> None:
+    time = np.arange(0.0, 400.0, 0.5)
+    values = np.where(time < 100, 50.0, 2 * np.sin(2 * math.pi * time / 10))
+    kept = kept_of(time, 100.0, {"wave": values, "line1": 1e6 * values}, 9.0, (3.0,), 1.0)
+    assert kept.statistics[0, 1] == pytest.approx(math.sqrt(2), rel=1e-3)
+    assert kept.statistics[1, 1] == pytest.approx(1e6 * math.sqrt(2), rel=1e-3)
+    assert kept.density.shape == (2, len(frequencies(time[time >= 100])))
+    assert kept.bands[0, 1] == pytest.approx(2.0, rel=0.02) and np.isnan(kept.bands[0, 0]) and np.isnan(kept.bands[1]).all()
+    assert kept.ranges[0, 0] == pytest.approx(4.0 * 0.1 ** (1 / 3), rel=0.02)
+
+
+def test_a_life_is_its_runs_weighed_by_their_probability() -> None:
+    rng = np.random.default_rng(0)
+    p, deviation, most = np.array([0.5, 0.3, 0.2]), rng.uniform(1, 2, (3, 4)), rng.uniform(3, 9, (3, 4))
+    ranges = rng.uniform(1, 2, (3, 4, 2))
+    found = lifetime(p, deviation, deviation, -most, most, ranges, np.array([3.0, 10.0]))
+    assert found.mean == pytest.approx(p @ deviation.mean(axis=1))
+    assert found.standard_deviation == pytest.approx(math.sqrt(p @ (deviation**2).mean(axis=1)))
+    assert found.ranges[1] == pytest.approx((p @ (ranges[..., 1] ** 10).mean(axis=1)) ** 0.1)
+    assert (found.maximum, found.minimum) == (most.max(), -most.max())
+    assert found.maximum_of_seed == pytest.approx(most.max(axis=0).mean())
+    assert found.maximum_spread == pytest.approx(most.max(axis=0).std(ddof=1))
+    each = np.sqrt(p @ deviation**2)
+    assert found.standard_deviation_spread == pytest.approx(each.std(ddof=1))
+
+
+def test_failed_runs_are_left_out_of_a_life() -> None:
+    values = np.array([[1.0, 3.0], [np.nan, 5.0], [np.nan, np.nan]])
+    assert weighted(np.array([0.5, 0.25, 0.25]), values) == pytest.approx((0.5 * 2 + 0.25 * 5) / 0.75)
+    found = lifetime(np.array([0.5, 0.25, 0.25]), values, values, values, values, values[..., None], np.array([3.0]))
+    assert found.maximum == 5 and found.minimum == 1 and math.isfinite(found.ranges[0])
+    nothing = lifetime(np.ones(1), *(np.full((1, 2), np.nan),) * 4, np.full((1, 2, 1), np.nan), np.array([3.0]))
+    assert all(np.isnan(value).all() for value in nothing)
+
+
+def test_exceedance_goes_by_probability() -> None:
+    x, p = exceedance(np.array([0.5, 0.3, 0.2]), np.array([2.0, 5.0, 1.0]))
+    assert x.tolist() == [1, 2, 5] and p == pytest.approx([1.0, 0.8, 0.3])
+
+
+def test_the_scatter_diagram_has_a_mark_per_sea_state() -> None:
+    """Headings of one sea state are one mark, coloured by the weighted mean square of what is known."""
+    hs, tp = np.array([1.0, 1.0, 2.0]), np.array([5.0, 5.0, 8.0])
+    figure = scatter_figure(hs, tp, np.array([0.2, 0.6, 0.2]), np.array([1.0, 2.0, np.nan]), "surge", "t")
+    marks = figure.axes[0].collections
+    assert sorted(np.concatenate([one.get_array() for one in marks if one.get_array() is not None]).data) == pytest.approx(
+        [math.sqrt((0.2 * 1 + 0.6 * 4) / 0.8)]
+    )
+    assert len(marks) == 2 and {text.get_text() for text in figure.axes[0].texts} == {"80 %", "20 %"}
+
+
+def test_the_exceedance_figure_has_a_line_per_seed_and_one_of_all() -> None:
+    values = np.array([[1.0, 2.0], [3.0, np.nan]])
+    figure = exceedance_figure(["surge (m)"], [values], np.array([0.9, 0.1]), 100.0, "t")
+    lines = figure.axes[0].lines
+    assert len(lines) == 3 and lines[-1].get_xdata()[-1] == 3.0

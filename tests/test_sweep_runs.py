@@ -1,0 +1,279 @@
+"""Sweeps that run: what a run is, results that do not depend on how they came about, kills, failures, derivatives."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import jax
+import numpy as np
+import pytest
+import xarray as xr
+from fake_sweep import BREAKING, written
+from typer.testing import CliRunner
+
+import jaxhydro as jh
+from jaxhydro import cli
+from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
+from jaxhydro.sweep.batch import outcome, outcomes, setup_in
+from jaxhydro.sweep.cases import Plan
+from jaxhydro.sweep.local import Worker
+from jaxhydro.sweep.run import opened, prepared
+from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store
+
+VARIABLES = ("statistics", "density", "bands", "ranges", "series")
+RUNS = 24
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled_once(tmp_path_factory):
+    """Worker processes share compiled programs."""
+    with pytest.MonkeyPatch.context() as patch:
+        if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
+            patch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path_factory.mktemp("xla")))
+        before = jax.config.jax_compilation_cache_dir
+        yield
+        jax.config.update("jax_compilation_cache_dir", before)
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory) -> Path:
+    return written(tmp_path_factory.mktemp("sweep"))
+
+
+@pytest.fixture(scope="module")
+def whole(file) -> Path:
+    """The sweep by one process without a break."""
+    out = file.parent / "whole"
+    run_sweep(file, out, workers=1)
+    return out
+
+
+def command(*words: object, status: int) -> str:
+    result = CliRunner().invoke(cli.app, [str(word) for word in words])
+    assert result.exit_code == status, result.output
+    assert isinstance(result.exception, SystemExit | None)
+    return " ".join(re.sub("[│╭╮╰╯─]", " ", result.output).split())
+
+
+def results(out: Path) -> dict[str, np.ndarray]:
+    with xr.open_zarr(out / RESULTS) as data:
+        return {name: data[name].values for name in (*VARIABLES, "status", "reason")}
+
+
+def assert_bitwise(out: Path, other: Path) -> None:
+    first, second = results(out), results(other)
+    for name in (*VARIABLES, "status"):
+        assert first[name].tobytes() == second[name].tobytes(), name
+    assert (first["reason"] == second["reason"]).all()
+
+
+def done_in(out: Path) -> list[Path]:
+    """The status chunks that are there."""
+    return sorted((out / RESULTS / "status" / "c").rglob("*[0-9]")) if (out / RESULTS).is_dir() else []
+
+
+def chunks(out: Path) -> dict[Path, int]:
+    return {path: path.stat().st_mtime_ns for path in done_in(out) if path.is_file()}
+
+
+# --- what a run is
+
+
+def test_a_run_is_what_simulate_does_with_the_same_options(whole) -> None:
+    setup = setup_in(whole / INPUTS)
+    waves = jh.spectrum_components(
+        lambda w: jh.jonswap(w, 3.0, 9.0), 150.0, setup.model.environment, low=0.03, cutoff=0.15, seed=5
+    )
+    sea = jh.IrregularSea(waves, setup.model.environment, 1)
+    moved = jh.simulate(setup.model, setup.times, sea, step=setup.limit)
+    with xr.open_zarr(whole / RESULTS) as data:
+        one = data.isel(case=1).sel(seed=5).load()
+    np.testing.assert_allclose(one.series.sel(channel="surge"), moved["surge"], atol=1e-10)
+    np.testing.assert_allclose(one.series.sel(channel="pitch"), np.rad2deg(moved["pitch"]), atol=1e-10)
+    np.testing.assert_allclose(one.series.sel(channel="wave"), sea.gauge(setup.times), atol=1e-12)
+    kept = one.series.where(one.time >= 37.5, drop=True)
+    np.testing.assert_allclose(one.statistics.sel(statistic="standard_deviation"), kept.std("time"), rtol=1e-9)
+    np.testing.assert_allclose(one.statistics.sel(statistic="maximum"), kept.max("time"))
+    assert list(one.channel.values) == ["wave", "surge", "heave", "pitch", "line1", "line2", "line3"]
+    assert list(one.unit.values) == ["m", "m", "m", "deg", "N", "N", "N"]
+    # at rest the lines pull 1e6 N each, and the one that surge slackens pulls least when surge is largest
+    line = kept.sel(channel="line1")
+    assert float(line.mean()) == pytest.approx(1e6, rel=0.02)
+    assert float(xr.corr(line, kept.sel(channel="surge"))) < -0.9
+
+
+def test_the_store_says_what_it_holds(whole) -> None:
+    with xr.open_zarr(whole / RESULTS) as data:
+        assert dict(data.sizes) | {"case": 3, "seed": 8, "time": 301, "exponent": 3} == dict(data.sizes)
+        assert data.hs.values.tolist() == [1.5, 3.0, BREAKING["hs"]] and data.hs.units == "m"
+        assert data.probability.values == pytest.approx([0.6, 0.35, 0.05])
+        assert data.attrs["source"].startswith("jaxhydro") and len(data.attrs["fingerprint"]) == 16
+        assert data.statistics.encoding["chunks"][:2] == (1, 1)
+
+
+def test_a_run_that_cannot_be_is_recorded_and_the_others_go_on(whole) -> None:
+    found = results(whole)
+    assert (found["status"] == [[DONE], [DONE], [FAILED]]).all()
+    assert all("break" in reason for reason in found["reason"][2]) and not found["reason"][:2].any()
+    assert np.isfinite(found["statistics"][:2, ..., :4]).all() and np.isnan(found["statistics"][2]).all()
+
+
+def test_the_command_writes_what_the_life_is(file, whole) -> None:
+    """On a finished store: tables and figures, and nothing is simulated."""
+    before = chunks(whole)
+    text = command("sweep", file, "--out", whole, status=3)
+    assert chunks(whole) == before
+    assert "24 of 24 runs: nothing is left to do" in text and "8 of 24 runs failed; 5.00% of the time" in text
+    document = json.loads((whole / "sweep.json").read_text())
+    assert document["runs"] == {"total": 24, "done": 16, "failed": 8}
+    assert len(document["failures"]) == 8 and "break" in document["failures"][0]["reason"]
+    with xr.open_zarr(whole / RESULTS) as data:
+        deviation = data.statistics.sel(channel="surge", statistic="standard_deviation").values[:2]
+    expected = np.sqrt((0.6 * (deviation[0] ** 2).mean() + 0.35 * (deviation[1] ** 2).mean()) / 0.95)
+    assert document["lifetime"]["surge"]["standard_deviation"] == pytest.approx(expected)
+    rows = (whole / "lifetime.csv").read_text().splitlines()
+    assert rows[0].startswith("channel,unit,mean") and rows[2].startswith("surge,m,") and len(rows) == 8
+    assert all((whole / name).stat().st_size > 5000 for name in ("scatter.png", "exceedance.png"))
+
+
+# --- results do not depend on how they came about
+
+
+def test_a_killed_sweep_goes_on_and_is_bitwise_the_same(file, whole, tmp_path) -> None:
+    out = tmp_path / "o"
+    code = "from jaxhydro.cli import main; main()"
+    words = ["sweep", str(file), "--out", str(out), "--workers", "1"]
+    process = subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 240
+    while len(chunks(out)) < 3 and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.002)
+    process.kill()
+    process.wait()
+    time.sleep(1.0)  # what was in flight ends, or is lost
+    before = chunks(out)
+    assert 3 <= len(before) < RUNS
+    assert not (out / "sweep.json").exists()
+    text = command("sweep", file, "--out", out, "--workers", 2, "--batch", 3, status=3)
+    assert f"has {len(before)} of 24 runs: they stay" in text
+    assert {path: at for path, at in chunks(out).items() if path in before} == before
+    assert_bitwise(out, whole)
+
+
+def test_a_worker_that_is_killed_loses_nothing(file, whole, tmp_path) -> None:
+    """Its run is done by the process in its place."""
+    opened(tmp_path / "o", prepared(load_sweep(file), "sweep"))
+    worker = Worker(tmp_path / "o", None)
+    try:
+        worker.process.kill()
+        assert worker.ask([9]) == [(9, True)]
+    finally:
+        worker.end()
+    status = Store(tmp_path / "o").status()
+    assert status[9] == DONE and status.sum() == DONE
+    assert results(tmp_path / "o")["series"][1, 1].tobytes() == results(whole)["series"][1, 1].tobytes()
+
+
+def test_a_cluster_that_loses_a_worker_gives_the_same(file, whole, tmp_path) -> None:
+    distributed = pytest.importorskip("distributed")
+    killed: list[int] = []
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, host="127.0.0.1"
+    ) as local:
+
+        def kill_one(now) -> None:
+            if not killed:
+                killed.append(next(iter(local.workers.values())).pid)
+                os.kill(killed[0], signal.SIGKILL)
+                assert now.done + now.failed < RUNS - 4
+
+        run_sweep(file, tmp_path / "o", scheduler=local.scheduler_address, progress=kill_one)
+    assert killed
+    assert_bitwise(tmp_path / "o", whole)
+
+
+def test_runs_at_once_are_runs_one_by_one(whole) -> None:
+    """The way of GPUs, here on the CPU: to rounding."""
+    setup = setup_in(whole / INPUTS)
+    runs = [setup.plan.run(number) for number in (0, 9, 16, 10)]
+    for run, one in zip(runs, outcomes(setup, runs)):
+        alone = outcome(setup, run)
+        if isinstance(alone, str):
+            assert one == alone and run.number == 16
+            continue
+        for name in VARIABLES:
+            scale = np.nan_to_num(np.abs(getattr(alone, name))).max(axis=-1, keepdims=True) + 1e-12
+            np.testing.assert_allclose(getattr(one, name) / scale, getattr(alone, name) / scale, atol=1e-9, err_msg=name)
+
+
+# --- resuming something else
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [({"duration": 160.0}, "duration: expected 150.0, as in the runs that are there, found 160.0"),
+     ({"scatter": [BREAKING]}, "cases: expected 3 of them, as in the runs that are there, found 1")],
+)  # fmt: skip
+def test_another_sweep_is_not_mixed_in(whole, tmp_path, changes, words) -> None:
+    before = chunks(whole)
+    text = command("sweep", written(tmp_path, **changes), "--out", whole, status=2)
+    assert words in text and "--restart begins anew" in text
+    assert chunks(whole) == before
+
+
+def test_another_platform_is_not_mixed_in(whole, tmp_path) -> None:
+    file = written(tmp_path)
+    (tmp_path / "buoy.yaml").write_text((tmp_path / "buoy.yaml").read_text().replace("Cd_t: 1.0", "Cd_t: 1.1"))
+    assert "the platform file of the runs that are there, found another" in command("sweep", file, "--out", whole, status=2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [({"platform": "none.yaml"}, "none.yaml"), ({"calibration": "none.json"}, "none.json: expected a calibration.json"),
+     ({"scatter": "none.csv"}, "there is none"), ({"seed": 1}, "Did you mean 'seeds'?")],
+)  # fmt: skip
+def test_bad_input_leaves_nothing_behind(tmp_path, changes, words) -> None:
+    file = written(tmp_path / "in", **changes)
+    assert words in command("sweep", file, "--out", tmp_path / "o", status=2)
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_scheduler_that_does_not_answer_leaves_nothing_behind(file, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
+    words = ("sweep", file, "--out", tmp_path / "o", "--scheduler", "tcp://127.0.0.1:9")
+    assert "--scheduler: expected a scheduler that answers" in command(*words, status=2)
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_store_that_was_not_finished_being_made_is_made_anew(file, tmp_path) -> None:
+    made, out = prepared(load_sweep(file), "sweep"), tmp_path / "o"
+    assert not opened(out, made)
+    (out / RESULTS).rename(out / ".results")
+    (out / INPUTS / "plan.json").write_text("{")
+    assert not opened(out, made) and opened(out, made)
+    assert Plan.from_json((out / INPUTS / "plan.json").read_text()) == made.inputs.plan and not (out / ".results").exists()
+
+
+# --- gradients
+
+
+def test_a_life_changes_with_drag_as_its_derivative_says(file) -> None:
+    """Forward mode through the simulations, against central differences of whole sweeps."""
+    sweep = load_sweep(file).model_copy(update={"seeds": 2, "scatter": load_sweep(file).scatter[:2]})
+    label, step = "column.Cd_t", 0.02
+    both = [label, "linear_damping.B11"]
+    found = lifetime_sensitivity(sweep, both)
+
+    def deviation(cd: float) -> float:
+        moved = Path(sweep.platform).with_name(f"cd{cd}.yaml")
+        moved.write_text(Path(sweep.platform).read_text().replace("Cd_t: 1.0", f"Cd_t: {cd}"))
+        return lifetime_sensitivity(sweep.model_copy(update={"platform": str(moved)}), both).value
+
+    slope = (deviation(1.0 + step) - deviation(1.0 - step)) / (2 * step)
+    assert found.gradient[label] == pytest.approx(slope, rel=2e-3)
+    assert found.gradient[label] < 0 and found.gradient["linear_damping.B11"] < 0
+    assert found.value == pytest.approx(np.sqrt(np.array([60, 35]) / 95 @ (found.deviation**2).mean(axis=1)))
