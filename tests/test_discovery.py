@@ -1,5 +1,7 @@
 """Diagnosis: frequency bands, and rolling bodies made by SciPy with an effect in them, or none."""
 
+from types import SimpleNamespace
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from ruamel.yaml import YAML
 from scipy.integrate import solve_ivp
 
 from calibration.campaign import load_campaign
+from calibration.discovery import kept
 from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.catalogue import Candidate
 from calibration.discovery.pose import pose
@@ -123,36 +126,30 @@ def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
     assert held[0].rms < left * before[0].rms
 
 
-def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path):
-    """A coefficient that two blocks give follows the third one, too."""
+def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch):
+    """A coefficient that two blocks give follows the third one, too. And a search that was killed goes on from the effect that
+    it had let in, of the same campaign alone."""
     campaign_of(tmp_path, lambda x, v: -500.0 * x**3)
     manifest = tmp_path / "campaign.yaml"
     manifest.write_text(manifest.read_text().replace("holdout", "fit"))
-    found = diagnose(load_campaign(tmp_path))
-    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
-    assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
-
-
-def test_a_diagnosis_that_was_killed_goes_on(tmp_path):
-    """What was reached is there, whole, and is what a search goes on from; of another campaign it is not taken."""
-    campaign, kept, seen = campaign_of(tmp_path, lambda x, v: -500.0 * x**3), tmp_path / "under-way", []
+    campaign, path, seen = load_campaign(tmp_path), tmp_path / "under-way", []
 
     def killed(progress):
-        seen.append(progress.stage)
         if progress.stage.startswith("round 2"):
             raise RuntimeError("killed")
 
     with pytest.raises(RuntimeError, match="killed"):
-        diagnose(campaign, progress=killed, kept=kept)
-    assert any(stage.startswith("calibrating") for stage in seen)
-    seen.clear()
-    found = diagnose(campaign, progress=lambda progress: seen.append(progress.stage), kept=kept)
-    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
+        diagnose(campaign, progress=killed, kept=path)
+    found = diagnose(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
     assert not any(stage.startswith(("calibrating", "round 1")) for stage in seen)
-    other = campaign_of(tmp_path, lambda x, v: -400.0 * x**3)
-    with pytest.raises(RuntimeError, match="killed"):
-        diagnose(other, progress=killed, kept=kept)
-    assert any(stage.startswith("round 1") for stage in seen[seen.index("reading the records", 1) :])
+    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
+    assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
+    search = SimpleNamespace()
+    monkeypatch.setattr(kept, "fingerprint", lambda search: "of another campaign")
+    assert kept.resumed(path, search) == []
+    path.write_bytes(path.read_bytes()[:1000])
+    assert kept.resumed(path, search) == []
+    assert kept.resumed(tmp_path / "none", search) == []
 
 
 class Sine(AbstractLoad):

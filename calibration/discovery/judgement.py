@@ -101,7 +101,9 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
     elif bic < LEAST_BIC:
         refused = f"it gains too little in the fitted tests (BIC {bic:+.0f})"
     elif told and held < LEAST_GAIN:
-        where = "held-out tests" if grounds.study is study else "blocks left out in turn"
+        where = "fitted tests"
+        if grounds.unseen:
+            where = "held-out tests" if grounds.study is study else "blocks left out in turn"
         refused = f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
     elif clear < LEAST_CLEAR:
         refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
