@@ -1,6 +1,6 @@
 """Speed as ratios in one run: against plain NumPy, finite differences and population searches.
 
-    python -m benchmarks.bench [--quick] [--only decay|sea|fit] [--budget SECONDS] [--searches DE ...] [--out FILE]
+    python -m benchmarks.bench [--quick] [--only decay|sea|sweep|fit] [--budget SECONDS] [--searches DE ...] [--out FILE]
 
 writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
 contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run, `--only` a part; these write only where
@@ -70,7 +70,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="a smoke run of a minute, its numbers worth nothing")
     parser.add_argument("--budget", type=float, help="CPU seconds for each population search (300; quick: 0.3)")
     parser.add_argument("--searches", nargs="+", choices=SEARCHES, default=SEARCHES, help="population searches to compare with")
-    parser.add_argument("--only", choices=("decay", "sea", "fit"), help="one part of the three")
+    parser.add_argument("--only", choices=("decay", "sea", "sweep", "fit"), help="one part of the four")
     parser.add_argument("--out", type=Path, help="file to write (benchmarks/results.md; quick or a part: none)")
     arguments = parser.parse_args()
     budget = (0.3 if arguments.quick else 300.0) if arguments.budget is None else arguments.budget
@@ -82,7 +82,7 @@ def main() -> None:
     jax.config.update("jax_enable_x64", True)
     # what compiles in this process is timed too
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
-    from benchmarks import bench_decay, bench_fit, bench_sea
+    from benchmarks import bench_decay, bench_fit, bench_sea, bench_sweep
     from jaxhydro.files import write_whole
 
     console = Console(width=None if Console().is_terminal else 160)
@@ -90,6 +90,7 @@ def main() -> None:
     parts = {
         "decay": lambda: bench_decay.measure(arguments.quick),
         "sea": lambda: bench_sea.measure(arguments.quick),
+        "sweep": lambda: bench_sweep.measure(arguments.quick),
         "fit": lambda: bench_fit.measure(budget, arguments.quick, arguments.searches),
     }
     for more, said in chain.from_iterable(part() for name, part in parts.items() if arguments.only in (None, name)):

@@ -19,6 +19,7 @@ KEYS = (
     "Compilation: tsit5",
     "Sea of order 2, simulated time over CPU time",
     "Sea of order 1 against NumPy, same scheme",
+    "2 seas at once, each against one alone",
     "Calibration by least squares",
     "DE over least squares, simulations",
     "DE over least squares, CPU",
