@@ -61,7 +61,10 @@ def batches(sizes: Sequence[int], duration: float, rounds: int) -> tuple[list[Ro
         runs[str(size)] = lambda size=size: together(model, seas[:size], at, STEP)  # type: ignore[misc]
     turns = contest(runs, rounds)
     rows = [
-        Row(f"{size} sea{'s' * (size > 1)} at once, each against one alone", f"{turns[str(size)].over(turns['one']) / size:.2f} of its time")
+        Row(
+            f"{size} sea{'s' * (size > 1)} at once, each against one alone",
+            f"{turns[str(size)].over(turns['one']) / size:.2f} of its time",
+        )
         for size in sizes
     ]
     each = sum(x.nbytes for x in jax.tree.leaves(prepared(model, seas[0], duration)) if hasattr(x, "nbytes"))
