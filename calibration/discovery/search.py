@@ -224,8 +224,10 @@ class Search:
         tried: list[Tried] = []
         for item in ranked:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
-            if not any(item is one for one in short):
+            if item.predicted.fitted <= enough:
                 self.refuse(item.candidate, "explains too little at first order")
+            elif not any(item is one for one in short):
+                self.refuse(item.candidate, "others explain more at first order")
             elif item.predicted.fitted < FAR * highest:
                 self.refuse(item.candidate, "explains far less than others")
             else:
