@@ -9,11 +9,12 @@ from string import Template
 
 from calibration.formatting import number, percent, with_deviation
 from calibration.outputs import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT
-from calibration.saved import Error, Fitted, Parameter, Saved, read_saved
+from calibration.saved import Error, Fitted, Parameter, Saved, read_as, read_saved
 from calibration.tables import USE
 from jaxhydro.files import write_whole
 from jaxhydro.problems import InputError, Problem
 
+SWEEP = "sweep.json"
 _PNG = b"\x89PNG\r\n\x1a\n"
 UNCONVERGED = '<p class="warning">The fit did not converge: what follows is where it stopped, not {}.</p>'
 
@@ -22,18 +23,23 @@ def write_report(folder: str | PathLike[str]) -> Path:
     """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
     folder = Path(folder)
     try:
-        there = [name for name in (DIAGNOSIS, RESULT) if folder.is_dir() and (folder / name).is_file()]
+        there = [name for name in (DIAGNOSIS, RESULT, SWEEP) if folder.is_dir() and (folder / name).is_file()]
     except (OSError, ValueError):
         there = []
     if not there:
-        found = f"no {RESULT} and no {DIAGNOSIS}" if folder.is_dir() else "no such folder"
-        expected = "a folder that `jaxhydro calibrate` or `jaxhydro diagnose` wrote"
+        found = f"no {RESULT}, {DIAGNOSIS} or {SWEEP}" if folder.is_dir() else "no such folder"
+        expected = "a folder that `jaxhydro calibrate`, `diagnose` or `sweep` wrote"
         raise InputError(str(folder), [Problem("", expected, found)])
     if there[0] == DIAGNOSIS:
         from calibration.discovery.page import page as diagnosis_page
         from calibration.discovery.saved import read_diagnosis
 
         text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS), folder)
+    elif there[0] == SWEEP:
+        from calibration.sweep_page import SavedSweep
+        from calibration.sweep_page import page as sweep_page
+
+        text = sweep_page(read_as(SavedSweep, folder / SWEEP), folder)
     else:
         text = page(read_saved(folder / RESULT), folder)
     write_whole(folder / REPORT, text)
@@ -49,15 +55,13 @@ def page(saved: Saved, folder: Path) -> str:
         _state(fitted), "<h2>Tests</h2>", _tests(saved, errors), "<h2>Parameters</h2>", _parameters(fitted.parameters),
         f"<h2>Notes</h2>{listed(fitted.notes)}" if fitted.notes else "", f"<h2>Figures</h2>{drawn}" if drawn else "",
     )  # fmt: skip
-    return framed(saved, "Calibration", body)
+    return framed(saved.campaign, f"Calibration by jaxhydro {saved.jaxhydro}", body, saved.jaxhydro)
 
 
-def framed(saved: Saved, what: str, body: Iterable[str]) -> str:
+def framed(title: str, by: str, body: Iterable[str], version: str) -> str:
     """A whole page around its parts, which are HTML."""
-    version = escape(saved.jaxhydro)
     return _PAGE.substitute(
-        generator=f'{GENERATOR} {version}">', title=escape(saved.campaign), by=f"{what} by jaxhydro {version}",
-        body="\n".join(filter(None, body)),
+        generator=f'{GENERATOR} {escape(version)}">', title=escape(title), by=escape(by), body="\n".join(filter(None, body)),
     )  # fmt: skip
 
 
@@ -118,13 +122,18 @@ def images(saved: Saved, folder: Path) -> dict[str, str]:
     names = [name for name in captions if name in there] + [name for name in there if name not in captions]
     parts = {}
     for name in names:
-        content = there[name].read_bytes()
-        if content.startswith(_PNG):
-            data = base64.b64encode(content).decode("ascii")
-            caption = escape(captions.get(name) or name)
-            parts[name] = (f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}'
-                           "</figcaption></figure>")  # fmt: skip
+        if part := embedded(there[name], captions.get(name) or name):
+            parts[name] = part
     return parts
+
+
+def embedded(path: Path, caption: str) -> str:
+    """A PNG file as a figure of the page; nothing where it is none."""
+    content = path.read_bytes()
+    if not content.startswith(_PNG):
+        return ""
+    data, caption = base64.b64encode(content).decode("ascii"), escape(caption)
+    return f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}</figcaption></figure>'
 
 
 def figures(parts: Iterable[str]) -> str:

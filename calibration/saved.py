@@ -128,7 +128,7 @@ class Saved(Open):
         }  # fmt: skip
 
 
-S = TypeVar("S", bound=Saved)
+S = TypeVar("S", bound=Open)
 
 
 def read_saved(path: str | PathLike[str]) -> Saved:

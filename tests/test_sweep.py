@@ -1,5 +1,6 @@
 """What a sweep file may say and what it means; statistics over a life. No simulation."""
 
+import json
 import math
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 from fake_sweep import SWEEP, written
 
+from calibration.report import write_report
 from jaxhydro.problems import InputError, validate
 from jaxhydro.sweep.cases import Plan, plan_of
 from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted
@@ -176,3 +178,20 @@ def test_the_exceedance_figure_has_a_line_per_seed_and_one_of_all() -> None:
     figure = exceedance_figure(["surge (m)"], [values], np.array([0.9, 0.1]), 100.0, "t")
     lines = figure.axes[0].lines
     assert len(lines) == 3 and lines[-1].get_xdata()[-1] == 3.0
+
+
+def test_a_sweep_makes_a_page(tmp_path: Path) -> None:
+    """Statistics over the life with their units, and what failed, escaped; no figure that is not there."""
+    life = {"unit": "deg", "mean": 0.5, "standard_deviation": 1.25, "damage_equivalent_range": {"3": 2.5}}
+    failure = {"hs": 14.0, "tp": 9.0, "heading": 30.0, "probability": 0.1, "seed": 4, "reason": "a wave <b>breaks</b>"}
+    content = {
+        "sweep": "s.yaml", "platform": "volturnus-s", "source": "jaxhydro 0.1.0", "cases": 3, "seeds": [0, 4],
+        "runs": {"total": 6, "done": 5, "failed": 1}, "lifetime": {"pitch": life}, "failures": [failure],
+    }  # fmt: skip
+    (tmp_path / "sweep.json").write_text(json.dumps(content))
+    page = write_report(tmp_path).read_text()
+    assert "<td>pitch (deg)</td>" in page and ">1.250</td>" in page and "Equivalent range, m = 3" in page
+    assert "1 of 6 runs failed" in page and "a wave &lt;b&gt;breaks&lt;/b&gt;" in page and "<img" not in page
+    (tmp_path / "sweep.json").write_text(json.dumps(content | {"runs": {"total": 6}}))
+    with pytest.raises(InputError, match=r"runs\.done"):
+        write_report(tmp_path)

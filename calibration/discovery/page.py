@@ -23,7 +23,7 @@ deviation. What was missing had hidden in those that move.</p>"""
 
 def page(saved: SavedDiagnosis, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
-    return framed(saved, "Diagnosis", _parts(saved, folder))
+    return framed(saved.campaign, f"Diagnosis by jaxhydro {saved.jaxhydro}", _parts(saved, folder), saved.jaxhydro)
 
 
 def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:

@@ -67,7 +67,7 @@ def discard(folder: Path) -> None:
         (folder / RESULTS).rename(folder / UNFINISHED)  # at once no store any more
     for name in (UNFINISHED, INPUTS):
         shutil.rmtree(folder / name, ignore_errors=True)
-    for name in ("sweep.json", "lifetime.csv", "scatter.png", "exceedance.png"):
+    for name in ("sweep.json", "lifetime.csv", "scatter.png", "exceedance.png", "report.html"):
         (folder / name).unlink(missing_ok=True)
 
 
