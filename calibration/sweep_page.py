@@ -12,8 +12,8 @@ from calibration.saved import Open
 from jaxhydro.problems import Number
 
 FIGURES = {
-    "scatter.png": "Standard deviation by sea state, all seeds and headings; the number is the share of the life.",
-    "exceedance.png": "Largest value of a run, and the share of runs that reach it; the band is the spread over seeds.",
+    "scatter.png": "Standard deviation by sea state, over seeds and headings; areas are shares of the life.",
+    "exceedance.png": "Maximum of a run, and the share of runs above it, weighed by probability: each seed's, and all seeds together.",
 }
 _LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. <i>Over seeds</i> are standard
 deviations from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds. Equivalent ranges do the
