@@ -13,7 +13,7 @@ from jaxhydro.problems import Number
 
 FIGURES = {
     "scatter.png": "Standard deviation by sea state, over seeds and headings; areas are shares of the life.",
-    "exceedance.png": "Maximum of a run, and the share of runs above it, weighed by probability: each seed's, and all seeds together.",
+    "exceedance.png": "Maximum of a run, and the share of runs above it by probability: each seed's, and all seeds together.",
 }
 _LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. <i>Over seeds</i> are standard
 deviations from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds. Equivalent ranges do the
