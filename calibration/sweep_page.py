@@ -17,7 +17,7 @@ FIGURES = {
 }
 _LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. <i>Over seeds</i> are standard
 deviations from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds. Equivalent ranges do the
-same damage as all cycles, at one cycle per second, for S-N curves of the exponent m.</p>"""
+same damage as all cycles, at the sweep's equivalent frequency, for S-N curves of the exponent m.</p>"""
 
 
 class Runs(Open):

@@ -8,7 +8,20 @@ from jaxtyping import Float
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from jaxhydro.loads.high_pass_drag import FASTEST
-from jaxhydro.problems import Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
+from jaxhydro.problems import (
+    Consistent,
+    Count,
+    Faults,
+    Flag,
+    NonNegative,
+    Number,
+    Positive,
+    Problem,
+    Schema,
+    Text,
+    Vector,
+    shown,
+)
 
 Matrix3 = Float[np.ndarray, "3 3"]
 
@@ -108,7 +121,7 @@ Shape = Annotated[
 ]
 
 
-class Member(Schema):
+class Member(Consistent):
     """A cylinder or box from rA to rB, m, in RAFT's words: d its diameter or [width, height], m, or one of these at
     each of `stations`; heading, deg, turns copies about z; gamma, deg, twists a box about its axis; `elements` load
     elements of `points` Gauss points each; maccamy_fuchs None: as the member's position says."""
@@ -132,12 +145,6 @@ class Member(Schema):
         if isinstance(data, dict) and "group" not in data and isinstance(data.get("name"), str):
             return {**data, "group": data["name"]}
         return data
-
-    @model_validator(mode="after")
-    def _consistent(self) -> Self:
-        if faults := tuple(self._faults()):
-            raise Faults(*faults)
-        return self
 
     def _faults(self) -> Iterator[Problem]:
         if self.rA == self.rB:

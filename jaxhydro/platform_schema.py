@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Discriminator, Field, RootModel, Tag, model
 
 from jaxhydro.body_schema import Coefficients, Inertia, Member, Part, RigidBody
 from jaxhydro.problems import (
+    Consistent,
     Faults,
     InputError,
     NonNegative,
@@ -202,7 +203,7 @@ class SeaStateLaws(Schema):
     exponents: dict[Text, Exponents]
 
 
-class Platform(Schema):
+class Platform(Consistent):
     """A platform file. `wetting`, `drag_speed`, `diffraction` and `directions` choose between
     forms of the strip loads (see the loads and `Model`)."""
 
@@ -226,12 +227,6 @@ class Platform(Schema):
     directions: Literal["body", "earth"] = "body"
     drag_speed: Literal["vector", "component"] = "vector"
     sea_state_laws: SeaStateLaws | None = None
-
-    @model_validator(mode="after")
-    def _fits_together(self) -> Self:
-        if faults := tuple(self._faults()):
-            raise Faults(*faults)
-        return self
 
     def _faults(self) -> Iterator[Problem]:
         bed = -self.water.depth

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
+from typing import Annotated, Any, Literal, Self, TypeVar, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from ruamel.yaml import YAML
 from ruamel.yaml.constructor import DuplicateKeyError
 from ruamel.yaml.error import MarkedYAMLError
@@ -65,6 +65,19 @@ class InputError(Exception):
         if len(self.problems) > SHOWN:
             lines.append(f"  and {len(self.problems) - SHOWN} more")
         return "\n".join([f"{self.source}: {len(self.problems)} problems", *lines])
+
+
+class Consistent(Schema):
+    """Base of what has to fit together: `_faults` yields what does not, once every key is right by itself."""
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        if faults := tuple(self._faults()):
+            raise Faults(*faults)
+        return self
+
+    def _faults(self) -> Iterator[Problem]:
+        raise NotImplementedError
 
 
 class Faults(ValueError):

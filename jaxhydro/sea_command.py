@@ -15,7 +15,7 @@ from jaxhydro.console import complain, say, table
 from jaxhydro.export import Motion, SeaState, write_motion
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem
-from jaxhydro.sea_options import Asked, Record
+from jaxhydro.sea_options import LEAST, Asked, Record
 from jaxhydro.sea_results import in_order, summary, tables
 from jaxhydro.simulate import SEA_STEP, default_step, free_decay
 from jaxhydro.waves.components import Components
@@ -26,7 +26,6 @@ from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz,
 MISSED = 0.01  # of a record in the band, that first and second order may miss by root mean square
 CUT = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
 NEARLY_NONE = 0.05  # share, below which it is a mistake
-LEAST = 100  # samples after the transient
 RESOLVED = 0.075  # of the shortest waves' period: the longest step
 
 
@@ -54,7 +53,7 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
     print_rest(model, job.platform)
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)
-    step = min(SEA_STEP, default_step(model), RESOLVED / asked.cutoff) if job.step is None else job.step
+    step = largest_step(model, asked.cutoff) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}
     table("Sea", ("Property", "Value"), _about(about), left=2)
     for note in notes:
@@ -85,6 +84,11 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
     say(f"Significant wave height, 4 standard deviations, {span}: {height:.3g} m")
     say(f"Results are in {job.out}")
     return True
+
+
+def largest_step(model: Model, cutoff: float) -> float:
+    """s, where none is asked for: what follows the platform's motions, and waves of up to `cutoff` (Hz)."""
+    return min(SEA_STEP, default_step(model), RESOLVED / cutoff)
 
 
 def build_sea(model: Model, asked: Asked, duration: float) -> Built:

@@ -13,6 +13,7 @@ from jaxhydro.waves.irregular import sampling_interval
 
 LOW, CUTOFF = 0.03, 0.3  # Hz
 TRANSIENT = 500.0  # s, at most a quarter of the duration
+LEAST = 100  # samples after the transient
 ORDER, SEED = 2, 0
 DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
 OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes")
@@ -20,6 +21,11 @@ OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
+
+
+def usual_transient(duration: float) -> float:
+    """s, left out of statistics where nothing else is asked for."""
+    return min(TRANSIENT, 0.25 * duration)
 
 
 @dataclass(frozen=True)
@@ -54,7 +60,7 @@ class Asked:
     def start(self, duration: float) -> float:
         """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
         if self.transient is None:
-            return min(TRANSIENT, 0.25 * duration)
+            return usual_transient(duration)
         if not 0 <= self.transient < duration:
             limits = f"from 0 to less than the duration, {duration:g} s, expected"
             raise wrong("--transient", f"{limits}; found {self.transient:g}")

@@ -124,10 +124,8 @@ def in_irregular(
 
     Raises ValueError for a platform that is carried away.
     """
-    begin, duration = float(times[0]), float(times[-1] - times[0])
-    period = float(sea.components.period)
-    step = period / fourier_length(period / limit)
-    steps = max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
+    begin = float(times[0])
+    step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     points, excursion = model.hull.extremities(), EXCURSION
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion)
@@ -139,6 +137,13 @@ def in_irregular(
         if reached > prepared.half + 10 * EXCURSION:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
         excursion += reached + margin - prepared.half + 0.5 * EXCURSION
+
+
+def steps_in(sea: IrregularSea, duration: float, limit: float) -> tuple[float, int]:
+    """Size (s) and number of the steps of at most `limit` (s) that divide the sea's period and cover `duration` (s)."""
+    period = float(sea.components.period)
+    step = period / fourier_length(period / limit)
+    return step, max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
 
 
 def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: SupportSea) -> Float[Array, ""]:

@@ -1,9 +1,7 @@
 """What a diagnosis has reached, kept on disk from round to round, so that one that was killed goes on."""
 
 import hashlib
-import os
 import pickle
-import secrets
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -12,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calibration.discovery.judgement import State
+from jaxhydro.files import staged
 
 if TYPE_CHECKING:
     from calibration.discovery.search import Search
@@ -20,8 +19,7 @@ FILE = ".diagnosis-under-way"
 
 
 def keep(path: Path, search: "Search", states: list[State]) -> None:
-    """Write what was reached, whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    """Write what was reached, whole or not at all. Raises InputError where it cannot be written."""
     content = {
         "of": fingerprint(search),
         "linear": search.linear,
@@ -33,12 +31,8 @@ def keep(path: Path, search: "Search", states: list[State]) -> None:
         "rejected": search.rejected,
         "notes": search.notes,
     }  # fmt: skip
-    temporary = path.with_name(f"{path.name}-{secrets.token_hex(4)}")
-    try:
-        temporary.write_bytes(pickle.dumps(content))
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with staged(path.parent) as temporary:
+        (temporary / path.name).write_bytes(pickle.dumps(content))
 
 
 def resumed(path: Path, search: "Search") -> list[State]:

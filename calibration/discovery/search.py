@@ -70,7 +70,6 @@ class Search:
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
         self.notes: list[str] = []
-        self.linear = False  # seas of the first order alone
         self.base = self.study.index([*posed.base, *posed.nuisances])
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
@@ -123,7 +122,7 @@ class Search:
         first = self.state((), reached)
         better = float((state.likelihood - first.likelihood)[self.study.used].sum())
         if better < LEAST_BIC:
-            self.study, self.linear = self.posed.study, False
+            self.study = self.posed.study
             return state
         self.notes.append(
             "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions "
@@ -131,9 +130,14 @@ class Search:
         )
         return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
 
+    @property
+    def linear(self) -> bool:
+        """Whether seas are those without the second order that their records have."""
+        return self.study is not self.posed.study
+
     def take_linear_seas(self) -> None:
         """Seas without the second order that their records have, from now on."""
-        self.study, self.linear = replace(self.study, seas=self.study.linear_seas), True
+        self.study = replace(self.study, seas=self.study.linear_seas)
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""

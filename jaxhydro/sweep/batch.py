@@ -12,7 +12,6 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro import adams_bashforth
 from jaxhydro.command import model_of, with_calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock, integrate
@@ -22,13 +21,12 @@ from jaxhydro.platform_schema import load_platform
 from jaxhydro.plot import for_people
 from jaxhydro.problems import InputError
 from jaxhydro.rotations import rotation
-from jaxhydro.sea_command import RESOLVED, build_sea
+from jaxhydro.sea_command import build_sea, largest_step
 from jaxhydro.sea_options import Asked
-from jaxhydro.simulate import SEA_STEP, default_step, farthest, simulate
+from jaxhydro.simulate import farthest, simulate, steps_in
 from jaxhydro.statics import EquilibriumError, equilibrium
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.statistics import Kept, kept_of
-from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import IrregularSea, SupportSea
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.second_order import elevation_spectrum
@@ -57,7 +55,7 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     if calibration is not None:
         model = with_calibration(model, str(platform), calibration)[0]
     times = plan.time_step * np.arange(math.floor(plan.duration / plan.time_step * (1 + 1e-12)) + 1)
-    limit = min(SEA_STEP, default_step(model), RESOLVED / plan.cutoff) if plan.step is None else plan.step
+    limit = largest_step(model, plan.cutoff) if plan.step is None else plan.step
     return Setup(plan, model, times, limit)
 
 
@@ -163,9 +161,7 @@ def prepared_for(
     model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
 ) -> tuple[SupportSea, float, int]:
     """The sea for the model's hull, and the steps taken: size (s) and number, those of `simulate`."""
-    period, duration = float(sea.components.period), float(times[-1] - times[0])
-    step = period / fourier_length(period / limit)
-    steps = max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
+    step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     return sea.prepared(model.hull.extremities(), model.cylinders, clock("ab4", float(times[0]), step, steps)), step, steps
 
 

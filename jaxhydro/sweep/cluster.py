@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from jaxhydro.problems import InputError, Problem
-from jaxhydro.sweep.worker import fail_runs, simulate_runs
+from jaxhydro.sweep.worker import Found, fail_runs, simulate_runs
 
 RETRIES = 3
 PATIENCE = 30.0  # s, for the scheduler to answer
-Found = list[tuple[int, bool]]
 
 
 def client_of(scheduler: str) -> Any:

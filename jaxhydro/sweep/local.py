@@ -10,10 +10,9 @@ import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from jaxhydro.sweep.worker import environment, fail_runs
+from jaxhydro.sweep.worker import Found, environment, fail_runs
 
 TRIES = 3  # processes that one batch may end, before its runs are given up
-Found = list[tuple[int, bool]]
 
 
 class Worker:

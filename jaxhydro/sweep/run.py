@@ -16,10 +16,11 @@ from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.load import load_sweep
-from jaxhydro.sweep.local import Found, simulated
+from jaxhydro.sweep.local import simulated
 from jaxhydro.sweep.resources import Chosen, chosen
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, check_same, create, discard, open_results
+from jaxhydro.sweep.worker import Found
 
 
 class Prepared(NamedTuple):

@@ -6,15 +6,15 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from jaxhydro.environment import DOFS
-from jaxhydro.problems import Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
+from jaxhydro.problems import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
+from jaxhydro.sea_options import LEAST, usual_transient
 from jaxhydro.waves.sea import Stretching
 
 Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
 Exponent = Annotated[float, Field(strict=True, ge=1, le=20)]
 Dof: TypeAlias = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
-LONGEST, LEAST = 5_000_000, 100  # samples of a run, and after its transient
-TRANSIENT = 500.0  # s, at most a quarter of the duration
+LONGEST = 5_000_000  # samples of a run
 COLUMNS = ("hs", "tp", "probability", "gamma")  # of a scatter table
 
 
@@ -84,7 +84,7 @@ Number1 = Annotated[int, Field(strict=True, ge=1, le=100_000)]
 Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")], Discriminator(_number_or)]
 
 
-class Sweep(Schema):
+class Sweep(Consistent):
     """A sweep file: every sea state from every heading with every seed. What is left out is as in `jaxhydro simulate`."""
 
     platform: Text
@@ -106,12 +106,6 @@ class Sweep(Schema):
     motions: Annotated[tuple[Dof, ...], Field(min_length=1)] = DOFS  # type: ignore[assignment]
     time_series: Flag = False
     fatigue: Fatigue = Fatigue()
-
-    @model_validator(mode="after")
-    def _fits_together(self) -> Self:
-        if faults := tuple(self._faults()):
-            raise Faults(*faults)
-        return self
 
     def _faults(self) -> Iterator[Problem]:
         if self.cutoff <= self.low:
@@ -142,4 +136,4 @@ class Sweep(Schema):
     @property
     def start(self) -> float:
         """Time (s) from which on statistics are taken."""
-        return min(TRANSIENT, 0.25 * self.duration) if self.transient is None else self.transient
+        return usual_transient(self.duration) if self.transient is None else self.transient

@@ -102,11 +102,11 @@ def _with_slope(
         position = integrate(here, sea, start, times[0], step, steps, "ab4", "forward").at(times)[0]
         x, count = position[:, column], kept.sum()
         mean = jnp.sum(x * kept) / count
-        place = jnp.abs(position[:, :2] @ sea.along - sea.middle).max()
-        return jnp.sqrt(jnp.sum(kept * (x - mean) ** 2) / count), place
+        found = jnp.sqrt(jnp.sum(kept * (x - mean) ** 2) / count)
+        return found, (found, jnp.abs(position[:, :2] @ sea.along - sea.middle).max())
 
-    slope, reached = jax.jacfwd(deviation, has_aux=True)(values)
-    return deviation(values)[0], slope, reached
+    slope, (found, reached) = jax.jacfwd(deviation, has_aux=True)(values)
+    return found, slope, reached
 
 
 def _no_motion(dof: str) -> int:

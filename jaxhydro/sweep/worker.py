@@ -15,6 +15,7 @@ from pathlib import Path
 
 from jaxhydro.start import start
 
+Found = list[tuple[int, bool]]  # numbers of runs, and whether they are done
 FLAG = "--xla_cpu_multi_thread_eigen=false"
 
 
@@ -32,7 +33,7 @@ def environment(device: str | None = None) -> dict[str, str]:
     return found
 
 
-def simulate_runs(folder: str, numbers: Sequence[int]) -> list[tuple[int, bool]]:
+def simulate_runs(folder: str, numbers: Sequence[int]) -> Found:
     """Simulate runs and write them, on a GPU all at once; each with whether it is done."""
     prepare()
     import jax
@@ -47,7 +48,7 @@ def simulate_runs(folder: str, numbers: Sequence[int]) -> list[tuple[int, bool]]
     return [(run.number, store.write(run, outcome(setup, run))) for run in runs]
 
 
-def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> list[tuple[int, bool]]:
+def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> Found:
     """Write that runs failed; for those whose process was lost."""
     from jaxhydro.sweep.batch import plan_in
     from jaxhydro.sweep.store import INPUTS, Store
