@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.bench_timing import Row, pin
+from jaxhydro.start import quick_compilation
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.md"
@@ -77,6 +78,7 @@ def main() -> None:
     out = arguments.out or (None if arguments.quick or arguments.only else RESULTS)
     cores = os.cpu_count() or 1
     pin()
+    quick_compilation()
     import jax
 
     jax.config.update("jax_enable_x64", True)

@@ -205,6 +205,7 @@ def condensed(
     return roots[..., -1], products
 
 
+@eqx.filter_jit  # traced once, not by the value and by the derivative of every program that has them
 def _roots(unknowns, problem, weight, until):
     products = problem.products(unknowns, until)
     return square_root(jnp.einsum("rckl,rc->rkl", products, weight)), products

@@ -69,6 +69,7 @@ def _by_loop(
     if adjoint == "forward" and y.shape[0] > LONG:
         run, options["shown"] = loop.direct, MOTION
 
+    @eqx.filter_jit  # traced once, not by every stage and derivative
     def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> tuple[Array, ...]:
         return tuple(leaf.reshape(-1) for leaf in jax.tree.leaves(driver[0].rate(time, unravel(y), driver[1])))
 

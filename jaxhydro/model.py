@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -61,6 +62,11 @@ class Total(NamedTuple):
     memory_rate: tuple[Any, ...]
 
 
+def strongly_typed(tree: Any) -> Any:
+    """A model or a load without JAX's weak types: programs are compiled by type, and numbers that were set have strong ones."""
+    return jax.tree.map(lambda x: jnp.asarray(x, x.dtype) if eqx.is_array(x) else x, tree)
+
+
 class Model(eqx.Module):
     """A platform: a rigid body, its strips, and the loads on it.
 
@@ -109,19 +115,17 @@ class Model(eqx.Module):
         unknown = set(values) - set(self.values)
         if unknown:
             self.about(sorted(unknown)[0])
-        loads = tuple(
-            eqx.tree_at(
-                lambda x: x.values, load, {label: jnp.asarray(values.get(label, old)) for label, old in load.values.items()}
-            )
-            if load.values
-            else load
-            for load in self.loads
-        )
+
+        def changed(load: AbstractLoad) -> AbstractLoad:
+            new = {label: jnp.asarray(values.get(label, old), float) for label, old in load.values.items()}
+            return eqx.tree_at(lambda x: x.values, load, new) if new else load
+
+        loads = tuple(changed(load) for load in self.loads)
         return eqx.tree_at(lambda m: m.loads, self, loads)
 
     def with_load(self, load: AbstractLoad) -> "Model":
         """This model with one more load."""
-        return eqx.tree_at(lambda m: m.loads, self, (*self.loads, load))
+        return eqx.tree_at(lambda m: m.loads, self, (*self.loads, strongly_typed(load)))
 
     def in_sea(self, state: SeaState) -> "Model":
         """This model with the coefficients that it has in a sea state."""

@@ -33,7 +33,7 @@ from jaxhydro.loads import (
 )
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
-from jaxhydro.model import Model, RigidBody
+from jaxhydro.model import Model, RigidBody, strongly_typed
 from jaxhydro.problems import InputError, Problem, suggest
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
@@ -96,7 +96,8 @@ def build(platform: schema.Platform) -> Model:
         # plain drag that other laws have taken all lines from is left out
         loads += [load for load in morison if load.values or not chosen] + _drag(chosen, coefficients, hull, coupled)
     all_loads = _in_seas(tuple(loads), platform)
-    return Model(environment, body, hull, all_loads, platform.wetting, platform.diffraction, platform.directions)
+    model = Model(environment, body, hull, all_loads, platform.wetting, platform.diffraction, platform.directions)
+    return strongly_typed(model)
 
 
 def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:

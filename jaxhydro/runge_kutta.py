@@ -150,7 +150,6 @@ def linearised(
     """Derivatives of the rate by the state, and along `d_driver`, at the first `count` of some times and states (zero beyond,
     but for the last batch's rest)."""
     total, size = states.shape
-    rate = eqx.filter_jit(rate)  # traced once, not once for every derivative below
     points = -(-total // batch) * batch
     parts = len(jax.eval_shape(rate, driver, times[0], states[0]))
     times, states = jnp.pad(times, (0, points - total)), jnp.pad(states, ((0, points - total), (0, 0)))

@@ -87,6 +87,7 @@ class Modes(NamedTuple):
         return float(mine[0]) if mine else float("nan")
 
 
+@eqx.filter_jit
 def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, "6 6"], Float[Array, "6 6"]]:
     """Mass matrix with added mass, and stiffness (N/m, ...), of small motion about a position of rest.
 
@@ -113,7 +114,7 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     Shapes are compared with rotations times 50 m, a platform's half width, so that metres and radians can be.
     """
     position = equilibrium(model) if position is None else position
-    mass, stiffness = (np.asarray(m) for m in eqx.filter_jit(linearised)(model, position))
+    mass, stiffness = (np.asarray(m) for m in linearised(model, position))
     square, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
     order = np.argsort(square.real)
     square, vectors = square.real[order], vectors.real[:, order]

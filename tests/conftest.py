@@ -15,6 +15,9 @@ for folder in (Path(__file__).resolve().parents[1], Path(__file__).resolve().par
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
+from jaxhydro.start import quick_compilation  # noqa: E402
+
+quick_compilation()
 jax.config.update("jax_enable_x64", True)
 if folder_of_cache := os.environ.get("JAX_COMPILATION_CACHE_DIR"):
     jax.config.update("jax_compilation_cache_dir", folder_of_cache)

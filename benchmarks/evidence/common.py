@@ -82,6 +82,9 @@ def keep(section: str, key: str, name: str, result: Any) -> Any:
 
 def begin() -> None:
     """What every process does first."""
+    from jaxhydro.start import quick_compilation
+
+    quick_compilation()
     import jax
 
     jax.config.update("jax_enable_x64", True)

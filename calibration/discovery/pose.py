@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import equinox as eqx
 import numpy as np
 
 from calibration.campaign import Campaign
@@ -70,7 +69,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     waves = [r for r in campaign.records if r.kind in KINDS and r.use != "ignore"]
     declared = with_diffraction(build(campaign.platform), options)
     labels = labels_of(campaign, declared, sorted(motions), None)
-    mass, stiffness = (np.asarray(m) for m in eqx.filter_jit(linearised)(declared, equilibrium(declared)))
+    mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
     candidates, scaled, units = catalogue(declared, scales_of(mass, stiffness, motions), bool(waves), variance)
     for own in extra:
