@@ -113,10 +113,12 @@ def calibrate_in_waves(
     """Fit the declared model's coefficients to the tests in waves marked `fit`, all together, in their measured waves.
 
     `objective` "bands": the logarithms of simulated over measured energy in the low and the wave-frequency band of every motion
-    that matters, which a sensor's clock and the phase of slow drift do not touch; "motion": simulated less measured, sample by
-    sample, over the measured standard deviation; "both". Of regular waves always the motion. Every free parameter has a prior,
-    a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the model's own error, which is
-    estimated from the residuals: energies in a few bands do not determine many coefficients, and say so by their deviations.
+    that matters, which a sensor's clock and the phase of slow drift do not touch; "spectrum": the same in narrow cells of these
+    bands, up to eight of each, so that where a motion resonates and how sharply counts; "motion": simulated less measured,
+    sample by sample, over the measured standard deviation; "both", bands and motion. Of regular waves always the motion. Every
+    free parameter has a prior, a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the
+    model's own error, which is estimated from the residuals: energies in a few bands do not determine many coefficients, and
+    say so by their deviations.
 
     `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
     `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of

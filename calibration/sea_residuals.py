@@ -1,10 +1,12 @@
-"""Tests in measured waves against the model, as residuals with their Jacobian: energies in bands, or motions.
+"""Tests in measured waves against the model, as residuals with their Jacobian: energies in bands, spectra, or motions.
 
 The windows of a file are one continuous run that starts at rest with it, in the sea of its own wave record, so its motions have
 no unknowns of their own: what is fitted is the model's parameters.
 """
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Literal
 
 import equinox as eqx
@@ -20,7 +22,7 @@ from calibration.runs import Run
 from calibration.seas import Options, Seas, moving_channels, peak_period
 from calibration.seas_results import bands_of
 from calibration.stretches import stretches, walk, window
-from jaxhydro.analysis import band_weights
+from jaxhydro.analysis import SEGMENT, band_weights
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
@@ -29,37 +31,38 @@ from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular_sea import SupportSea
 from jaxhydro.waves.sea_state import SeaState
 
-Objective = Literal["bands", "motion", "both"]
+Objective = Literal["bands", "spectrum", "motion", "both"]
+CELLS, CYCLES, LEAST = 8, 10.0, 0.01  # of a spectrum: cells of a band, their least width times the record, least energy
 MARGIN = 30.0  # m that a motion may go beyond that of the declared model before its sea has to be prepared anew
 
 
-class Energy(eqx.Module):
-    """The integral of a spectrum over one band: `analysis.BandWeights`, and what was measured (m2, rad2)."""
+class Energies(eqx.Module):
+    """Integrals of a motion's spectrum over bands: `analysis.BandWeights`, one row each, and what was measured (m2, rad2)."""
 
     starts: Int[Array, " g"]
     window: Float[Array, " s"]
-    weight: Float[Array, " f"]
-    measured: Float[Array, ""]
+    weight: Float[Array, "b f"]
+    measured: Float[Array, " b"]
     first: int = eqx.field(static=True)
 
-    def of(self, x: Float[Array, " n"]) -> Float[Array, ""]:
-        """The integral (m2, rad2) of a motion's spectrum."""
+    def of(self, x: Float[Array, " n"]) -> Float[Array, " b"]:
+        """The integrals (m2, rad2) of a motion."""
         parts = x[self.starts[:, None] + jnp.arange(self.window.shape[0])]
         lines = jnp.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * self.window)
-        inside = lines[:, self.first : self.first + self.weight.shape[0]]
-        return ((inside.real**2 + inside.imag**2) @ self.weight).mean()
+        inside = lines[:, self.first : self.first + self.weight.shape[1]]
+        return self.weight @ (inside.real**2 + inside.imag**2).mean(axis=0)
 
 
 class Piece(eqx.Module):
-    """One motion of one test: its samples on the run's clock from `begin` on, and its energies in bands."""
+    """One motion of one test: its samples on the run's clock from `begin` on, and its energies in bands, if it has any."""
 
     measured: Float[Array, " n"]
-    energies: tuple[Energy, ...]
+    energies: Energies | None
     begin: int = eqx.field(static=True)
     dof: int = eqx.field(static=True)
     test: str = eqx.field(static=True)
     weight: float = eqx.field(static=True)  # of its residuals' squares
-    names: tuple[str, ...] = eqx.field(static=True)  # of the bands
+    names: tuple[str, ...] = eqx.field(static=True)  # of the bands, each as often as it has cells
 
 
 class SeaRun(eqx.Module):
@@ -108,19 +111,24 @@ class SeaProblem(eqx.Module):
     def observations(self) -> int:
         """How many there are: one for every band, and one for every motion, whose residual's square is relative to its own."""
         pieces = [piece for run in self.runs for piece in run.pieces]
-        return sum(self.in_bands) * sum(len(piece.energies) for piece in pieces) + self.in_bands.count(False)
+        return sum(self.in_bands) * sum(len(piece.names) for piece in pieces) + self.in_bands.count(False)
 
     @property
     def in_bands(self) -> tuple[bool, ...]:
         """Of every group of residuals, whether it is of energies in bands."""
         pieces = [piece for run in self.runs for piece in run.pieces]
-        motions = [piece for piece in pieces if self.objective != "bands" or not piece.energies]
-        energies = self.objective != "motion" and any(piece.energies for piece in pieces)
+        motions = [piece for piece in pieces if self.sample_by_sample(piece)]
+        energies = self.objective != "motion" and any(piece.energies is not None for piece in pieces)
         return (*([True] if energies else []), *[False] * len(motions))
 
+    def sample_by_sample(self, piece: Piece) -> bool:
+        """Whether a motion itself is fitted: of regular waves, which have no bands, it always is."""
+        return self.objective in ("motion", "both") or piece.energies is None
+
     def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " _"], ...]:
-        """In one group ln(simulated / measured energy) by test, motion and band; in others, motion by motion, simulated less
-        measured over the measured standard deviation and the root of the number of samples, each about its mean."""
+        """In one group ln(simulated / measured energy) by test, motion and band or cell of one; in others, motion by motion,
+        simulated less measured over the measured standard deviation and the root of the number of samples, each about its
+        mean."""
         return self.look(x)[0]
 
     def look(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
@@ -131,13 +139,13 @@ class SeaProblem(eqx.Module):
         for run, position in zip(self.runs, positions, strict=True):
             for piece in run.pieces:
                 there = position[piece.begin : piece.begin + piece.measured.shape[0], piece.dof] - base[piece.dof]
-                if self.objective != "motion":  # regular waves have none
-                    share = math.sqrt(piece.weight)
-                    energies += [share * jnp.log(one.of(there) / one.measured) for one in piece.energies]
-                if self.objective != "bands" or not piece.energies:
+                if self.objective != "motion" and piece.energies is not None:
+                    off = jnp.log(piece.energies.of(there) / piece.energies.measured)
+                    energies.append(math.sqrt(piece.weight) * off)
+                if self.sample_by_sample(piece):
                     off = there - there.mean() - (piece.measured - piece.measured.mean())
                     motions.append(off * math.sqrt(piece.weight / off.size) / jnp.std(piece.measured))
-        return (*([jnp.stack(energies)] if energies else []), *motions), (jnp.stack(far) <= 0).all()
+        return (*([jnp.concatenate(energies)] if energies else []), *motions), (jnp.stack(far) <= 0).all()
 
     def products(self, x: Float[Array, " p"]) -> Float[Array, "g k k"]:
         """[J r]^T [J r] of every group, k the parameters and one."""
@@ -171,7 +179,7 @@ def pose_in_waves(
             parts = (parts[0]._replace(end=max(int(run.samples(record)[-1]) for record in fitted[0])),)
         for (part, taken, start), records in zip(walk(model, run, parts[: last + 1], sea.sea, step, MARGIN), fitted):
             if records:
-                pieces = tuple(piece for record in records for piece in _pieces(run, record, scale, part.begin))
+                pieces = tuple(piece for r in records for piece in _pieces(run, r, scale, part.begin, objective == "spectrum"))
                 times = jnp.asarray(run.time[part.begin : part.end + 1])
                 # arrays, so that another state is not compiled anew
                 state = None if part.state is None else jax.tree.map(jnp.asarray, part.state)
@@ -180,20 +188,49 @@ def pose_in_waves(
     return SeaProblem(model, tuple(found), rest, points, space, from_rest, objective)
 
 
-def _pieces(run: Run, record: Record, scale: float, begin: int) -> list[Piece]:
-    """The motions of a test that are worth fitting, after its transient, on the run's even clock from sample `begin` on."""
+def _pieces(run: Run, record: Record, scale: float, begin: int, cut: bool) -> list[Piece]:
+    """The motions of a test that are worth fitting, after its transient, on the run's even clock from sample `begin` on, their
+    bands `cut` into cells or not."""
     at, whole = run.samples(record), window(run, record)
     values = {dof: np.interp(whole, at, record.values[dof]) for dof in DOFS if dof in record.values}
     period = peak_period(run, record, scale)
     pieces = []
     for dof in moving_channels(values):
         limits = bands_of(dof, period) if record.kind == "irregular" else {}
-        energies = []
-        for low, high in limits.values():
-            made = band_weights(len(whole), run.step, low, high)
-            starts, taper, weight = (jnp.asarray(x) for x in (made.starts, made.window, made.weight))
-            energies.append(Energy(starts, taper, weight, jnp.asarray(made.integral(values[dof])), made.first))
+        made = [(name, energies_of(values[dof], run.step, *limit, cut)) for name, limit in limits.items()]
+        names = tuple(name for name, one in made for _ in one.measured)
+        energies = joined([one for _, one in made]) if made else None
         first, stated = int(whole[0]) - begin, record.test.weight
-        measured = jnp.asarray(values[dof])
-        pieces.append(Piece(measured, tuple(energies), first, DOFS.index(dof), record.id, stated, tuple(limits)))
+        pieces.append(Piece(jnp.asarray(values[dof]), energies, first, DOFS.index(dof), record.id, stated, names))
     return pieces
+
+
+def energies_of(x: Float[np.ndarray, " n"], step: float, low: float, high: float, cut: bool) -> Energies:
+    """The energy of a record, sampled every `step` (s), between `low` and `high` (Hz): in one band, or `cut` into equal cells.
+
+    A cell is no narrower than 1 / `CYCLES` of the record allows, by which its energy is that of `CYCLES` periods at least, and
+    two lines of the spectrum; there are `CELLS` at most. Cells with less than `LEAST` of the largest one's energy are left out:
+    the logarithm of what hardly moves is that of the sensor's noise.
+    """
+    line = 1 / min(SEGMENT, len(x) * step)
+    narrowest = max(CYCLES / (len(x) * step), 2 * line)
+    count = int(np.clip((high - low) / narrowest, 1, CELLS)) if cut else 1
+    edges = np.linspace(low, high, count + 1)
+    made = [band_weights(len(x), step, *pair) for pair in pairwise(edges)]
+    measured = np.array([one.integral(x) for one in made])
+    kept = [i for i in range(count) if measured[i] >= LEAST * measured.max()]
+    first = min(made[i].first for i in kept)
+    weight = np.zeros((len(kept), max(made[i].first + len(made[i].weight) for i in kept) - first))
+    for row, i in zip(weight, kept):
+        row[made[i].first - first :][: len(made[i].weight)] = made[i].weight
+    starts, taper = jnp.asarray(made[0].starts), jnp.asarray(made[0].window)
+    return Energies(starts, taper, jnp.asarray(weight), jnp.asarray(measured[kept]), first)
+
+
+def joined(parts: Sequence[Energies]) -> Energies:
+    """Bands of one motion as one."""
+    first = min(one.first for one in parts)
+    end = max(one.first + one.weight.shape[1] for one in parts)
+    rows = [jnp.pad(one.weight, ((0, 0), (one.first - first, end - one.first - one.weight.shape[1]))) for one in parts]
+    measured = jnp.concatenate([one.measured for one in parts])
+    return Energies(parts[0].starts, parts[0].window, jnp.concatenate(rows), measured, first)

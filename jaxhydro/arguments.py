@@ -89,6 +89,7 @@ class Objective(StrEnum):
     """See `calibration.calibrate_in_waves`."""
 
     bands = "bands"
+    spectrum = "spectrum"
     motion = "motion"
     both = "both"
 
@@ -213,7 +214,9 @@ Tests = Annotated[
         show_default="decays where there are any",
     ),
 ]
-Aim = Annotated[Objective, typer.Option(help="In waves, fit energy in frequency bands, the motion itself, or both.")]
+Aim = Annotated[
+    Objective, typer.Option(help="In waves, fit energy in frequency bands, spectra in them, the motion, or bands and motion.")
+]
 Robust = Annotated[Loss, typer.Option(help="With --tests all: cauchy lets outliers hardly count.")]
 OverSea = Annotated[
     Law, typer.Option(help="In waves, drag and damping as powers of the sea state; choose: the law that held-out seas prefer.")

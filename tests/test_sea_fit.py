@@ -13,7 +13,7 @@ from test_seas import made  # noqa: F401  (a fixture: a run of the NumPy model)
 from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaign
 from calibration.outputs import document, write_calibration
 from calibration.parameters import parameter_space
-from calibration.sea_residuals import pose_in_waves
+from calibration.sea_residuals import CELLS, LEAST, energies_of, joined, pose_in_waves
 from calibration.seas import Options, compare, seas_of, with_diffraction
 from calibration.seas_results import in_bands
 from jaxhydro.analysis import band_integral, band_weights, power_spectrum
@@ -55,6 +55,27 @@ def test_energy_in_a_band_as_a_quadratic_form(count: int, segment: float | None)
         assert weights.integral(x) == pytest.approx(band_integral(spectrum, low, high), rel=1e-12)
     with pytest.raises(ValueError, match="0 <= low < high"):
         band_weights(count, step, 0.2, 0.1)
+
+
+@pytest.mark.parametrize("duration, cells", [(9000.0, CELLS), (3600.0, 7), (2000.0, 4), (500.0, 1)])
+def test_cells_of_a_band_are_as_narrow_as_the_record_allows(duration: float, cells: int) -> None:
+    """White noise has energy in all of them: together that of the band; ten periods of the record at least in a cell."""
+    step = 0.5
+    x = np.random.default_rng(3).normal(size=int(duration / step))
+    whole, parts = (energies_of(x, step, 0.005, 0.025, cut) for cut in (False, True))
+    assert parts.measured.shape == (cells,)
+    assert float(parts.measured.sum()) == pytest.approx(float(whole.measured[0]), rel=1e-12)
+    other = energies_of(x, step, 0.06, 0.15, True)
+    assert_allclose(joined([parts, other]).of(jnp.asarray(x)), [*parts.measured, *other.measured], rtol=1e-12)
+
+
+def test_cells_without_energy_are_left_out() -> None:
+    """Of a motion with one frequency and a sensor's noise one cell is left, that of the frequency."""
+    step, time = 0.5, np.arange(0.0, 3600.0, 0.5)
+    x = np.sin(2 * np.pi * 0.0064 * time) + 1e-3 * np.random.default_rng(3).normal(size=time.size)
+    whole, kept = (energies_of(x, step, 0.005, 0.025, cut) for cut in (False, True))
+    assert kept.measured.shape == (1,)
+    assert float(kept.measured[0]) == pytest.approx(float(whole.measured[0]), rel=LEAST)
 
 
 def test_residuals_are_what_the_comparison_says(campaign, problem) -> None:
@@ -107,6 +128,15 @@ def test_coefficients_of_a_made_run_are_found_back(fitted) -> None:
     for band in tests["sea-b"].bands["surge"].values():
         assert abs(band.after) < 0.03
     assert max(abs(b.before) for row in tests["sea-a"].bands.values() for b in row.values()) > 0.1
+
+
+def test_spectra_find_them_back_too(campaign) -> None:
+    result = calibrate_in_waves(campaign, free=LABELS, start=start_of(campaign), objective="spectrum", options=OPTIONS)
+    true = build(campaign.platform).values
+    for label in LABELS:
+        one = result.parameters[label]
+        assert one.identifiable
+        assert abs(one.value - float(true[label])) < max(0.03 * float(true[label]), 2 * one.standard_deviation), label
 
 
 def test_what_is_written(fitted, tmp_path) -> None:
