@@ -217,7 +217,8 @@ def _best_fix(labels: Sequence[str], covariance: np.ndarray, candidates: Sequenc
     """The candidate that takes most from the summed variance of the others, and the covariance (p, p) once it is fixed."""
 
     def fixed(i: int) -> np.ndarray:
-        return np.outer(covariance[i], covariance[i]) / max(covariance[i, i], 1e-300)
+        shared = covariance[i] / np.sqrt(max(covariance[i, i], 1e-300))  # at most every one's own deviation: no overflow
+        return np.outer(shared, shared)
 
     lost = {i: float(np.delete(np.diag(fixed(i)), i).sum()) for i in map(labels.index, candidates)}
     best = max(lost, key=lambda i: lost[i])
