@@ -12,7 +12,7 @@ from calibration.formatting import number
 
 TITLE = "Global searches"
 RECORDS = ("surge-2", "heave-2", "pitch-2")
-SEEDS, BUDGET = 10, 90.0  # and CPU seconds of a search
+SEEDS, BUDGET = 10, 60.0  # and CPU seconds of a search
 CLOSE = 1.01
 NAMES = {"multistart": "Multi-start LM", "cma-es": "CMA-ES", "de": "Differential evolution", "ga": "Genetic algorithm"}
 POPULATIONS = ("cma-es", "de", "ga")
