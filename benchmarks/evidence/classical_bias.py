@@ -102,8 +102,9 @@ def words(results: list[dict[str, Any]], figures: Path) -> Section:
              "B33 / true ± sd", "`pontoon.Cd_z` / true ± sd")  # fmt: skip
     text = f"""
 A heave decay of the NumPy model from {RELEASED:g} m, {DURATION:g} s, noise {1000 * NOISE:g} mm, the pontoon's drag
-multiplied by a factor and B33 by its square. The P-Q analysis (`classical`) gives p and q; what they should be is B_lin/M and B_quad/M of the model
-(`model_damping`). The fit in the time domain frees the two coefficients, begun 1.6 times too small, everything else as it is.
+multiplied by a factor and B33 by its square. The P-Q analysis (`classical`) gives p and q; what they should be is B_lin/M
+and B_quad/M of the model (`model_damping`). The fit in the time domain frees the two coefficients, begun 1.6 times too
+small, everything else as it is.
 
 {table(heads, rows)}
 P-Q takes an extreme for a turning point of an undamped oscillation, and a half cycle's amplitude for constant: its error
