@@ -58,6 +58,8 @@ def calibrate_jointly(
         if progress is not None:
             progress(Progress(stage, iteration, value, fraction, name))
 
+    if objective == "blocks":
+        raise InputError("--objective", [Problem("", "--tests waves beside blocks", "--tests all")])
     fitted = campaign.used("fit")
     decays = [record for record in fitted if record.kind == "decay" and "decays" in kinds]
     waves = [record for record in fitted if record.kind in KINDS and "waves" in kinds]

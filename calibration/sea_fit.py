@@ -6,21 +6,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Literal
 
-import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks
-from calibration.descent import descend
-from calibration.directions import Identifiability, family, stated
+from calibration.directions import family
 from calibration.fit import Interrupted, Progress, labels_of, space_of
-from calibration.identifiability import Spread, memory
-from calibration.residuals import condensed_groups
 from calibration.result import BandError, Calibration, TestFit
 from calibration.runs import KINDS
-from calibration.sea_residuals import Objective, SeaProblem, look, pose_in_waves
+from calibration.sea_descent import SeaFit
+from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, sea_step, seas_of, with_diffraction
 from calibration.seas_results import in_bands
+from calibration.shooting_fit import ShootingFit
 from calibration.stretches import sea_state
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import exponent_label, is_exponent, with_exponents
@@ -32,71 +30,7 @@ from jaxhydro.waves.sea_state import SeaState
 
 Over = Literal["significant_height", "peak_period"]
 
-ROUNDS = 4  # times that the model's error is estimated anew
-SETTLED = 0.05  # relative change of that estimate that is none
-TOLERANCE = 1e-3  # relative decrease of the sum of squares that ends a round
 PLAIN = 1.0  # standard deviation of the prior of an exponent about 0
-FIRST = 1.0  # trust in a descent's first step (`descend`): logarithms of energies are far from linear in those of coefficients
-
-
-def _objective(x, args):
-    """Residuals of the tests and of the prior, for optimistix."""
-    problem, mean, ridge = args
-    rows, products = condensed_groups(x, problem, jnp.ones(len(problem.in_bands)))
-    return (rows, ridge * (x - mean)), products
-
-
-class SeaFit:
-    """One calibration in waves under way. The prior of every parameter weighs as one observation beside the tests' own, whose
-    error is that of the model: it is estimated from what is left of them, and the fit made anew, until both agree."""
-
-    def __init__(self, pose: Callable[[Model], SeaProblem], declared: Model, report: Callable[..., None]) -> None:
-        self.pose, self.report = pose, report
-        self.problem = problem = pose(declared)
-        self.mean, self.width = problem.space.prior
-        self.x, self.products = problem.space.start, np.zeros(0)
-        self.iterations, self.converged = 0, False
-        self.history: list[float] = []
-        self.groups: list[np.ndarray] = []
-        self.error, _ = self.left()
-
-    def left(self) -> tuple[float, bool]:
-        """Root mean square of what is left of an observation, and whether the sea reaches as far as the hull goes."""
-        groups, inside = look(self.problem, self.x)
-        self.groups = [np.asarray(group) for group in groups]
-        return math.sqrt(sum(float(np.sum(group**2)) for group in self.groups) / self.problem.observations), bool(inside)
-
-    def run(self) -> None:
-        """All rounds."""
-        for number in range(ROUNDS):
-            ridge = jnp.asarray(max(self.error, 1e-6) / self.width)
-            for i, now in enumerate(descend(_objective, self.x, (self.problem, self.mean, ridge), TOLERANCE, FIRST)):
-                self.x, self.products, self.converged = now.unknowns, np.asarray(now.aux), now.settled
-                self.iterations += 1
-                self.history.append(math.sqrt(float(self.products[:, -1, -1].sum()) / self.problem.observations))
-                share = (number + min(1.0, i / 10)) / ROUNDS
-                self.report(f"round {number + 1} in waves", self.iterations, self.history[-1], share)
-            before = self.error
-            self.error, inside = self.left()
-            if not inside:
-                self.problem = self.pose(self.problem.space.model(self.problem.model, self.x))
-                self.converged = False
-                self.error, _ = self.left()
-            if self.converged and abs(self.error / before - 1) < SETTLED:
-                return
-
-    def identifiability(self) -> tuple[Spread, Identifiability]:
-        """Covariance of the coordinates, and what it says. A motion's residual counts as many times as it is independent; bands
-        once each, with the variance that is left after what the parameters and their prior took."""
-        groups, ridge = self.groups, self.error / self.width
-        whole = self.products[:, :-1, :-1].sum(axis=0)
-        used = float(np.trace(np.linalg.solve(whole + np.diag(ridge**2), whole)))
-        total = sum(len(g) if bands else len(g) / memory(g) for g, bands in zip(groups, self.problem.in_bands))
-        variance = np.array([float(np.mean(g**2)) for g in groups]) * total / max(total - used, 1.0)
-        inflation = np.array([1.0 if bands else memory(g) for g, bands in zip(groups, self.problem.in_bands)])
-        parts = (self.products[None], np.ones((1, len(groups))), variance[None], inflation[None])
-        space, model = self.problem.space, self.problem.model
-        return stated(space, model, np.asarray(self.x), parts, ridge, self.width, "the tests in waves")
 
 
 def calibrate_in_waves(
@@ -115,10 +49,12 @@ def calibrate_in_waves(
     `objective` "bands": the logarithms of simulated over measured energy in the low and the wave-frequency band of every motion
     that matters, which a sensor's clock and the phase of slow drift do not touch; "spectrum": the same in narrow cells of these
     bands, up to eight of each, so that where a motion resonates and how sharply counts; "motion": simulated less measured,
-    sample by sample, over the measured standard deviation; "both", bands and motion. Of regular waves always the motion. Every
-    free parameter has a prior, a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the
-    model's own error, which is estimated from the residuals: energies in a few bands do not determine many coefficients, and
-    say so by their deviations.
+    sample by sample, over the measured standard deviation; "both", bands and motion; "blocks": the motion in blocks of three of
+    the slowest natural periods, each from an initial state of its own (multiple shooting, see `shooting`), for long tests, over
+    which a natural period that is slightly wrong puts slow motions out of phase. Of regular waves always the motion. Every free
+    parameter has a prior, a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the model's
+    own error, which is estimated from the residuals: energies in a few bands do not determine many coefficients, and say so by
+    their deviations.
 
     `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
     `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of
@@ -158,7 +94,7 @@ def calibrate_in_waves(
             step=sea_step(declared, options), objective=objective,
         )  # fmt: skip
 
-    fit = SeaFit(pose, declared, report)
+    fit = (ShootingFit if objective == "blocks" else SeaFit)(pose, declared, report)
     try:
         fit.run()
     except KeyboardInterrupt:
@@ -190,7 +126,7 @@ def _conclude(
     uncertainty, known = fit.identifiability()
     parameters = estimates(problem.space, problem.model, np.asarray(fit.x), uncertainty)
     tests, warnings = tests_in_waves(campaign, declared, model, options, made)
-    notes = (*remarks(campaign, parameters, known, KINDS), *warnings)
+    notes = (*remarks(campaign, parameters, known, KINDS), *fit.notes, *warnings)
     return Calibration(
         campaign.manifest.name, model, parameters, tests, fit.converged, fit.iterations, seconds, tuple(fit.history),
         notes, campaign.platform.name, known,

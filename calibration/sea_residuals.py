@@ -31,7 +31,8 @@ from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular_sea import SupportSea
 from jaxhydro.waves.sea_state import SeaState
 
-Objective = Literal["bands", "spectrum", "motion", "both"]
+Objective = Literal["bands", "spectrum", "motion", "both", "blocks"]
+OF_ENERGY = ("bands", "spectrum", "both")
 CELLS, CYCLES, LEAST = 8, 10.0, 0.01  # of a spectrum: cells of a band, their least width times the record, least energy
 MARGIN = 30.0  # m that a motion may go beyond that of the declared model before its sea has to be prepared anew
 
@@ -118,12 +119,12 @@ class SeaProblem(eqx.Module):
         """Of every group of residuals, whether it is of energies in bands."""
         pieces = [piece for run in self.runs for piece in run.pieces]
         motions = [piece for piece in pieces if self.sample_by_sample(piece)]
-        energies = self.objective != "motion" and any(piece.energies is not None for piece in pieces)
+        energies = self.objective in OF_ENERGY and any(piece.energies is not None for piece in pieces)
         return (*([True] if energies else []), *[False] * len(motions))
 
     def sample_by_sample(self, piece: Piece) -> bool:
         """Whether a motion itself is fitted: of regular waves, which have no bands, it always is."""
-        return self.objective in ("motion", "both") or piece.energies is None
+        return self.objective not in ("bands", "spectrum") or piece.energies is None
 
     def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " _"], ...]:
         """In one group ln(simulated / measured energy) by test, motion and band or cell of one; in others, motion by motion,
@@ -139,7 +140,7 @@ class SeaProblem(eqx.Module):
         for run, position in zip(self.runs, positions, strict=True):
             for piece in run.pieces:
                 there = position[piece.begin : piece.begin + piece.measured.shape[0], piece.dof] - base[piece.dof]
-                if self.objective != "motion" and piece.energies is not None:
+                if self.objective in OF_ENERGY and piece.energies is not None:
                     off = jnp.log(piece.energies.of(there) / piece.energies.measured)
                     energies.append(math.sqrt(piece.weight) * off)
                 if self.sample_by_sample(piece):

@@ -92,6 +92,7 @@ class Objective(StrEnum):
     spectrum = "spectrum"
     motion = "motion"
     both = "both"
+    blocks = "blocks"
 
 
 class Loss(StrEnum):
@@ -215,7 +216,7 @@ Tests = Annotated[
     ),
 ]
 Aim = Annotated[
-    Objective, typer.Option(help="In waves, fit energy in frequency bands, spectra in them, the motion, or bands and motion.")
+    Objective, typer.Option(help="In waves, fit energy in bands, spectra in them, the motion, bands and motion, or free blocks.")
 ]
 Robust = Annotated[Loss, typer.Option(help="With --tests all: cauchy lets outliers hardly count.")]
 OverSea = Annotated[

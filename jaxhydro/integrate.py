@@ -1,5 +1,6 @@
 """Fixed-step time integration, and output at any times."""
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any, Literal, TypeAlias
 
@@ -58,6 +59,16 @@ class Grid(eqx.Module):
         return x, v, a
 
 
+def _rate_of(unravel: Callable[[Array], State]) -> runge_kutta.Rate:
+    """The equation of motion of states in one array."""
+
+    @eqx.filter_jit  # traced once, not by every stage and derivative
+    def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> tuple[Array, ...]:
+        return tuple(leaf.reshape(-1) for leaf in jax.tree.leaves(driver[0].rate(time, unravel(y), driver[1])))
+
+    return rate
+
+
 def _by_loop(
     method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
 ) -> Motion:
@@ -69,11 +80,7 @@ def _by_loop(
     if adjoint == "forward" and y.shape[0] > LONG:
         run, options["shown"] = loop.direct, MOTION
 
-    @eqx.filter_jit  # traced once, not by every stage and derivative
-    def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> tuple[Array, ...]:
-        return tuple(leaf.reshape(-1) for leaf in jax.tree.leaves(driver[0].rate(time, unravel(y), driver[1])))
-
-    path = run((model, sea), y, start, step, count, rate=rate, capacity=capacity, **options)
+    path = run((model, sea), y, start, step, count, rate=_rate_of(unravel), capacity=capacity, **options)
     return path[:, :6], path[:, 6:MOTION]
 
 
@@ -122,6 +129,18 @@ def integrate(
     position, velocity = run(model, sea, state, start, step, count + MORE, capacity + MORE, adjoint)
     rate = jax.vmap(model.position_rate)(position, velocity)
     return Grid(start, step, count, position, rate, differences(rate, step))
+
+
+@eqx.filter_jit
+def states(
+    model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], count: int
+) -> State:
+    """Whole states, memories included, after 0, 1 ... `count` steps by "ab4" of `integrate`: stacked."""
+    y, unravel = ravel_pytree(state)
+    path = adams_bashforth.direct(
+        (model, sea), y, start, step, jnp.asarray(count), rate=_rate_of(unravel), capacity=count, shown=y.shape[0]
+    )
+    return jax.vmap(unravel)(path)
 
 
 def clock(method: Method, start: float, step: float, count: int) -> Clock:
