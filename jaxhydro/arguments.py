@@ -216,7 +216,7 @@ Tests = Annotated[
     ),
 ]
 Aim = Annotated[
-    Objective, typer.Option(help="In waves, fit energy in bands, spectra in them, the motion, bands and motion, or free blocks.")
+    Objective, typer.Option(help="In waves, fit energy in bands, spectra in them, the motion, energy and motion, or blocks.")
 ]
 Robust = Annotated[Loss, typer.Option(help="With --tests all: cauchy lets outliers hardly count.")]
 OverSea = Annotated[
