@@ -95,12 +95,16 @@ def written(name: str, found: Section, options: argparse.Namespace) -> str:
 
 
 def wrapped(text: str) -> str:
-    """Prose in lines of 120; tables, headings and figures as they are."""
+    """Paragraphs and items in lines of 120; tables, headings and figures as they are."""
     keep = ("|", "#", "!")
+    parts: list[str] = []
+    for line in text.splitlines():
+        goes_on = parts and parts[-1] and not parts[-1].startswith(keep) and line and not line.startswith((*keep, "- "))
+        parts[-1:] = [f"{parts[-1]} {line}"] if goes_on else [*parts[-1:], line]
     lines = [
-        line if line.startswith(keep) else textwrap.fill(
-            line, 120, subsequent_indent="  " if line.startswith("- ") else "", break_long_words=False, break_on_hyphens=False)
-        for line in text.splitlines()
+        part if part.startswith(keep) else textwrap.fill(
+            part, 120, subsequent_indent="  " if part.startswith("- ") else "", break_long_words=False, break_on_hyphens=False)
+        for part in parts
     ]  # fmt: skip
     return "\n".join(lines)
 
