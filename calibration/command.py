@@ -11,7 +11,7 @@ from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
 from calibration.joint import calibrate_jointly
 from calibration.joint_fit import Loss
-from calibration.outputs import DIAGNOSIS, MOTION, RESULT, NotFinite, write_calibration
+from calibration.outputs import DIAGNOSIS, MOTION, RESULT, UNCERTAINTY, NotFinite, write_calibration
 from calibration.result import Calibration
 from calibration.runs import KINDS
 from calibration.saved import Applied, applied
@@ -38,7 +38,7 @@ ENDED = {
 def load(
     path: Path,
     out: Path,
-    others: tuple[str, ...] = (COMPARISON, DIAGNOSIS),
+    others: tuple[str, ...] = (COMPARISON, DIAGNOSIS, UNCERTAINTY),
     counted: Callable[[Campaign], str] = tables.counted,
 ) -> Campaign:
     """The campaign, its warnings printed. Raises InputError, also where results would replace its own data, or stand beside
@@ -189,7 +189,7 @@ def simulate_campaign(
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{cutoff:g}")])
     begun = clock.monotonic()
-    loaded = load(campaign, check_folder(out), (RESULT, DIAGNOSIS, "motion.csv"), seas_results.counted)
+    loaded = load(campaign, check_folder(out), (RESULT, DIAGNOSIS, UNCERTAINTY, "motion.csv"), seas_results.counted)
     model, used = build(loaded.platform), None
     if calibration is not None:
         used = applied(calibration, model, loaded.platform.name)

@@ -29,6 +29,22 @@ def with_deviation(value: float, deviation: float | None) -> str:
     return f"({text})·10{_raised(exponent)}" if exponent else text
 
 
+def to_width(value: float, width: float) -> str:
+    """A number to the second digit of a width, and at least three digits of its own."""
+    if not (value and width > 0 and math.isfinite(value) and math.isfinite(width)):
+        return number(value)
+    return number(value, min(max(math.floor(math.log10(abs(value))) - math.floor(math.log10(width)) + 2, 3), 9))
+
+
+def interval(low: float | None, high: float | None) -> str:
+    """The ends of an interval, to the second digit of its width: `1.49 to 1.54`; what is known where it is open."""
+    if low is not None and high is not None:
+        return f"{to_width(low, high - low)} to {to_width(high, high - low)}"
+    if low is None and high is None:
+        return "not bounded"
+    return f"at least {number(low, 3)}" if low is not None else f"at most {number(high, 3)}"
+
+
 def percent(ratio: float | None) -> str:
     """A ratio in per cent; a dash where there is none, or it is of something that does not move."""
     if ratio is None or not abs(ratio) < 1e4:

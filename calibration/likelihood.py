@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -126,22 +127,29 @@ def coordinates(unknowns: Unknowns) -> np.ndarray:
     return np.concatenate([np.asarray(unknowns.shared), np.asarray(unknowns.own).ravel()])
 
 
-def reposed(campaign: Campaign, result: Calibration) -> Fit:
-    """The fit that a calibration to decays was, with its free parameters, starts and priors, where it ended; the records'
-    releases and offsets, which a calibration does not keep, begin from the records."""
+def reposed(
+    campaign: Campaign, began: Mapping[str, Any], ended: Mapping[str, float], report: Callable[..., None] = lambda *_: None
+) -> Fit:
+    """The fit that a calibration to decays was, with its free parameters and priors, where it `ended`; the records' releases
+    and offsets, which a calibration does not keep, begin from the records. `began` are values, of free parameters and others,
+    that it began from in place of the platform's; `report` is that of `prepare`."""
     declared = build(campaign.platform).values
-    began: dict[str, Any] = {**result.model.values, **{label: one.start for label, one in result.parameters.items()}}
     # only what is not as declared, so that types stay, and what was compiled for the fit serves again
     start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
-    fit = prepare(campaign, free=list(result.parameters), start=start)
-    ended = [p.transform.inverse(result.parameters[p.label].value) for p in fit.problem.space.free]
-    fit.unknowns = fit.unknowns._replace(shared=jnp.array(ended))
+    fit = prepare(campaign, free=list(ended), start=start, report=report)
+    there = [p.transform.inverse(float(ended[p.label])) for p in fit.problem.space.free]
+    fit.unknowns = fit.unknowns._replace(shared=jnp.array(there))
     return fit
 
 
 def likelihood(campaign: Campaign, result: Calibration) -> Likelihood:
     """The likelihood of a calibration to decays (`calibrate`). The records' releases are fitted again, from its values."""
-    fit = reposed(campaign, result)
+    found = result.parameters
+    fit = reposed(
+        campaign,
+        {**result.model.values, **{label: one.start for label, one in found.items()}},
+        {label: one.value for label, one in found.items()},
+    )
     run(fit)
     return likelihood_of(fit)
 

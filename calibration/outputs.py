@@ -19,6 +19,7 @@ from jaxhydro.plot import for_people, unit_of
 
 RESULT, MOTION, FIGURES, REPORT = "calibration.json", "simulated.nc", "figures", "report.html"
 DIAGNOSIS = "diagnosis.json"  # of a calibration and what it lacks
+UNCERTAINTY = "uncertainty.json"  # of a calibration's parameters
 LAWS, TABLE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws over the sea state
 GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 _EVEN = 1e-3  # of a step: times that differ by less are the same

@@ -22,7 +22,7 @@ LEAST_SHARE = 0.01  # of the drop at the level: what a refit may leave
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Drop of -2 log likelihood along one parameter, all other unknowns refitted.
+    """Rise of -2 log likelihood along one parameter, all other unknowns refitted.
 
     `grid` (n,) are values, ascending, in `unit`, `coordinate` (n,) theirs, `drop` (n,) a chi-square of one degree of freedom:
     the adjusted one of Kent 1982, for errors that are neither white nor of known size. `lower` and `upper` are where it
@@ -139,8 +139,12 @@ def _outward(
     step = ROOT_STEP * float(likelihood.deviation()[refit.index])
     while len(points) < FARTHEST and not (points and transform.at_bound(x)):
         cost, there = refit(refit.moved(unknowns, sign * step), x + sign * step)
-        points[x + sign * step] = cost
         before, root = root, float(np.sqrt(max(cost - lowest, 0.0) / refit.nu))
+        if not root - before < LONGEST_ROOT:  # a long step that the others do not follow in a straight line
+            other, here = refit(unknowns, x + sign * step)
+            if other < cost or not np.isfinite(cost):
+                cost, there, root = other, here, float(np.sqrt(max(other - lowest, 0.0) / refit.nu))
+        points[x + sign * step] = cost
         if not root - before < LONGEST_ROOT:  # too far to draw a line through, or a motion that has run away
             step, root = 0.4 * step, before
             continue

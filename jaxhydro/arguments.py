@@ -22,6 +22,7 @@ EPILOG = "\n\n".join((
     "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
     "jaxhydro sweep sweep.yaml --out life",
     "jaxhydro calibrate my-campaign --out results",
+    "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
     "jaxhydro diagnose my-campaign --out diagnosis",
     "[bold]Formats[/bold]",
     "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
@@ -49,6 +50,16 @@ DIAGNOSING = "\n\n".join((
     "[bold]What it writes[/bold]",
     "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "
     "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so.",
+))  # fmt: skip
+
+QUANTIFYING = "\n\n".join((
+    "[bold]Examples[/bold]",
+    "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
+    "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile column.Cd_t --bootstrap 200",
+    "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile '*' --nuts",
+    "[bold]What it writes[/bold]",
+    "uncertainty.json (docs/formats.md), figures. Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was "
+    "reached written and marked so; 130 stopped, nothing was written.",
 ))  # fmt: skip
 
 SWEEPING = "\n\n".join((
@@ -228,6 +239,21 @@ GlobalSearch = Annotated[
 SearchSeed = Annotated[int, typer.Option(help="Of the search.", min=0)]
 SearchSeconds = Annotated[float, typer.Option(help="CPU time of the search, s.", min=1.0)]
 Begin = Annotated[Path | None, typer.Option(help="A calibration.json whose coefficients are begun from.")]
+Finished = Annotated[
+    Path,
+    typer.Option("--calibration", help="The calibration.json of this campaign's decays, or its folder.", show_default=False),
+]
+Profiled = Annotated[
+    list[str] | None,
+    typer.Option("--profile", help="Follow the likelihood of a coefficient, as column.Cd_t, or 'column.*'.", metavar="LABEL"),
+]
+Resamplings = Annotated[
+    int | None,
+    typer.Option("--bootstrap", help="Resamplings: of the residuals in blocks, of tests with `repeat_of`.", metavar="N"),
+]
+Nuts = Annotated[bool, typer.Option("--nuts", help="Draw from the posterior (pip install 'jaxhydro\\[nuts]').")]
+Level = Annotated[float, typer.Option("--level", help="Probability of the intervals.")]
+DrawSeed = Annotated[int, typer.Option("--seed", help="Of the bootstrap and of NUTS.", min=0)]
 Workers = Annotated[
     int | None, typer.Option(help="Processes, one core or GPU each.", show_default="as many as cores and memory hold", min=1)
 ]

@@ -184,6 +184,32 @@ def diagnose(
         raise typer.Exit(NOT_CONVERGED)
 
 
+@app.command(epilog=arguments.QUANTIFYING)
+def uncertainty(
+    campaign: Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")],
+    calibration: arguments.Finished,
+    out: Out,
+    profiles: arguments.Profiled = None,
+    bootstrap: arguments.Resamplings = None,
+    nuts: arguments.Nuts = False,
+    level: arguments.Level = 0.95,
+    seed: arguments.DrawSeed = 0,
+    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
+) -> None:
+    """How well a calibration of free decays knows its coefficients: intervals with errors taken as they are.
+
+    What is left of a fit is mostly the model's own error, and lasts from sample to sample: it is coloured. Intervals of the
+    fit's covariance allow for it; on request also profiles of the likelihood, a bootstrap, and draws from the posterior.
+    """
+    out = options.results_folder(out, "uncertainty.json")
+    _start()
+    from calibration.uncertainty_command import quantify
+
+    how: dict[str, Any] = {"draws": bootstrap, "nuts": nuts, "level": level, "seed": seed, "figures": figures}
+    if not quantify(campaign, calibration, out, profiles=profiles or (), **how):
+        raise typer.Exit(NOT_CONVERGED)
+
+
 @app.command()
 def report(
     folder: Annotated[Path, typer.Argument(help="A folder that `jaxhydro calibrate`, `diagnose` or `sweep` wrote.")],

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from test_calibration import SHIP, SHIP_NOISE, SHIP_TRUE, roll_decay, write
+from test_calibration import MEASURED, SHIP, SHIP_NOISE, SHIP_TRUE, measured, roll_decay, write
 
 from calibration.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
 from calibration.campaign import Campaign, load_campaign
@@ -158,6 +158,16 @@ def test_the_other_unknowns_are_refitted(ship: Likelihood) -> None:
     off = found.coordinate - ship.estimate[i]
     alone = ship.information[i, i] * off[0] ** 2 / found.nu
     assert alone > 5 * found.drop[0] > 0
+
+
+@measured
+def test_a_profile_finds_its_way_where_the_others_follow_on_a_curve() -> None:
+    """The roll of KVLCC2: linear damping takes over where quadratic damping goes, far beyond what the covariance says."""
+    campaign = load_campaign(MEASURED / "kvlcc2")
+    found = profile(likelihood(campaign, calibrate(campaign)), "quadratic_damping.B44")
+    below = found.grid < found.estimate
+    assert found.lower is None and (np.diff(found.drop[below]) < 0).all() and found.drop[below].max() < 3.84
+    assert found.upper is not None and found.upper < found.laplace[1]
 
 
 def test_what_the_records_do_not_bound_is_open(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from calibration.discovery.kept import FILE
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Diagnosis
 from calibration.discovery.saved import SavedDiagnosis, read_diagnosis
-from calibration.outputs import DIAGNOSIS, RESULT, NotFinite
+from calibration.outputs import DIAGNOSIS, RESULT, UNCERTAINTY, NotFinite
 from calibration.runs import KINDS
 from calibration.seas import Diverged
 from calibration.seas_outputs import COMPARISON
@@ -26,7 +26,8 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     """
     from calibration.discovery.search import diagnose
 
-    campaign = load(path, out, (COMPARISON, RESULT, "motion.csv"), lambda c: calibrations.counted(c, ("decay", *KINDS)))
+    others = (COMPARISON, RESULT, UNCERTAINTY, "motion.csv")
+    campaign = load(path, out, others, lambda c: calibrations.counted(c, ("decay", *KINDS)))
     try:
         with progress() as show:
             result = diagnose(campaign, progress=show, kept=out / FILE)
