@@ -9,9 +9,10 @@ from typing import Any, cast
 from calibration import seas_results, tables
 from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
+from calibration.folder import MOTION
 from calibration.joint import calibrate_jointly
 from calibration.joint_fit import Loss
-from calibration.outputs import DIAGNOSIS, MOTION, RESULT, UNCERTAINTY, NotFinite, write_calibration
+from calibration.outputs import NotFinite, write_calibration
 from calibration.result import Calibration
 from calibration.runs import KINDS
 from calibration.saved import Applied, applied
@@ -22,9 +23,8 @@ from calibration.sea_residuals import Objective
 from calibration.search import SearchInterrupted, search
 from calibration.searches import Budget
 from calibration.seas import Diverged, Options, compare
-from calibration.seas_outputs import COMPARISON, write_comparison
+from calibration.seas_outputs import write_comparison
 from jaxhydro.console import complain, progress, say, table
-from jaxhydro.files import check_folder
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
@@ -35,17 +35,9 @@ ENDED = {
 }  # fmt: skip
 
 
-def load(
-    path: Path,
-    out: Path,
-    others: tuple[str, ...] = (COMPARISON, DIAGNOSIS, UNCERTAINTY),
-    counted: Callable[[Campaign], str] = tables.counted,
-) -> Campaign:
-    """The campaign, its warnings printed. Raises InputError, also where results would replace its own data, or stand beside
-    those of another command."""
+def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.counted) -> Campaign:
+    """The campaign, its warnings printed. Raises InputError, also where results would replace its own data."""
     campaign = load_campaign(path)
-    if there := [name for name in others if (out / name).exists()]:
-        raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has another command's {there[0]}")])
     for test in campaign.manifest.tests:
         if (campaign.folder / test.file).resolve() == (out / MOTION).resolve():
             found = f"{str(out)!r}, where {MOTION} is the data of test {test.id}"
@@ -189,7 +181,7 @@ def simulate_campaign(
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{cutoff:g}")])
     begun = clock.monotonic()
-    loaded = load(campaign, check_folder(out), (RESULT, DIAGNOSIS, UNCERTAINTY, "motion.csv"), seas_results.counted)
+    loaded = load(campaign, out, seas_results.counted)
     model, used = build(loaded.platform), None
     if calibration is not None:
         used = applied(calibration, model, loaded.platform.name)

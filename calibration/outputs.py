@@ -1,8 +1,6 @@
 """What a calibration leaves behind: calibration.json, simulated.nc and figures, in one folder, whole or not at all."""
 
-import json
 import math
-from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,17 +9,13 @@ import numpy as np
 import xarray as xr
 
 import jaxhydro
+from calibration.folder import RESULT, draw, or_null, outdated, write_json, write_motion
 from calibration.result import Calibration, Series, TestFit
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.loads.sea_state_law import reference_of
 from jaxhydro.plot import for_people, unit_of
 
-RESULT, MOTION, FIGURES, REPORT = "calibration.json", "simulated.nc", "figures", "report.html"
-DIAGNOSIS = "diagnosis.json"  # of a calibration and what it lacks
-UNCERTAINTY = "uncertainty.json"  # of a calibration's parameters
-LAWS, TABLE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws over the sea state
-GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 _EVEN = 1e-3  # of a step: times that differ by less are the same
 
 
@@ -37,44 +31,14 @@ def write_calibration(calibration: Calibration, folder: str | PathLike[str], fig
     """
     folder = Path(folder)
     with staged(folder, lambda temporary: outdated(folder, temporary)) as temporary:
-        drawn = _draw(calibration, temporary / FIGURES) if figures else []
-        text = json.dumps({**document(calibration), "figures": drawn}, indent=2, ensure_ascii=False, allow_nan=False)
-        (temporary / RESULT).write_text(text + "\n", encoding="utf-8")
-        packed = {"zlib": True, "complevel": 4}
-        motion = dataset(calibration)
-        encoding = {name: packed for name in ("measured", "simulated", "before") if motion[name].size}
-        motion.to_netcdf(temporary / MOTION, engine="h5netcdf", encoding=encoding)
+        drawn = []
+        if figures:
+            from calibration import plot
+
+            drawn = draw(plot.figures(calibration), temporary)
+        write_json({**document(calibration), "figures": drawn}, temporary / RESULT)
+        write_motion(dataset(calibration), temporary)
     return folder
-
-
-def _draw(calibration: Calibration, folder: Path) -> list[dict[str, str]]:
-    from calibration import plot
-    from jaxhydro.plot import save, style
-
-    drawn = []
-    with style():
-        for name, caption, figure in plot.figures(calibration):
-            save(figure, folder / name)
-            drawn.append({"file": f"{FIGURES}/{name}", "caption": caption})
-    return drawn
-
-
-def outdated(folder: Path, temporary: Path, result: str = RESULT) -> Iterable[str]:
-    """What an earlier calibration wrote and the new one does not: its figures, by its own list, and its report."""
-    try:
-        listed = json.loads((folder / result).read_text(encoding="utf-8"))["figures"]
-        names = [Path(figure["file"]).name for figure in listed]
-    except (OSError, ValueError, KeyError, TypeError):
-        names = []
-    for name in names:
-        if name.endswith(".png") and (folder / FIGURES / name).is_file() and not (temporary / FIGURES / name).exists():
-            yield f"{FIGURES}/{name}"
-    if result == RESULT and (folder / LAWS).is_file():
-        yield from (name for name in (LAWS, TABLE) if (folder / name).is_file())
-        yield from (f"{FIGURES}/{path.name}" for path in (folder / FIGURES).glob("sea-law-*.png"))
-    report = folder / REPORT
-    if report.is_file() and GENERATOR in report.read_text(encoding="utf-8", errors="replace")[:1000]:
-        yield REPORT
 
 
 def document(calibration: Calibration) -> dict[str, Any]:
@@ -119,11 +83,6 @@ def _laws(calibration: Calibration) -> dict[str, Any]:
     """The sea state that exponents among the parameters count from (m, s)."""
     reference = reference_of(calibration.model.loads)
     return {} if reference is None else {"sea_state_reference": reference._asdict()}
-
-
-def or_null(value: float | None) -> float | None:
-    """A number as JSON has it; null for what is none."""
-    return float(value) if value is not None and math.isfinite(value) else None
 
 
 def _errors(test: TestFit) -> dict[str, Any]:

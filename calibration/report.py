@@ -7,8 +7,8 @@ from os import PathLike
 from pathlib import Path
 from string import Template
 
+from calibration.folder import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT
 from calibration.formatting import number, percent, with_deviation
-from calibration.outputs import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT
 from calibration.saved import Error, Fitted, Parameter, Saved, read_as, read_saved
 from calibration.tables import USE
 from jaxhydro.files import write_whole

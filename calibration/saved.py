@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from calibration.outputs import DIAGNOSIS, RESULT
+from calibration.folder import DIAGNOSIS, RESULT
 from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Number, Positive, Problem, shown, suggest, validate

@@ -2,14 +2,13 @@
 
 import csv
 import io
-import json
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from calibration.folder import FIGURES, LAWS, TABLE, or_null, write_json
 from calibration.formatting import number, percent, with_deviation
-from calibration.outputs import FIGURES, LAWS, TABLE, or_null
 from calibration.result import Calibration
 from calibration.sea_laws import SeaLaws
 from calibration.tables import Rows
@@ -25,8 +24,7 @@ NAMES = {
 def write_laws(found: SeaLaws, folder: str | PathLike[str], figures: bool = True) -> None:
     """Write into a folder (that of the chosen calibration, most often). Raises InputError where it cannot be written."""
     with staged(Path(folder)) as temporary:
-        text = json.dumps(document(found), indent=2, ensure_ascii=False, allow_nan=False)
-        (temporary / LAWS).write_text(text + "\n", encoding="utf-8")
+        write_json(document(found), temporary / LAWS)
         (temporary / TABLE).write_text(table_text(found), encoding="utf-8")
         if figures:
             _draw(found, temporary / FIGURES)

@@ -1,6 +1,5 @@
 """What a comparison in waves leaves behind: comparison.json, simulated.nc and figures, in one folder, whole or not at all."""
 
-import json
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -9,14 +8,13 @@ import numpy as np
 import xarray as xr
 
 import jaxhydro
-from calibration.outputs import FIGURES, MOTION, common_axis, outdated
+from calibration.folder import COMPARISON, draw, outdated, write_json, write_motion
+from calibration.outputs import common_axis
 from calibration.seas import Compared, SeaTest
 from calibration.seas_results import channels
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.plot import unit_of
-
-COMPARISON = "comparison.json"
 
 
 def write_comparison(found: Compared, content: dict[str, Any], folder: str | PathLike[str]) -> Path:
@@ -24,26 +22,12 @@ def write_comparison(found: Compared, content: dict[str, Any], folder: str | Pat
     when the new ones are complete. Raises InputError where the folder cannot be written."""
     folder = Path(folder)
     with staged(folder, lambda temporary: outdated(folder, temporary, COMPARISON)) as temporary:
-        drawn = _draw(found, temporary / FIGURES)
-        text = json.dumps({**content, "figures": drawn}, indent=2, ensure_ascii=False, allow_nan=False)
-        (temporary / COMPARISON).write_text(text + "\n", encoding="utf-8")
-        packed = {"zlib": True, "complevel": 4}
-        motion = dataset(found.tests, str(content["campaign"]))
-        encoding = {name: packed for name in motion.data_vars}
-        motion.to_netcdf(temporary / MOTION, engine="h5netcdf", encoding=encoding)
+        from calibration import seas_plot
+
+        drawn = draw(seas_plot.figures(found.tests), temporary)
+        write_json({**content, "figures": drawn}, temporary / COMPARISON)
+        write_motion(dataset(found.tests, str(content["campaign"])), temporary)
     return folder
-
-
-def _draw(found: Compared, folder: Path) -> list[dict[str, str]]:
-    from calibration import seas_plot
-    from jaxhydro.plot import save, style
-
-    drawn = []
-    with style():
-        for name, caption, figure in seas_plot.figures(found.tests):
-            save(figure, folder / name)
-            drawn.append({"file": f"{FIGURES}/{name}", "caption": caption})
-    return drawn
 
 
 def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:

@@ -12,7 +12,9 @@ for direct solution of optimal control problems, IFAC Proceedings 17(2), 1603-16
 """
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -107,19 +109,14 @@ class BlockProblem(eqx.Module):
     def shoot(self, unknowns: Unknowns) -> Shot:
         """All blocks."""
         x, constants = jnp.split(unknowns.shared, [len(self.space.free)])
-        found, done = [], 0
-        for run, blocks in zip(self.sea.runs, self.blocks, strict=True):
 
-            def one(inputs, run=run):
-                own, block = inputs
-                seen, grid, _ = self.simulated(x, constants, own, block, run)
-                ends = grid.position[:, jnp.array(self.dofs)]
-                beyond = farthest(grid.position, self.sea.points, run.sea) - run.sea.half
-                return Shot((seen - block.measured) * block.factor, ends[0], ends[block.span], beyond)
+        def one(own: Array, block: Blocks, run: SeaRun) -> Shot:
+            seen, grid, _ = self.simulated(x, constants, own, block, run)
+            ends = grid.position[:, jnp.array(self.dofs)]
+            beyond = farthest(grid.position, self.sea.points, run.sea) - run.sea.half
+            return Shot((seen - block.measured) * block.factor, ends[0], ends[block.span], beyond)
 
-            count = blocks.begin.shape[0]
-            found.append(jax.lax.map(one, (unknowns.own[done : done + count], blocks)))
-            done += count
+        found = self._by_run(unknowns.own, one)
         longest = max(shot.residual.shape[2] for shot in found)
         found = [s._replace(residual=jnp.pad(s.residual, ((0, 0), (0, 0), (0, longest - s.residual.shape[2])))) for s in found]
         return jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
@@ -132,30 +129,37 @@ class BlockProblem(eqx.Module):
         p = len(self.space.free)
         x, constants = jnp.split(unknowns.shared, [p])
         m, o = len(constants), unknowns.own.shape[1]
-        widths, found, done = jnp.append(self.wide, 0.0), [], 0
+        widths = jnp.append(self.wide, 0.0)
+
+        def one(own: Array, block: Blocks, run: SeaRun) -> Array:
+            def residual(z):
+                r = (self.simulated(z[:p], constants, z[p:], block, run)[0] - block.measured) * block.factor
+                return r, r
+
+            slope, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([x, own]))
+            # a constant moves what is read, and, against it, the position that the block begins at
+            safe = jnp.where(block.loose[0] > 0, block.loose[0], jnp.inf)
+            at_start = slope[..., p : p + o // 2] / safe
+            each = (jnp.eye(o // 2)[:, None] * block.factor[..., None] - at_start) * widths[block.piece]
+            by_constant = each @ jax.nn.one_hot(block.piece, m)
+            full = jnp.concatenate([slope[..., :p], by_constant, slope[..., p:], r[..., None]], axis=-1)
+            prior = jnp.concatenate([jnp.zeros((o, p + m)), jnp.eye(o), own[:, None]], axis=1)
+            return jnp.concatenate([jnp.einsum("ctk,ctl->ckl", full, full), (prior.T @ prior)[None]])
+
+        return jnp.concatenate(self._by_run(unknowns.own, one))
+
+    def _by_run(self, own: Array, one: Callable[[Array, Blocks, SeaRun], Any]) -> list[Any]:
+        """one(own unknowns, block, run) of every block, block after block; one entry for each run."""
+        found, done = [], 0
         for run, blocks in zip(self.sea.runs, self.blocks, strict=True):
-
-            def one(inputs, run=run):
-                own, block = inputs
-
-                def residual(z):
-                    r = (self.simulated(z[:p], constants, z[p:], block, run)[0] - block.measured) * block.factor
-                    return r, r
-
-                slope, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([x, own]))
-                # a constant moves what is read, and, against it, the position that the block begins at
-                safe = jnp.where(block.loose[0] > 0, block.loose[0], jnp.inf)
-                at_start = slope[..., p : p + o // 2] / safe
-                each = (jnp.eye(o // 2)[:, None] * block.factor[..., None] - at_start) * widths[block.piece]
-                by_constant = each @ jax.nn.one_hot(block.piece, m)
-                full = jnp.concatenate([slope[..., :p], by_constant, slope[..., p:], r[..., None]], axis=-1)
-                prior = jnp.concatenate([jnp.zeros((o, p + m)), jnp.eye(o), own[:, None]], axis=1)
-                return jnp.concatenate([jnp.einsum("ctk,ctl->ckl", full, full), (prior.T @ prior)[None]])
-
             count = blocks.begin.shape[0]
-            found.append(jax.lax.map(one, (unknowns.own[done : done + count], blocks)))
+            found.append(jax.lax.map(partial(_of_pair, one, run), (own[done : done + count], blocks)))
             done += count
-        return jnp.concatenate(found)
+        return found
+
+
+def _of_pair(one: Callable[[Array, Blocks, SeaRun], Any], run: SeaRun, pair: tuple[Array, Blocks]) -> Any:
+    return one(*pair, run)
 
 
 @eqx.filter_jit

@@ -11,16 +11,14 @@ from calibration.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
 from calibration.campaign import Campaign
 from calibration.command import load
 from calibration.fit import Progress, run
+from calibration.folder import RESULT
 from calibration.formatting import number
 from calibration.likelihood import Likelihood, likelihood_of, reposed
-from calibration.outputs import DIAGNOSIS, RESULT
 from calibration.profile import Profile, profile
 from calibration.sampling import Samples, sample
 from calibration.saved import Saved, no_place, read_saved
-from calibration.seas_outputs import COMPARISON
-from calibration.uncertainty_outputs import Uncertainty, intervals, other_ways, percent, write_uncertainty
+from calibration.uncertainty_outputs import Uncertainty, intervals, other_ways, write_uncertainty
 from jaxhydro.console import complain, console, counting, progress, say, table
-from jaxhydro.files import check_folder
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem, suggest
 
@@ -47,7 +45,7 @@ def quantify(
     for what does not fit together, before anything takes time where that can be seen.
     """
     _check(draws, nuts, level)
-    campaign = load(path, check_folder(out), (COMPARISON, RESULT, DIAGNOSIS, "motion.csv"))
+    campaign = load(path, out)
     calibration = calibration / RESULT if calibration.is_dir() else calibration
     saved = finished(campaign, calibration)
     labels = chosen(profiles, saved)
@@ -56,9 +54,9 @@ def quantify(
     samples = _sampled(likely, seed) if nuts else None
     found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples)
     write_uncertainty(found, out, figures)
-    table(f"Parameters, {percent(found)} intervals: Laplace, coloured errors", *intervals(found))
+    table(f"Parameters, {found.percent} intervals: Laplace, coloured errors", *intervals(found))
     if (rows := other_ways(found))[1]:
-        table(f"{percent(found)} intervals in other ways", *rows)
+        table(f"{found.percent} intervals in other ways", *rows)
     for note in found.notes():
         say(f"Note: {note}")
     say(f"Results are in {out}")

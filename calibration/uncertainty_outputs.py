@@ -1,6 +1,5 @@
 """What `jaxhydro uncertainty` leaves behind: uncertainty.json and figures, whole or not at all; and its tables."""
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,9 +9,9 @@ import numpy as np
 
 import jaxhydro
 from calibration.bootstrap import Bootstrap
+from calibration.folder import UNCERTAINTY, draw, or_null, outdated, write_json
 from calibration.formatting import interval, number, to_width
 from calibration.likelihood import Likelihood
-from calibration.outputs import FIGURES, UNCERTAINTY, or_null, outdated
 from calibration.profile import Profile
 from calibration.sampling import Samples
 from calibration.saved import Saved
@@ -42,6 +41,11 @@ class Uncertainty:
     @property
     def converged(self) -> bool:
         return bool(self.likelihood.fit.converged)
+
+    @property
+    def percent(self) -> str:
+        """The level in words."""
+        return f"{100 * self.level:.4g} %"
 
     def ways(self, label: str) -> dict[str, Interval]:
         """A parameter's intervals beside the Laplace interval, by way: quantiles of draws; of repeats, which may be as few as
@@ -141,16 +145,8 @@ def write_uncertainty(found: Uncertainty, folder: Path, figures: bool = True) ->
     """Write uncertainty.json and figures into `folder` (made where absent), in place of earlier ones. Raises InputError where
     the folder cannot be written."""
     with staged(folder, lambda temporary: outdated(folder, temporary, UNCERTAINTY)) as temporary:
-        drawn = []
-        if figures:
-            from jaxhydro.plot import save, style
-
-            with style():
-                for name, caption, figure in _figures(found):
-                    save(figure, temporary / FIGURES / name)
-                    drawn.append({"file": f"{FIGURES}/{name}", "caption": caption})
-        text = json.dumps({**document(found), "figures": drawn}, indent=2, ensure_ascii=False, allow_nan=False)
-        (temporary / UNCERTAINTY).write_text(text + "\n", encoding="utf-8")
+        drawn = draw(_figures(found), temporary) if figures else []
+        write_json({**document(found), "figures": drawn}, temporary / UNCERTAINTY)
 
 
 def _figures(found: Uncertainty) -> Iterator[tuple[str, str, Any]]:
@@ -188,7 +184,7 @@ def intervals(found: Uncertainty) -> Rows:
         flag = "at its bound" if one.at_bound else "" if one.identifiable else "not determined"
         cells = (to_width(one.value, high - low), interval(low, high), one.unit, f"{number(excess[label], 2)} times", flag)
         rows.append((label, *cells))
-    return ("Parameter", "Value", f"{percent(found)} interval", "Unit", "As if white, too small by", ""), rows
+    return ("Parameter", "Value", f"{found.percent} interval", "Unit", "As if white, too small by", ""), rows
 
 
 def other_ways(found: Uncertainty) -> Rows:
@@ -201,8 +197,3 @@ def other_ways(found: Uncertainty) -> Rows:
         for label, ways in by_label.items() if ways
     ]  # fmt: skip
     return ("Parameter", "Laplace", *(WAYS[way] for way in there)), rows
-
-
-def percent(found: Uncertainty) -> str:
-    """The level in words."""
-    return f"{100 * found.level:.4g} %"

@@ -70,15 +70,19 @@ def releases(given: list[str]) -> dict[str, float]:
     return offsets
 
 
-RESULTS = {"motion.csv": "a simulation", "calibration.json": "a calibration", "diagnosis.json": "a diagnosis",
-           "comparison.json": "a campaign's seas"}  # fmt: skip
+RESULTS = {
+    "motion.csv": "a simulation", "calibration.json": "a calibration", "diagnosis.json": "a diagnosis",
+    "comparison.json": "a campaign's seas", "uncertainty.json": "an uncertainty", "sweep.json": "a sweep",
+}  # fmt: skip
 
 
 def results_folder(out: Path, mine: str) -> Path:
-    """A folder that can be written, and has no results of another command than that which writes `mine`: one simulated.nc would
-    spoil the other."""
+    """A folder that can be written, and has no results of another command than that which writes `mine`: some are called
+    alike, and would be lost."""
     out = check_folder(out)
     for name, of in RESULTS.items():
-        if name != mine and (out / name).exists() and (out / "simulated.nc").exists():
+        # a motion.csv may be anybody's
+        ours = (out / name).exists() and (name != "motion.csv" or (out / "simulated.nc").exists())
+        if name != mine and ours:
             raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has the results of {of}")])
     return out

@@ -118,7 +118,7 @@ def test_results_do_not_replace_those_of_other_commands(searching, result: Diagn
     assert "which has the results of a diagnosis" in run("calibrate", DEMO, "--out", mine, status=2)
     assert "which has the results of a calibration" in run("diagnose", DEMO, "--out", theirs, status=2)
     (theirs / "simulated.nc").unlink()
-    assert "another command's calibration.json" in run("diagnose", DEMO, "--out", theirs, status=2)
+    assert "which has the results of a calibration" in run("diagnose", DEMO, "--out", theirs, status=2)
     run("diagnose", DEMO, "--no-figures", "--out", mine)
     assert "no such file" in run("diagnose", tmp_path / "none", "--out", tmp_path / "o", status=2)
     assert not (tmp_path / "o").exists()

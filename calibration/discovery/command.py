@@ -10,10 +10,10 @@ from calibration.discovery.kept import FILE
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Diagnosis
 from calibration.discovery.saved import SavedDiagnosis, read_diagnosis
-from calibration.outputs import DIAGNOSIS, RESULT, UNCERTAINTY, NotFinite
+from calibration.folder import DIAGNOSIS
+from calibration.outputs import NotFinite
 from calibration.runs import KINDS
 from calibration.seas import Diverged
-from calibration.seas_outputs import COMPARISON
 from jaxhydro.console import complain, progress, say, table
 
 
@@ -26,8 +26,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     """
     from calibration.discovery.search import diagnose
 
-    others = (COMPARISON, RESULT, UNCERTAINTY, "motion.csv")
-    campaign = load(path, out, others, lambda c: calibrations.counted(c, ("decay", *KINDS)))
+    campaign = load(path, out, lambda c: calibrations.counted(c, ("decay", *KINDS)))
     try:
         with progress() as show:
             result = diagnose(campaign, progress=show, kept=out / FILE)

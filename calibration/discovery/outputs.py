@@ -1,6 +1,5 @@
 """What a diagnosis leaves behind: diagnosis.json, simulated.nc and figures, in one folder, whole or not at all."""
 
-import json
 import math
 from collections.abc import Iterable
 from dataclasses import replace
@@ -12,7 +11,8 @@ import numpy as np
 
 from calibration import outputs
 from calibration.discovery.result import Diagnosis, Effect, Finding, Score
-from calibration.outputs import DIAGNOSIS, FIGURES, MOTION, NotFinite, dataset, or_null, outdated
+from calibration.folder import DIAGNOSIS, draw, or_null, outdated, write_json, write_motion
+from calibration.outputs import NotFinite, dataset
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from jaxhydro.files import staged
 from jaxhydro.plot import for_people, unit_of
@@ -27,29 +27,18 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: 
     folder, compared = Path(folder), paired(diagnosis)
     with staged(folder, lambda temporary: outdated(folder, temporary, DIAGNOSIS)) as temporary:
         content = document(diagnosis)
-        drawn = _draw(diagnosis, compared, temporary / FIGURES) if figures else []
-        text = json.dumps({**content, "figures": drawn}, indent=2, ensure_ascii=False, allow_nan=False)
-        (temporary / DIAGNOSIS).write_text(text + "\n", encoding="utf-8")
+        drawn = []
+        if figures:
+            from calibration.discovery import plots
+
+            drawn = draw(plots.figures(diagnosis, compared), temporary)
+        write_json({**content, "figures": drawn}, temporary / DIAGNOSIS)
         motion = dataset(compared)
         motion.attrs["title"] = f"Diagnosis of {diagnosis.campaign}"
         motion["simulated"].attrs["long_name"] = "motion of the model with what was found missing"
         motion["before"].attrs["long_name"] = "motion of the declared model, calibrated"
-        packed = {"zlib": True, "complevel": 4}
-        encoding = {name: packed for name in ("measured", "simulated", "before") if motion[name].size}
-        motion.to_netcdf(temporary / MOTION, engine="h5netcdf", encoding=encoding)
+        write_motion(motion, temporary)
     return folder
-
-
-def _draw(diagnosis: Diagnosis, compared: Calibration, folder: Path) -> list[dict[str, str]]:
-    from calibration.discovery import plots
-    from jaxhydro.plot import save, style
-
-    drawn = []
-    with style():
-        for name, caption, figure in plots.figures(diagnosis, compared):
-            save(figure, folder / name)
-            drawn.append({"file": f"{FIGURES}/{name}", "caption": caption})
-    return drawn
 
 
 def document(diagnosis: Diagnosis) -> dict[str, Any]:

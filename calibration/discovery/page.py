@@ -7,8 +7,8 @@ from pathlib import Path
 
 from calibration.discovery import tables, words
 from calibration.discovery.saved import Found, SavedDiagnosis
+from calibration.folder import DIAGNOSIS
 from calibration.formatting import number
-from calibration.outputs import DIAGNOSIS
 from calibration.report import UNCONVERGED, cells, figures, framed, images, listed, table
 from calibration.tables import USE, Rows
 
