@@ -12,12 +12,13 @@ from calibration.fit import Interrupted, calibrate
 from calibration.folder import MOTION
 from calibration.joint import calibrate_jointly
 from calibration.joint_fit import Loss
+from calibration.laws import LAWS, of_law
 from calibration.outputs import NotFinite, write_calibration
 from calibration.result import Calibration
 from calibration.runs import KINDS
 from calibration.saved import Applied, applied
 from calibration.sea_fit import calibrate_in_waves
-from calibration.sea_laws import OVERS, SeaLaws, choose_law
+from calibration.sea_laws import SeaLaws, choose_law
 from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws
 from calibration.sea_residuals import Objective
 from calibration.search import SearchInterrupted, search
@@ -25,7 +26,6 @@ from calibration.searches import Budget
 from calibration.seas import Diverged, Options, compare
 from calibration.seas_outputs import write_comparison
 from jaxhydro.console import complain, progress, say, table
-from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 
@@ -97,8 +97,8 @@ def run(
     if start is not None:
         declared = build(campaign.platform)
         used = applied(start, declared, campaign.platform.name)
-        # still water has no sea state: exponents of a law are begun from in waves only; effects found are not declared
-        known = [k for k in used.values if k in declared.values or (tests == "waves" and is_exponent(k))]
+        # what a law adds is begun from in waves only; effects found are not declared
+        known = [k for k in used.values if k in declared.values or (tests == "waves" and of_law(k))]
         begin = {"start": {k: used.values[k] for k in known}}
         _told(used, start, campaign)
     words: tuple[str, ...] = ()
@@ -113,7 +113,8 @@ def run(
             elif tests == "all":
                 result = calibrate_jointly(campaign, progress=show, objective=objective, loss=loss, **begin)
             elif tests == "waves":
-                result = calibrate_in_waves(campaign, progress=show, objective=objective, over=OVERS[law], **begin)
+                over, drag = LAWS[law]
+                result = calibrate_in_waves(campaign, progress=show, objective=objective, over=over, drag=drag, **begin)
             else:
                 result = calibrate(campaign, progress=show, **begin)
     except Diverged as error:

@@ -11,9 +11,11 @@ import xarray as xr
 import jaxhydro
 from calibration.folder import RESULT, draw, or_null, outdated, write_json, write_motion
 from calibration.result import Calibration, Series, TestFit
+from jaxhydro.drag_laws import drag_laws_of
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.loads.sea_state_law import reference_of
+from jaxhydro.model import Model
 from jaxhydro.plot import for_people, unit_of
 
 _EVEN = 1e-3  # of a step: times that differ by less are the same
@@ -80,9 +82,15 @@ def document(calibration: Calibration) -> dict[str, Any]:
 
 
 def _laws(calibration: Calibration) -> dict[str, Any]:
-    """The sea state that exponents among the parameters count from (m, s)."""
-    reference = reference_of(calibration.model.loads)
-    return {} if reference is None else {"sea_state_reference": reference._asdict()}
+    """The sea state that exponents among the parameters count from (m, s), and laws of drag that is not plain."""
+    reference, drag = reference_of(calibration.model.loads), drag_laws(calibration.model)
+    found: dict[str, Any] = {} if reference is None else {"sea_state_reference": reference._asdict()}
+    return found | ({"drag_laws": drag} if drag else {})
+
+
+def drag_laws(model: Model) -> dict[str, dict[str, Any]]:
+    """Coefficient -> its law, as a platform file has it, for those that are not of plain drag."""
+    return {label: law.model_dump(exclude_none=True) for label, law in drag_laws_of(model).items()}
 
 
 def _errors(test: TestFit) -> dict[str, Any]:

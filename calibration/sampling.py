@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,13 +18,17 @@ from scipy.linalg import cholesky, eigh
 from calibration.likelihood import LEVEL, Likelihood, coordinates
 from calibration.residuals import Problem, Unknowns
 
+DEEPEST = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
+LEAST = 50  # draws of every chain that are worth keeping where it is stopped
+EVERY = 0.5  # s between looks at the chains
 
 @dataclass(frozen=True, eq=False)
 class Samples:
     """Draws of the free parameters: `coordinate` and `value` (chain, draw, p), values in the parameters' units.
 
     `r_hat` (p,) compares the halves of all chains with each other (1 once they agree; Gelman et al. 2013, equation 11.4),
-    `effective` (p,) is how many independent draws they stand for, `divergences` how many steps went astray.
+    `effective` (p,) is how many independent draws they stand for, `divergences` how many steps went astray. `asked`: draws of
+    a chain, of which there are fewer where it was stopped.
     """
 
     labels: tuple[str, ...]
@@ -31,6 +38,7 @@ class Samples:
     effective: np.ndarray
     divergences: int
     seed: int
+    asked: int
     likelihood: Likelihood
 
     def deviation(self) -> np.ndarray:
@@ -83,7 +91,12 @@ def _energy(problem: Problem, unknowns: Unknowns, weight, until, mean, precision
 
 
 def sample(
-    likelihood: Likelihood, draws: int = 500, warmup: int = 200, chains: int = 4, seed: int = 0, progress: bool = False
+    likelihood: Likelihood,
+    draws: int = 500,
+    warmup: int = 200,
+    chains: int = 4,
+    seed: int = 0,
+    progress: Callable[[int, str], None] = lambda done, remark: None,
 ) -> Samples:
     """Draws by the no-U-turn sampler (Hoffman and Gelman 2014, Journal of Machine Learning Research 15, 1593-1623).
 
@@ -91,13 +104,15 @@ def sample(
     fit's information, so that steps are long and few. Errors that are neither white nor of known size are taken into account
     as in the profile: every draw's distance from the estimate is stretched so that its covariance near it is the
     sandwich's (the open-faced sandwich, Shaby 2014, Journal of Computational and Graphical Statistics 23, 853-876, equation 7),
-    along the directions that both covariances have in common. Chains run side by side.
+    along the directions that both covariances have in common. Chains run side by side, as many as there are cores;
+    `progress` is told how many draws are done, and where.
 
-    Raises ImportError where numpyro is not installed.
+    Stopped (KeyboardInterrupt) it gives what there is of all chains, if that is `LEAST` draws of each. Raises ImportError where
+    numpyro is not installed.
     """
     try:
         from numpyro.diagnostics import effective_sample_size, split_gelman_rubin
-        from numpyro.infer import MCMC, NUTS
+        from numpyro.infer import NUTS
     except ImportError as error:
         raise ImportError("sampling needs numpyro: pip install 'jaxhydro[nuts]'") from error
     fit, centre, scale = likelihood.fit, coordinates(likelihood.fit.unknowns), likelihood.scale()
@@ -105,28 +120,59 @@ def sample(
     energy = potential(likelihood, scale)
     away, unseen = jnp.asarray(root), jnp.asarray(np.diag(likelihood.information) <= 0).at[: len(likelihood.labels)].set(False)
 
+    @jax.jit
     def whitened(z: Float[Array, " n"]) -> Float[Array, ""]:
         off = away @ z
         # a channel that a record lacks would wander without end
         return energy(jnp.asarray(centre) + off) + 0.5 * jnp.sum(jnp.where(unseen, off, 0.0) ** 2)
 
-    chain = MCMC(
-        NUTS(potential_fn=whitened), num_warmup=warmup, num_samples=draws, num_chains=chains,
-        chain_method="vectorized", progress_bar=progress,
-    )  # fmt: skip
-    key = jax.random.key(seed)
-    start = np.asarray(jax.random.normal(jax.random.fold_in(key, 1), (chains, len(centre))))
-    # numpyro has a chain's axis only where there are several
-    chain.run(key, init_params=jnp.asarray(start if chains > 1 else start[0]), extra_fields=("diverging",))
-    z: Any = np.asarray(chain.get_samples(group_by_chain=True))
+    kernel, key = NUTS(potential_fn=whitened, max_tree_depth=DEEPEST), jax.random.key(seed)
+    start = jax.random.normal(jax.random.fold_in(key, 1), (chains, len(centre)))
+    begun = [kernel.init(jax.random.fold_in(key, 2 + k), warmup, start[k], (), {}) for k in range(chains)]
+    step = jax.jit(lambda state: kernel.sample(state, (), {}))
+    rows = _walked(step, begun, warmup, draws, progress)
+    z, lost = np.array([[at for at, _ in row] for row in rows]), sum(astray for row in rows for _, astray in row)
     shared = len(fit.problem.space.free)
     coordinate = (centre + z @ (stretch @ root).T)[..., :shared]
     value = np.empty_like(coordinate)
     for i, one in enumerate(fit.problem.space.free):
         value[..., i] = jax.vmap(one.transform.forward)(jnp.asarray(coordinate[..., i].ravel())).reshape(coordinate.shape[:-1])
     r_hat, effective = (np.asarray(f(coordinate)) for f in (split_gelman_rubin, effective_sample_size))
-    lost = int(np.sum(chain.get_extra_fields()["diverging"]))
-    return Samples(likelihood.labels, coordinate, value, r_hat, effective, lost, seed, likelihood)
+    return Samples(likelihood.labels, coordinate, value, r_hat, effective, lost, seed, draws, likelihood)
+
+
+def _walked(
+    step: Callable[[Any], Any], begun: list[Any], warmup: int, draws: int, progress: Callable[[int, str], None]
+) -> list[list[tuple[np.ndarray, bool]]]:
+    """Where chains were after their warm-up, and whether a step went astray: as many draws of each as all have."""
+    rows: list[list[tuple[np.ndarray, bool]]] = [[] for _ in begun]
+    done, stop = [0] * len(begun), threading.Event()
+
+    def walk(k: int) -> None:
+        state = begun[k]
+        for i in range(warmup + draws):
+            if stop.is_set():
+                return
+            state = step(state)
+            if i >= warmup:
+                rows[k].append((np.asarray(state.z), bool(state.diverging)))
+            done[k] = i + 1
+
+    with ThreadPoolExecutor(min(len(begun), len(os.sched_getaffinity(0)))) as pool:
+        under_way = {pool.submit(walk, k) for k in range(len(begun))}
+        try:
+            while under_way:
+                over, under_way = wait(under_way, timeout=EVERY)
+                for one in over:
+                    one.result()
+                progress(sum(done), "finding the step" if min(done) < warmup else "drawing")
+        except BaseException as stopped:
+            stop.set()
+            pool.shutdown(cancel_futures=True)
+            if not isinstance(stopped, KeyboardInterrupt) or min(map(len, rows)) < LEAST:
+                raise
+    count = min(map(len, rows))
+    return [row[:count] for row in rows]
 
 
 def whitening(likelihood: Likelihood, scale: float) -> tuple[np.ndarray, np.ndarray]:

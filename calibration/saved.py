@@ -4,11 +4,13 @@ import json
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from calibration.folder import DIAGNOSIS, RESULT
+from jaxhydro.body_schema import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
+from jaxhydro.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
 from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Number, Positive, Problem, shown, suggest, validate
@@ -62,6 +64,9 @@ class Reference(Open):
     peak_period: Positive
 
 
+Law = Annotated[ConstantDrag | HighPassAtEnds | KeuleganCarpenter | SuctionSide, Field(discriminator="law")]
+
+
 class Fitted(Open):
     """A model as it was calibrated. `error` has `use`, and channels, by test."""
 
@@ -73,6 +78,7 @@ class Fitted(Open):
     seconds: Number | None = None
     notes: list[str] = Field(default_factory=list)
     sea_state_reference: Reference | None = None
+    drag_laws: dict[str, Law] = Field(default_factory=dict)
 
 
 class About(Open):
@@ -198,9 +204,9 @@ def no_place(saved: Saved, unknown: list[str], model: Model, platform: str, path
 
 
 def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with what calibrated values need beyond what is declared: laws over the sea state, and the effects that a
-    diagnosis found, at their null."""
-    model = _with_laws(saved, model, path)
+    """The model with what calibrated values need beyond what is declared: laws of drag and over the sea state, and the effects
+    that a diagnosis found, at their null."""
+    model = _with_laws(saved, _with_drag(saved, model, path), path)
     added = [label for label in saved.values() if label not in model.values]
     if saved.augmented is None or not added:
         return model
@@ -211,6 +217,28 @@ def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     except (KeyError, ValueError) as error:
         said = str(error.args[0] if error.args else error)
         raise _wrong(Path(path), "parameters of effects that this version knows", said, "augmented.parameters") from None
+
+
+def _with_drag(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
+    """The model with the drag laws that were calibrated, for the coefficients that it has."""
+    plain, there = plain_drag(model), drag_laws_of(model)
+    for label, law in saved.best.drag_laws.items():
+        if label in there and not _alike(there[label], law):
+            where = f"{saved.key}.drag_laws.{label}"
+            raise _wrong(Path(path), f"the law that the platform declares ({_said(there[label])})", _said(law), where)
+    return with_drag_laws(model, {label: law for label, law in saved.best.drag_laws.items() if label in plain})
+
+
+def _alike(one: DragLaw, other: DragLaw) -> bool:
+    """Whether laws differ in nothing but parameters, which are the calibration's."""
+    def constants(law: DragLaw) -> dict[str, Any]:
+        return law.model_dump(include={"law", "reference", "window"})
+
+    return constants(one) == constants(other)
+
+
+def _said(law: DragLaw) -> str:
+    return ", ".join(f"{key}: {value}" for key, value in law.model_dump(exclude_none=True).items())
 
 
 def _with_laws(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:

@@ -4,7 +4,6 @@ import math
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks
 from calibration.directions import family
 from calibration.fit import Interrupted, Progress, labels_of, space_of
+from calibration.laws import PLAIN, Drag, Over, of_law, reference_of, with_drag, with_laws
 from calibration.result import BandError, Calibration, TestFit
 from calibration.runs import KINDS
 from calibration.sea_descent import SeaFit
@@ -19,18 +19,12 @@ from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, sea_step, seas_of, with_diffraction
 from calibration.seas_results import in_bands
 from calibration.shooting_fit import ShootingFit
-from calibration.stretches import sea_state
 from jaxhydro.environment import DOFS
-from jaxhydro.loads.sea_state_law import exponent_label, is_exponent, with_exponents
+from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.loads.sea_state_law import reference_of as law_reference
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
-from jaxhydro.waves.sea_state import SeaState
-
-Over = Literal["significant_height", "peak_period"]
-
-PLAIN = 1.0  # standard deviation of the prior of an exponent about 0
 
 
 def calibrate_in_waves(
@@ -42,6 +36,7 @@ def calibrate_in_waves(
     objective: Objective = "bands",
     options: Options | None = None,
     over: Sequence[Over] = (),
+    drag: Drag | None = None,
     made: Seas | None = None,
 ) -> Calibration:
     """Fit the declared model's coefficients to the tests in waves marked `fit`, all together, in their measured waves.
@@ -58,8 +53,10 @@ def calibrate_in_waves(
 
     `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
     `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of
-    exponents with a prior of 0 +- 1; every test is then simulated with the coefficients of its own measured sea state. `made`
-    are the campaign's runs and seas (`seas_of`), where they are at hand.
+    exponents with a prior of 0 +- 1; every test is then simulated with the coefficients of its own measured sea state. `drag`:
+    free coefficients of plain drag become powers of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`; the prior of an
+    exponent is 0 +- 1), or have a share of their own in motion slower than the waves (`HighPassDrag`): see `laws.with_drag`.
+    `made` are the campaign's runs and seas (`seas_of`), where they are at hand.
     Raises InputError where there is nothing to fit, Interrupted with what was reached.
     """
     begun = clock.monotonic()
@@ -74,13 +71,20 @@ def calibrate_in_waves(
     moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
     labels = list(labels_of(campaign, declared, moved, free))
     if over:
-        drag = [label for label in labels if family(label) == "damping"]
-        declared = with_laws(declared, drag, over, law_reference(declared.loads) or reference_of(made, options))
+        damping = [label for label in labels if family(label) == "damping"]
+        declared = with_laws(declared, damping, over, law_reference(declared.loads) or reference_of(made, options))
     exponents = [label for label in declared.values if is_exponent(label) and label not in labels]
-    # exponents of a law that is not asked for are left out
-    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not is_exponent(label)}
+    shares: list[str] = []
+    if drag is not None:
+        state = reference_of(made, options)
+        declared, added = with_drag(declared, labels, drag, state, options.low)
+        if not added:
+            raise InputError(source, [Problem("calibrate.free", "a coefficient of plain drag", ", ".join(labels))])
+        exponents, shares = (exponents + added, []) if drag == "keulegan_carpenter" else (exponents, added)
+    # what a law adds that is not asked for is left out
+    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not of_law(label)}
     declared = declared.with_values(begin)
-    space = space_of(campaign, [*labels, *exponents], declared, {label: (0.0, PLAIN) for label in exponents})
+    space = space_of(campaign, [*labels, *exponents, *shares], declared, {label: (0.0, PLAIN) for label in exponents})
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
         if progress is not None:
@@ -103,18 +107,6 @@ def calibrate_in_waves(
             raise Interrupted(None) from None
         raise Interrupted(_conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)) from None
     return _conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)
-
-
-def reference_of(made: Seas, options: Options) -> SeaState:
-    """The geometric mean of the sea states of the tests that are fitted, to two digits."""
-    states = [sea_state(run, r, options.low, options.cutoff) for run, _ in made for r in run.records if r.use == "fit"]
-    return SeaState(*(float(f"{math.exp(value):.2g}") for value in np.log(states).mean(axis=0)))
-
-
-def with_laws(model: Model, labels: Sequence[str], over: Sequence[Over], reference: SeaState) -> Model:
-    """The model with powers of the sea state, of exponent 0, for some of its coefficients, where it has none of its own."""
-    exponents = {label: 0.0 for one in labels for kind in over if (label := exponent_label(one, kind)) not in model.values}
-    return replace(model, loads=with_exponents(model.loads, exponents, reference))
 
 
 def _conclude(

@@ -10,23 +10,21 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.directions import Identifiability
 from calibration.fit import Progress
+from calibration.laws import LAWS, base_of, of_law
 from calibration.result import Calibration
-from calibration.sea_fit import Over, calibrate_in_waves
+from calibration.sea_fit import calibrate_in_waves
 from calibration.seas import Options, Seas, seas_of
 from calibration.stretches import sea_state
-from jaxhydro.loads.sea_state_law import coefficients, exponent_label, is_exponent, reference_of, split
+from jaxhydro.body_schema import KeuleganCarpenter
+from jaxhydro.drag_laws import drag_laws_of, parameter_label, surface_number
+from jaxhydro.loads.keulegan_carpenter_drag import log_ratio
+from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference_of
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.waves.sea_state import SeaState
 
-Law = Literal["constant", "significant_height", "peak_period", "both"]
-OVERS: Mapping[str, tuple[Over, ...]] = {
-    "constant": (),
-    "significant_height": ("significant_height",),
-    "peak_period": ("peak_period",),
-    "both": ("significant_height", "peak_period"),
-}
-CLOSE = 0.02  # of the held-out error, by which a law with more exponents has to be better to be chosen
+Law = Literal["constant", "significant_height", "peak_period", "both", "keulegan_carpenter", "high_pass"]
+CLOSE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,20 +37,28 @@ class LawFit:
     fitted: float
     held_out: float
 
-    def exponents(self) -> dict[str, float]:
-        """Label -> value of the exponents."""
-        return {label: one.value for label, one in self.calibration.parameters.items() if is_exponent(label)}
+    def added(self) -> dict[str, float]:
+        """Label -> value of what the law adds to coefficients."""
+        return {label: one.value for label, one in self.calibration.parameters.items() if of_law(label)}
 
     def coefficient(self, label: str, state: SeaState) -> tuple[float, float]:
-        """A coefficient in a sea state, and the standard deviation of its logarithm."""
-        calibration = self.calibration
-        value = float(coefficients(calibration.model.in_sea(state).loads)[label])
-        known = calibration.identifiability
+        """A coefficient in a sea state, and the standard deviation of its logarithm.
+
+        Of a power of the Keulegan-Carpenter number it is that for the waves' own motion at the surface, 2 a = Hs; of drag in
+        which slow motion is apart, that of fast motion.
+        """
+        model, known = self.calibration.model, self.calibration.identifiability
+        value = float(coefficients(model.in_sea(state).loads)[label])
         assert known is not None
-        reference = reference_of(calibration.model.loads)
+        reference = reference_of(model.loads)
         logs = {} if reference is None else {
             exponent_label(label, over): math.log(now / then) for over, now, then in zip(state._fields, state, reference)
         }  # fmt: skip
+        law = drag_laws_of(model).get(label)
+        if isinstance(law, KeuleganCarpenter):
+            ratio = float(log_ratio(surface_number(model.hull, label, state.significant_height) ** 2, law.reference))
+            value *= math.exp(law.exponent * ratio)
+            logs[parameter_label(label, "exponent")] = ratio
         return value, _deviation(known, label, logs)
 
 
@@ -94,8 +100,8 @@ class SeaLaws:
         return next(law for law in self.laws if law.held_out <= (1 + CLOSE) * least)
 
     def labels(self) -> list[str]:
-        """The coefficients that any of the laws lets depend on the sea state."""
-        return list(dict.fromkeys(split(label)[0] for law in self.laws for label in law.exponents()))
+        """The coefficients that any of the laws lets depend on the sea state or the motion."""
+        return list(dict.fromkeys(base_of(label) for law in self.laws for label in law.added()))
 
 
 def choose_law(
@@ -107,7 +113,8 @@ def choose_law(
     options: Options | None = None,
     progress: Callable[[Progress], None] | None = None,
 ) -> SeaLaws:
-    """Drag and damping coefficients sea state by sea state, as constants, and as powers of the sea state: `LawFit` of each.
+    """Drag and damping coefficients sea state by sea state, as constants, as powers of the sea state, and drag as a power of
+    the Keulegan-Carpenter number or apart for slow and fast motion: `LawFit` of each.
 
     Every law is fitted to the tests in irregular waves marked `fit` and judged by those marked `holdout`; where none is, by the
     fitted ones left out in turn. The energies in bands are the objective. Arguments are those of `calibrate_in_waves`; the laws
@@ -124,28 +131,31 @@ def choose_law(
     count = len(laws) * (1 if held else 1 + len(fitted)) + len(fitted) + len(held)
     done = 0
 
-    def one(name: str, uses: Mapping[str, str], begin: dict[str, float] | None, over: tuple[Over, ...] = ()) -> Calibration:
+    def one(name: str, uses: Mapping[str, str], begin: dict[str, float] | None, law: str = "constant") -> Calibration:
         nonlocal done
+        over, drag = LAWS[law]
 
         def report(now: Progress) -> None:
             if progress is not None:
                 progress(replace(now, stage=f"{name}: {now.stage}", fraction=(done + now.fraction) / count))
 
         used, seas = with_uses(campaign, made, uses)
-        found = calibrate_in_waves(used, free=free, start=begin, options=options, over=over, made=seas, progress=report)
+        found = calibrate_in_waves(
+            used, free=free, start=begin, options=options, over=over, drag=drag, made=seas, progress=report
+        )
         done += 1
         return found
 
     found: list[LawFit] = []
     for name in laws:
         begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
-        whole = one(name, {}, begin, OVERS[name])
+        whole = one(name, {}, begin, name)
         if held:
             judged = [error(whole, held)]
         else:
-            judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, OVERS[name]), [id]) for id in fitted]
+            judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
         found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
-    values = {k: p.value for k, p in found[0].calibration.parameters.items() if not is_exponent(k)}
+    values = {k: p.value for k, p in found[0].calibration.parameters.items() if not of_law(k)}
     seas = []
     for id in [*fitted, *held]:
         alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}

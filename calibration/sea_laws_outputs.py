@@ -9,6 +9,7 @@ from typing import Any
 
 from calibration.folder import FIGURES, LAWS, TABLE, or_null, write_json
 from calibration.formatting import number, percent, with_deviation
+from calibration.outputs import drag_laws
 from calibration.result import Calibration
 from calibration.sea_laws import SeaLaws
 from calibration.tables import Rows
@@ -18,6 +19,7 @@ from jaxhydro.waves.sea_state import SeaState
 
 NAMES = {
     "constant": "constant", "significant_height": "power of Hs", "peak_period": "power of Tp", "both": "powers of Hs and Tp",
+    "keulegan_carpenter": "power of KC", "high_pass": "slow motion apart",
 }  # fmt: skip
 
 
@@ -47,6 +49,7 @@ def document(found: SeaLaws) -> dict[str, Any]:
         laws[law.name] = {
             "fitted_error": law.fitted, "held_out_error": law.held_out,
             "reference": None if reference is None else reference._asdict(),
+            "drag_laws": drag_laws(law.calibration.model),
             "parameters": _parameters(law.calibration),
         }  # fmt: skip
     seas = {
@@ -86,11 +89,11 @@ def table_text(found: SeaLaws) -> str:
 def laws_table(found: SeaLaws) -> Rows:
     """Errors of every law, the chosen one marked."""
     rows = [
-        (NAMES[law.name], str(len(law.exponents())), number(law.fitted, 3), number(law.held_out, 3),
+        (NAMES[law.name], str(len(law.added())), number(law.fitted, 3), number(law.held_out, 3),
          "chosen" if law is found.chosen else "") for law in found.laws
     ]  # fmt: skip
     judged = "left out in turn" if found.left_out else "held out"
-    return ("Coefficients", "Exponents", "Error, fitted", f"Error, {judged}", ""), rows
+    return ("Coefficients", "Added", "Error, fitted", f"Error, {judged}", ""), rows
 
 
 def states_table(found: SeaLaws) -> Rows:

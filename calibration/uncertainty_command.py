@@ -18,11 +18,12 @@ from calibration.profile import Profile, profile
 from calibration.sampling import Samples, sample
 from calibration.saved import Saved, no_place, read_saved
 from calibration.uncertainty_outputs import Uncertainty, intervals, other_ways, write_uncertainty
-from jaxhydro.console import complain, console, counting, progress, say, table
+from jaxhydro.console import complain, counting, progress, say, table
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem, suggest
 
 MOVED = 0.1  # standard deviations by which a refit may miss the file's values; of the same fit it is some 1e-8
+CHAINS, WARMUP, DRAWS = 4, 150, 350  # of NUTS
 REFIT = 0.5  # its share of the time, where profiles follow
 
 
@@ -176,6 +177,6 @@ def _resampled(likely: Likelihood, draws: int, seed: int) -> dict[str, Bootstrap
 
 
 def _sampled(likely: Likelihood, seed: int) -> Samples:
-    """NUTS, with its own bar of progress."""
-    say("NUTS: 4 chains, 200 draws each to find their step and 500 that are kept", stderr=True)
-    return sample(likely, draws=500, warmup=200, chains=4, seed=seed, progress=console(stderr=True).is_terminal)
+    """NUTS; of a run that the user stops, what there is, if it is enough."""
+    with counting(CHAINS * (WARMUP + DRAWS), 0, f"draws of {CHAINS} chains, {WARMUP} of each to find its step") as count:
+        return sample(likely, draws=DRAWS, warmup=WARMUP, chains=CHAINS, seed=seed, progress=count)

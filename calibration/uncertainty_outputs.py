@@ -79,6 +79,9 @@ class Uncertainty:
             if alone:
                 yield f"bootstrap over repeats: {', '.join(alone)} without repeats; what differs there is not counted"
         if self.samples is not None:
+            kept = self.samples.value.shape[1]
+            if kept < self.samples.asked:
+                yield f"NUTS: stopped by the user after {kept} of {self.samples.asked} draws of every chain"
             if self.samples.divergences:
                 yield f"NUTS: {self.samples.divergences} steps went astray"
             apart = [k for k, x in zip(self.samples.labels, self.samples.r_hat, strict=True) if not x < AGREED]

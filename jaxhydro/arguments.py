@@ -129,6 +129,8 @@ class Law(StrEnum):
     significant_height = "significant-height"
     peak_period = "peak-period"
     both = "both"
+    keulegan_carpenter = "keulegan-carpenter"
+    high_pass = "high-pass"
     choose = "choose"
 
 
@@ -231,7 +233,11 @@ Aim = Annotated[
 ]
 Robust = Annotated[Loss, typer.Option(help="With --tests all: cauchy lets outliers hardly count.")]
 OverSea = Annotated[
-    Law, typer.Option(help="In waves, drag and damping as powers of the sea state; choose: the law that held-out seas prefer.")
+    Law,
+    typer.Option(
+        help="In waves, drag as a power of the sea state (damping, too) or of the motion, or slow motion apart; "
+        "choose: what held-out seas prefer."
+    ),
 ]
 GlobalSearch = Annotated[
     Method | None, typer.Option(help="Search the decays' coefficients within their bounds first, wherever the platform begins.")

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from jaxhydro.loads.high_pass_drag import FASTEST
+from jaxhydro.loads.high_pass_drag import FASTEST, LARGEST_SHARE
 from jaxhydro.problems import (
     Consistent,
     Count,
@@ -189,11 +189,12 @@ class ConstantDrag(Schema):
 
 
 class HighPass(Schema):
-    """Slow motion feels a share of the coefficient: cut-off in Hz, 0: none (`jaxhydro.loads.HighPassDrag`)."""
+    """Slow motion feels another coefficient, `low_share` times that of fast motion: cut-off in Hz, 0: none
+    (`jaxhydro.loads.HighPassDrag`)."""
 
     law: Literal["high_pass"]
     cutoff: Annotated[float, Field(strict=True, ge=0, le=FASTEST)]
-    low_share: Share
+    low_share: Annotated[float, Field(strict=True, ge=0, le=LARGEST_SHARE)]
 
 
 class HighPassAtEnds(HighPass):

@@ -1,9 +1,8 @@
 """A platform file made into a model."""
 
 import math
-from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
-from typing import TypeAlias
 
 import equinox as eqx
 import jax
@@ -11,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro import platform_schema as schema
-from jaxhydro.body_schema import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
+from jaxhydro.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
 from jaxhydro.loads import (
@@ -20,15 +19,12 @@ from jaxhydro.loads import (
     Buoyancy,
     EndDrag,
     EndInertia,
-    HighPassDrag,
-    KeuleganCarpenterDrag,
     LinearDamping,
     MooringLines,
     QuadraticDamping,
     Stiffness,
     StripDrag,
     StripInertia,
-    SuctionSideDrag,
     Weight,
 )
 from jaxhydro.loads.hydrostatics import buoyancy
@@ -37,8 +33,6 @@ from jaxhydro.model import Model, RigidBody, strongly_typed
 from jaxhydro.problems import InputError, Problem, suggest
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
-
-DragLaw: TypeAlias = ConstantDrag | HighPass | HighPassAtEnds | KeuleganCarpenter | SuctionSide
 
 
 def load_model(path_or_name: str | PathLike[str]) -> Model:
@@ -77,27 +71,22 @@ def build(platform: schema.Platform) -> Model:
             for group, row in platform.coefficients.items()
             for name, value in row.numbers().items()
         }
-        chosen = _chosen_drag(platform, hull)
         of_strips = {kind: {f"{g}.{kind}_{t}" for g, t in hull.elements.labels} for kind in ("Ca", "Cd")}
         of_ends = {kind: {f"{g}.{kind}_z" for g in hull.ends.labels} for kind in ("Ca", "Cd")}
-        of_strips["Cd"] -= {label for label, law in chosen.items() if not isinstance(law, SuctionSide)}
-        of_ends["Cd"] -= set(chosen)
 
         def pick(labels: set[str]) -> dict:
             return {label: value for label, value in coefficients.items() if label in labels}
 
         coupled = platform.drag_speed == "vector"
-        morison = (
+        loads += [
             StripInertia(pick(of_strips["Ca"])),
             StripDrag(pick(of_strips["Cd"]), coupled),
             EndInertia(pick(of_ends["Ca"])),
             EndDrag(pick(of_ends["Cd"])),
-        )
-        # plain drag that other laws have taken all lines from is left out
-        loads += [load for load in morison if load.values or not chosen] + _drag(chosen, coefficients, hull, coupled)
-    all_loads = _in_seas(tuple(loads), platform)
-    model = Model(environment, body, hull, all_loads, platform.wetting, platform.diffraction, platform.directions)
-    return strongly_typed(model)
+        ]
+    model = Model(environment, body, hull, tuple(loads), platform.wetting, platform.diffraction, platform.directions)
+    model = with_drag_laws(model, _chosen_drag(platform, model))
+    return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
 
 
 def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:
@@ -119,40 +108,18 @@ def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tupl
     return with_exponents(loads, exponents, SeaState(**declared.reference.model_dump()))
 
 
-def _chosen_drag(platform: schema.Platform, hull: Hull) -> dict[str, DragLaw]:
-    """The laws that the platform declares for drag coefficients, by label, those of plain Morison drag left out."""
+def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
+    """The laws that the platform declares for drag coefficients that its hull has, by label."""
     problems = [
         Problem(f"coefficients.{group}.drag_z", "no suction side, which the ends of columns have", "a group of pontoons")
         for group, row in platform.coefficients.items()
-        if group not in hull.ends.labels and getattr(row.drag_z, "suction", None) is not None
+        if group not in model.hull.ends.labels and getattr(row.drag_z, "suction", None) is not None
     ]
     if problems:
         raise InputError(platform.name, problems)
     rows = platform.coefficients.items()
     laws = {f"{group}.Cd_{kind}": law for group, row in rows for kind, law in (("t", row.drag_t), ("z", row.drag_z))}
-    return {label: law for label, law in laws.items() if not isinstance(law, ConstantDrag)}
-
-
-def _drag(chosen: dict[str, DragLaw], coefficients: dict, hull: Hull, coupled: bool) -> list[AbstractLoad]:
-    """A load for every law that is chosen, on the lines of all coefficients that it is chosen for."""
-
-    def values(laws: Mapping[str, DragLaw]) -> dict:
-        found = {label: coefficients[label] for label in laws}
-        for label, law in laws.items():
-            for name, value in law.model_dump(exclude={"law", "reference", "window"}, exclude_none=True).items():
-                found[label.replace(".Cd_", f".drag_{name}_")] = jnp.asarray(value)
-        return found
-
-    loads: list[AbstractLoad] = []
-    if high := {label: law for label, law in chosen.items() if isinstance(law, HighPass)}:
-        loads.append(HighPassDrag.of(hull, values(high), coupled))
-    if powers := {label: law for label, law in chosen.items() if isinstance(law, KeuleganCarpenter)}:
-        reference = {label: law.reference for label, law in powers.items()}
-        window = {label: law.window for label, law in powers.items()}
-        loads.append(KeuleganCarpenterDrag.of(hull, values(powers), reference, window, coupled))
-    if sides := {label: law for label, law in chosen.items() if isinstance(law, SuctionSide)}:
-        loads.append(SuctionSideDrag(values(sides)))
-    return loads
+    return {label: law for label, law in laws.items() if label in plain_drag(model)}
 
 
 def members_of(platform: schema.Platform) -> list[Member]:

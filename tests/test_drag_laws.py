@@ -17,6 +17,7 @@ import jaxhydro as jh
 from calibration.model_damping import model_damping
 from calibration.parameters import default_free, parameter_space
 from jaxhydro import integrate
+from jaxhydro.drag_laws import drag_laws_of, plain_drag, surface_number, with_drag_laws
 from jaxhydro.loads import EndDrag, HighPassDrag, KeuleganCarpenterDrag, StripDrag, SuctionSideDrag
 from jaxhydro.platform_schema import Platform
 from jaxhydro.problems import InputError, validate
@@ -409,6 +410,33 @@ def test_each_coefficient_is_in_one_load_of_the_strips_or_ends() -> None:
     labels = [label for load in model.loads for label in load.values if ".Cd_" in label]
     assert sorted(labels) == ["column.Cd_t", "column.Cd_z", "pontoon.Cd_t", "pontoon.Cd_z"]
     assert_allclose(force(model, VELOCITY), force(only(build(COLUMN, PONTOON), *ALL), VELOCITY), rtol=1e-14)
+
+
+def test_laws_of_a_model_given_to_another() -> None:
+    """Plain drag given the laws that a platform file declares is the same model; what has a law is given no other."""
+    declared = with_laws(KEULEGAN_CARPENTER, {**HIGH_PASS, "suction": 0.5})
+    laws = drag_laws_of(declared)
+    assert {label: law.law for label, law in laws.items()} == {
+        "column.Cd_t": "keulegan_carpenter", "pontoon.Cd_t": "keulegan_carpenter", "column.Cd_z": "high_pass",
+        "pontoon.Cd_z": "high_pass",
+    }  # fmt: skip
+    assert laws["column.Cd_t"].model_dump() == {**KEULEGAN_CARPENTER, "window": 60.0} | KEULEGAN_CARPENTER
+    given = with_drag_laws(build(COLUMN, PONTOON), laws)
+    assert given.values.keys() == declared.values.keys()
+    memory = lively(declared)
+    found, expected = (acting(model, POSITION, VELOCITY, memory, SEA) for model in (given, declared))
+    jax.tree.map(lambda a, b: assert_allclose(a, b, rtol=1e-12), found, expected)
+    assert drag_laws_of(build(COLUMN, PONTOON)) == {} and plain_drag(declared) == []
+    with pytest.raises(ValueError, match=r"column\.Cd_t: expected a coefficient of plain Morison drag"):
+        with_drag_laws(declared, laws)
+
+
+def test_number_of_the_surface() -> None:
+    """pi H/D with the column's diameter; of a pontoon's vertical motion D is its width."""
+    hull = build(COLUMN, PONTOON).hull
+    assert surface_number(hull, "column.Cd_t", 6.0) == pytest.approx(math.pi * 6.0 / COLUMN["d"])
+    assert surface_number(hull, "column.Cd_z", 6.0) == pytest.approx(math.pi * 6.0 / COLUMN["d"])
+    assert surface_number(hull, "pontoon.Cd_z", 6.0) == pytest.approx(math.pi * 6.0 / PONTOON["d"][0])
 
 
 def told(row: dict, members=(COLUMN,)) -> str:

@@ -1,7 +1,10 @@
 """Uncertainty: spectra of residuals, profiles, bootstrap and sampling on problems whose answers are known."""
 
 import math
+import time
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import jax
 import jax.numpy as jnp
@@ -10,6 +13,7 @@ import pytest
 from scipy.signal import lfilter
 from test_calibration import MEASURED, SHIP, SHIP_NOISE, SHIP_TRUE, measured, roll_decay, write
 
+from calibration import sampling
 from calibration.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
 from calibration.campaign import Campaign, load_campaign
 from calibration.colour import Colour, coloured, colours, periodogram, whittle
@@ -252,8 +256,32 @@ def test_stretched_draws_have_the_sandwichs_covariance(which: str, request) -> N
     np.testing.assert_allclose(np.sqrt(np.diag(wide)[:3]), likely.deviation(), rtol=0.02)
 
 
+@pytest.mark.parametrize("least", [1, 10**6])
+def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) -> None:
+    """What all chains have is kept where it is enough; else the stop goes on up."""
+    monkeypatch.setattr(sampling, "LEAST", least)
+
+    def step(state):
+        time.sleep(0.002)
+        return SimpleNamespace(z=state.z + 1, diverging=False)
+
+    def stop(done: int, remark: str) -> None:
+        if remark == "drawing":
+            raise KeyboardInterrupt
+
+    begun = [SimpleNamespace(z=np.full(2, 1000.0 * k), diverging=False) for k in range(3)]
+    walk = partial(sampling._walked, step, begun, 5, 4000)
+    if least > 1:
+        with pytest.raises(KeyboardInterrupt):
+            walk(stop)
+        return
+    rows = walk(stop)
+    assert len({len(row) for row in rows}) == 1 and 1 <= len(rows[0]) < 4000
+    for k, row in enumerate(rows):
+        assert [at[0] for at, _ in row] == [1000 * k + 6 + i for i in range(len(row))]
+
+
 def test_nuts_agrees_with_the_covariance(ship: Likelihood) -> None:
-    pytest.importorskip("numpyro")
     found = sample(ship, draws=100, warmup=40, chains=2, seed=3)
     assert found.value.shape == (2, 100, 3) and found.divergences == 0
     assert (found.r_hat < 1.05).all() and (found.effective > 80).all()

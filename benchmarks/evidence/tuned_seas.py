@@ -10,7 +10,10 @@ from benchmarks.evidence.common import SHARED, TRUE, Absent, Section, cached, fi
 NAME = "tuned_seas"
 FOLDER = SHARED / "measured"
 STARTS = {"campaign 4": "focal-c4's release in surge", "Table 1": "the paper's Table 1"}
-LAW, ALONE, SEAS = "Table 1, powers of Hs", " alone", ("sea-3m", "sea-6m", "sea-8m")
+LAWS = {
+    "powers of Hs": "significant_height", "powers of KC": "keulegan_carpenter", "slow motion apart": "high_pass",
+}  # begun from Table 1
+ALONE, SEAS = " alone", ("sea-3m", "sea-6m", "sea-8m")
 MENDED = 0.3  # of the energy in a band: what is further off after tuning is said not to be mended
 
 
@@ -41,8 +44,9 @@ def tuned(key: str, name: str) -> dict[str, Any]:
     from dataclasses import replace
 
     from calibration import calibrate_in_waves, load_campaign
+    from calibration.laws import LAWS as OF_LAW
 
-    campaign, over, start = load_campaign(FOLDER / "focal-c2"), (), {}
+    campaign, law, start = load_campaign(FOLDER / "focal-c2"), LAWS.get(name, "constant"), {}
     if name.endswith(ALONE):
         ended = cached(NAME, key, "Table 1")["parameters"]
         start = {label: one["value"] for label, one in ended.items()}
@@ -50,9 +54,9 @@ def tuned(key: str, name: str) -> dict[str, Any]:
         records = [replace(r, use="fit" if r.id == only else "ignore") for r in campaign.records]
         campaign = replace(campaign, records=tuple(records))
     else:
-        over = ("significant_height",) if name == LAW else ()
-        start = start_of(key, "Table 1" if name == LAW else name)
-    found = calibrate_in_waves(campaign, start=start, over=over)
+        start = start_of(key, "Table 1" if name in LAWS else name)
+    over, drag = OF_LAW[law]
+    found = calibrate_in_waves(campaign, start=start, over=over, drag=drag)
     assert found.identifiability is not None
     return {
         "parameters": {
@@ -67,13 +71,13 @@ def tuned(key: str, name: str) -> dict[str, Any]:
 
 
 def run(figures: Path, processes: int) -> Section:
-    """Both starts and the law, side by side; then every sea alone."""
+    """Both starts and the laws, side by side; then every sea alone."""
     if not (FOLDER / "focal-c2").is_dir():
         raise Absent("../shared/measured has no focal-c2")
     key = fingerprint(FOLDER / "focal-c4", FOLDER / "focal-c2", Path(__file__))
     cached(NAME, key, "decays", decays)
     results: dict[str, dict[str, Any]] = {}
-    for names in ((*STARTS, LAW), tuple(f"{sea}{ALONE}" for sea in SEAS)):
+    for names in ((*STARTS, *LAWS), tuple(f"{sea}{ALONE}" for sea in SEAS)):
         for name, found in parallel(NAME, key, names, partial(tuned, key), processes):
             say(f"  {name}: {len(found['history'])} iterations, {found['seconds']:.0f} s")
             results[name] = found
@@ -82,20 +86,26 @@ def run(figures: Path, processes: int) -> Section:
 
 
 def words_of_laws(results: dict[str, dict[str, Any]]) -> str:
-    """What depends on the sea."""
+    """What depends on the sea, or the motion."""
     from calibration.formatting import number
 
-    plain, law = results["Table 1"], results[LAW]
+    plain = results["Table 1"]
+    law = results["powers of Hs"]
     tests = list(plain["bands"])
     held = [id for id in tests if plain["bands"][id]["use"] == "holdout"]
-    pair = {"constants": plain, "powers of Hs": law}
+    each = {"constants": plain} | {name: results[name] for name in LAWS if name in results}
     rows = [
-        [f"{channel}, {band.split('_')[0]}",
-         *(f"{100 * one['bands'][id][channel][band][1]:+.0f} %" for id in tests for one in pair.values())]
+        [f"{channel}, {band.split('_')[0]}", name,
+         *(f"{100 * one['bands'][id][channel][band][1]:+.0f} %" for id in tests)]
         for channel in ("surge", "heave", "pitch") for band in ("low_frequency", "wave_frequency")
+        for name, one in each.items()
     ]  # fmt: skip
-    heads = [f"{id}{' (held out)' if id in held else ''}, {name}" for id in tests for name in pair]
-    errors = {name: [_rms(one, [id for id in tests if id not in held]), _rms(one, held)] for name, one in pair.items()}
+    heads = ["Coefficients", *(f"{id}{' (held out)' if id in held else ''}" for id in tests)]
+    errors = [
+        [name, str(len(one["parameters"]) - len(plain["parameters"])),
+         *(number(_rms(one, some), 3) for some in ([id for id in tests if id not in held], held))]
+        for name, one in each.items()
+    ]  # fmt: skip
     exponents = {k: v for k, v in law["parameters"].items() if k.endswith(".Hs_exponent")}
     alone = [results[f"{sea}{ALONE}"]["parameters"] for sea in SEAS if f"{sea}{ALONE}" in results]
     values = []
@@ -103,18 +113,25 @@ def words_of_laws(results: dict[str, dict[str, Any]]) -> str:
         base = label.removesuffix(".Hs_exponent")
         cells = [_value(p.get(base))[1] for p in alone]
         values.append([f"`{base}`", *cells, _value(law["parameters"][base])[1], _value(one)[1]])
-    (plain_fit, plain_held), (law_fit, law_held) = ([number(x, 3) for x in pair] for pair in errors.values())
-    gain = f"""Held out, the root mean square of ln(simulated / measured energy) is {plain_held} with constants and {law_held}
-with powers of Hs; over the fitted seas {plain_fit} and {law_fit}."""
+    added = [
+        [name, f"`{label}`", _value(one)[1]]
+        for name, law_ in LAWS.items() if law_ != "significant_height"
+        for label, one in results.get(name, plain)["parameters"].items() if label not in plain["parameters"]
+    ]  # fmt: skip
     return f"""
-**Coefficients that depend on the sea** (`jaxhydro calibrate ../shared/measured/focal-c2 --tests waves
---law significant-height`, begun from Table 1; `--law choose` does this and every sea alone). {gain}
+**Coefficients that depend on the sea, or on the motion** (`jaxhydro calibrate ../shared/measured/focal-c2 --tests waves
+--law significant-height`, `keulegan-carpenter` and `high-pass`, begun from Table 1; `--law choose` does these and every
+sea alone). Root mean square of ln(simulated / measured energy):
 
+{table(["Coefficients", "Parameters added", "Fitted seas", "Held out"], errors)}
 {table(["Energy of", *heads], rows)}
 Drag and damping of every sea alone (begun, and held by vague priors, where the constants ended), c0 of the law, and its
 exponent in Hs; in brackets what the energies do not determine:
 
 {table(["Coefficient", *(f"{sea} alone" for sea in SEAS[: len(alone)]), "c0", "exponent"], values)}
+What the laws of drag add, exponents of KC and shares of the coefficient that slow motion feels:
+
+{table(["Law", "Parameter", "Value"], added)}
 """
 
 

@@ -110,4 +110,9 @@ def extents(now: Instant) -> Float[Array, "2 n"]:
 def _power(variance: Array, extent: Array, reference: Array, exponent: Array) -> Array:
     """((K^2 + e^2)/(K0^2 + e^2))^(n/2) with K^2 = (2 pi/D)^2 2 s."""
     square = 8 * math.pi**2 * variance / extent**2
-    return jnp.exp(0.5 * exponent * jnp.log((square + SLIGHT**2) / (reference**2 + SLIGHT**2)))
+    return jnp.exp(exponent * log_ratio(square, reference))
+
+
+def log_ratio(square: Array | float, reference: Array | float) -> Array:
+    """ln of what is raised to the exponent: of ((K^2 + e^2)/(K0^2 + e^2))^(1/2), from K^2."""
+    return 0.5 * jnp.log((square + SLIGHT**2) / (reference**2 + SLIGHT**2))
