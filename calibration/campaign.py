@@ -9,19 +9,32 @@ from pathlib import Path
 from calibration.checks import Finding, check_records
 from calibration.manifest import Manifest, platform_source, read_manifest
 from calibration.records import Record, read_series, records_of
+from jaxhydro.model import Model
+from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
 from jaxhydro.problems import InputError, Problem
 
 
 @dataclass(frozen=True, eq=False)
 class Campaign:
-    """Everything that was read. Records are SI at full scale; `findings` are warnings."""
+    """Everything that was read. Records are SI at full scale; `findings` are warnings. `own` is a model in place of the
+    platform file's."""
 
     manifest: Manifest
     folder: Path
     platform: Platform
     records: tuple[Record, ...]
     findings: tuple[Finding, ...]
+    own: Model | None = None
+
+    @property
+    def model(self) -> Model:
+        """The declared model, that calibrations begin with. Raises InputError for a platform that is none."""
+        return build(self.platform) if self.own is None else self.own
+
+    def with_model(self, model: Model) -> Campaign:
+        """With a model of one's own, which may have loads that no platform file has, to be calibrated and diagnosed."""
+        return replace(self, own=model)
 
     def used(self, use: str) -> tuple[Record, ...]:
         """The records of one use: fit, holdout or ignore."""

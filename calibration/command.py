@@ -26,7 +26,6 @@ from calibration.searches import Budget
 from calibration.seas import Diverged, Options, compare
 from calibration.seas_outputs import write_comparison
 from jaxhydro.console import complain, progress, say, table
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 
 ENDED = {
@@ -95,7 +94,7 @@ def run(
     laws: SeaLaws | None = None
     begin: dict[str, Any] = {}
     if start is not None:
-        declared = build(campaign.platform)
+        declared = campaign.model
         used = applied(start, declared, campaign.platform.name)
         # what a law adds is begun from in waves only; effects found are not declared
         known = [k for k in used.values if k in declared.values or (tests == "waves" and of_law(k))]
@@ -183,7 +182,7 @@ def simulate_campaign(
         raise InputError("--cutoff", [Problem("", expected, f"{cutoff:g}")])
     begun = clock.monotonic()
     loaded = load(campaign, out, seas_results.counted)
-    model, used = build(loaded.platform), None
+    model, used = loaded.model, None
     if calibration is not None:
         used = applied(calibration, model, loaded.platform.name)
         model = used.model

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # products, weight, variance, inflation: see `spread`
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
+NOTHING = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
 NAMED = 0.5 * CLEAR  # a parameter that a direction leaves uncertain by less than this is not named in it
 
 
@@ -217,7 +218,9 @@ def _best_fix(labels: Sequence[str], covariance: np.ndarray, candidates: Sequenc
     """The candidate that takes most from the summed variance of the others, and the covariance (p, p) once it is fixed."""
 
     def fixed(i: int) -> np.ndarray:
-        shared = covariance[i] / np.sqrt(max(covariance[i, i], 1e-300))  # at most every one's own deviation: no overflow
+        if not covariance[i, i] > NOTHING:
+            return np.zeros_like(covariance)
+        shared = covariance[i] / np.sqrt(covariance[i, i])
         return np.outer(shared, shared)
 
     lost = {i: float(np.delete(np.diag(fixed(i)), i).sum()) for i in map(labels.index, candidates)}

@@ -17,7 +17,6 @@ from calibration.residuals import Data, Problem, Unknowns, condensed, dominant_p
 from calibration.result import Calibration, TestFit
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError
 from jaxhydro.problems import Problem as Wrong
 from jaxhydro.statics import equilibrium, natural_modes
@@ -216,7 +215,7 @@ def prepare(
             if (largest := float(np.abs(record.values[channel]).max())) > np.pi / 2:
                 where, found = f"tests, {record.id}, channel {channel}", f"{np.degrees(largest):.3g} deg"
                 raise InputError(source, [Wrong(where, "angles below 90 deg", found, "Is the unit right?")])
-    declared = build(campaign.platform)
+    declared = campaign.model
     labels = labels_of(campaign, declared, [str(record.degree_of_freedom) for record in records], free)
     first = declared.with_values(start or {})
     problem = pose(first, campaign, records, space_of(campaign, labels, first))

@@ -20,7 +20,6 @@ from calibration.statements import listed
 from calibration.still import pose_offsets, pose_periods
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.statics import natural_modes
 
@@ -68,7 +67,7 @@ def calibrate_jointly(
     if not (decays or waves or held or stated_periods):
         expected = f"at least one test marked `use: fit`, or a natural period, among {', '.join(kinds)}"
         raise InputError(source, [Problem("tests", expected, "none")])
-    declared = with_diffraction(build(campaign.platform), options)
+    declared = with_diffraction(campaign.model, options)
     moved = {str(record.degree_of_freedom) for record in [*decays, *held]} | set(stated_periods)
     for record in waves:
         moved |= set(moving_channels({k: record.values[k] for k in DOFS if k in record.values}))

@@ -22,7 +22,6 @@ from calibration.parameters import Free
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError, suggest
 from jaxhydro.problems import Problem as Wrong
 
@@ -133,7 +132,7 @@ def reposed(
     """The fit that a calibration to decays was, with its free parameters and priors, where it `ended`; the records' releases
     and offsets, which a calibration does not keep, begin from the records. `began` are values, of free parameters and others,
     that it began from in place of the platform's; `report` is that of `prepare`."""
-    declared = build(campaign.platform).values
+    declared = campaign.model.values
     # only what is not as declared, so that types stay, and what was compiled for the fit serves again
     start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
     fit = prepare(campaign, free=list(ended), start=start, report=report)

@@ -23,7 +23,6 @@ from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.loads.sea_state_law import reference_of as law_reference
 from jaxhydro.model import Model
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 
 
@@ -66,7 +65,7 @@ def calibrate_in_waves(
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
         raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", found)])
-    declared = with_diffraction(build(campaign.platform), options)
+    declared = with_diffraction(campaign.model, options)
     made = seas_of(campaign, declared.environment, options) if made is None else made
     moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
     labels = list(labels_of(campaign, declared, moved, free))

@@ -19,7 +19,6 @@ from jaxhydro.body_schema import KeuleganCarpenter
 from jaxhydro.drag_laws import drag_laws_of, parameter_label, surface_number
 from jaxhydro.loads.keulegan_carpenter_drag import log_ratio
 from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference_of
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.waves.sea_state import SeaState
 
@@ -127,7 +126,7 @@ def choose_law(
     if len(fitted) < (2 if held else 3):
         expected = "two tests in irregular waves marked `fit` and one `holdout`, or three marked `fit`"
         raise InputError(source, [Problem("tests", expected, f"{len(fitted)} and {len(held)}")])
-    made = seas_of(campaign, build(campaign.platform).environment, options)
+    made = seas_of(campaign, campaign.model.environment, options)
     count = len(laws) * (1 if held else 1 + len(fitted)) + len(fitted) + len(held)
     done = 0
 

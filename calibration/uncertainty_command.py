@@ -19,7 +19,6 @@ from calibration.sampling import Samples, sample
 from calibration.saved import Saved, no_place, read_saved
 from calibration.uncertainty_outputs import Uncertainty, intervals, other_ways, write_uncertainty
 from jaxhydro.console import complain, counting, progress, say, table
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem, suggest
 
 MOVED = 0.1  # standard deviations by which a refit may miss the file's values; of the same fit it is some 1e-8
@@ -84,7 +83,7 @@ def finished(campaign: Campaign, path: Path) -> Saved:
     saved = read_saved(path)
     for fault in _faults(saved, campaign):
         raise InputError(str(path), [fault])
-    model = build(campaign.platform)
+    model = campaign.model
     if unknown := [label for label in saved.values() if label not in model.values]:
         raise no_place(saved, unknown, model, campaign.platform.name, path)
     return saved

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import jax.numpy as jnp
 import numpy as np
@@ -31,7 +31,8 @@ def coefficient_label(label: str) -> str | None:
 
 
 def drag_laws_of(model: Model) -> dict[str, DragLaw]:
-    """The laws that coefficients have, with their parameters as they are, by label; those of plain drag are left out."""
+    """The laws that coefficients have, with their parameters as they are, by label; those of plain drag are left out. Values
+    are not checked."""
     found: dict[str, DragLaw] = {}
     for load in model.loads:
         inner = load.load if isinstance(load, SeaStateLaw) else load
@@ -42,15 +43,17 @@ def drag_laws_of(model: Model) -> dict[str, DragLaw]:
         for label in (label for label in inner.values if ".Cd_" in label):
             if isinstance(inner, HighPassDrag):
                 suction = value(label, "suction") if parameter_label(label, "suction") in load.values else None
-                found[label] = HighPassAtEnds(
+                found[label] = HighPassAtEnds.model_construct(
                     law="high_pass", cutoff=value(label, "cutoff"), low_share=value(label, "low_share"), suction=suction
                 )
             elif isinstance(inner, KeuleganCarpenterDrag):
                 line = inner.lines.index(lines_of(model.hull, [label])[0])
-                constants = {"reference": float(inner.reference[line]), "window": float(inner.window[line])}
-                found[label] = KeuleganCarpenter(law="keulegan_carpenter", exponent=value(label, "exponent"), **constants)
+                constants: dict[str, Any] = {"reference": float(inner.reference[line]), "window": float(inner.window[line])}
+                found[label] = KeuleganCarpenter.model_construct(
+                    law="keulegan_carpenter", exponent=value(label, "exponent"), **constants
+                )
             elif isinstance(inner, SuctionSideDrag):
-                found[label] = SuctionSide(law="suction_side", suction=value(label, "suction"))
+                found[label] = SuctionSide.model_construct(law="suction_side", suction=value(label, "suction"))
     return found
 
 

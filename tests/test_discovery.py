@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from ruamel.yaml import YAML
 from scipy.integrate import solve_ivp
 
+from calibration import calibrate
 from calibration.campaign import load_campaign
 from calibration.discovery import kept
 from calibration.discovery.bands import Rows, bands_of
@@ -17,6 +18,7 @@ from calibration.discovery.pose import pose
 from calibration.discovery.search import diagnose
 from calibration.seas import Options
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.problems import InputError
 
 PLATFORM = {
     "name": "a rolling body",
@@ -103,6 +105,10 @@ def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
     assert not any("surge" in name for name in names)
 
 
+def found_in(campaign, **how):
+    return diagnose(campaign.model, campaign, **how)
+
+
 @pytest.mark.parametrize(
     ("torque", "expected", "left"),  # `left`: share of the held-out decay's error
     [
@@ -114,7 +120,7 @@ def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
 )
 def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
     """The effect is named, the held-out decay comes down; where there is none, none is named."""
-    found = diagnose(campaign_of(tmp_path, torque))
+    found = found_in(campaign_of(tmp_path, torque))
     if expected is None:
         assert found.verdict == "nothing_missing"
         assert not found.effects
@@ -139,8 +145,8 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
             raise RuntimeError("killed")
 
     with pytest.raises(RuntimeError, match="killed"):
-        diagnose(campaign, progress=killed, kept=path)
-    found = diagnose(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
+        found_in(campaign, progress=killed, kept=path)
+    found = found_in(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
     assert not any(stage.startswith(("calibrating", "round 1")) for stage in seen)
     assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
     assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
@@ -171,7 +177,17 @@ def test_a_law_of_ones_own_takes_part(tmp_path):
         "repeating", "roll", ("repeating.strength",), load=Sine({"repeating.strength": jnp.zeros(())}),
         sizes={"repeating.strength": 1.0},
     )  # fmt: skip
-    found = diagnose(campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x)), candidates=[own])
+    found = found_in(campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x)), candidates=[own])
     assert found.effects[0].effect == "repeating"
     assert_allclose(float(found.augmented.model.values["repeating.strength"]), 4.0, rtol=0.05)
     assert found.augmented.objective("holdout") < 0.1 * found.baseline.objective("holdout")
+
+
+def test_a_model_of_ones_own_is_calibrated(tmp_path):
+    """With a load that no platform file has, freed by its label like any other."""
+    campaign = campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x))
+    own = campaign.with_model(campaign.model.with_load(Sine({"repeating.strength": jnp.asarray(3.0)})))
+    found = calibrate(own, free=["added_mass.A44", "linear_damping.B44", "repeating.strength"])
+    assert_allclose(found.parameters["repeating.strength"].value, 4.0, rtol=0.05)
+    with pytest.raises(InputError, match=r"repeating\.strength"):
+        calibrate(campaign, free=["repeating.strength"])

@@ -293,7 +293,7 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
     assert {k: v.law for k, v in drag_laws_of(used.model).items()} == dict.fromkeys(ALL_DRAG, name)
     assert float(used.model.values[added[0]]) == 0.7
     again = applied(tmp_path, changed, campaign.platform.name).model.values
-    assert {k: float(again[k]) for k in added} == dict.fromkeys(added, 0.0) | {added[0]: 0.7}  # others are as declared
+    assert {k: float(again[k]) for k in added} == {k: float(changed.values[k]) for k in added} | {added[0]: 0.7}  # as declared
     other = "high_pass" if name == "keulegan_carpenter" else "keulegan_carpenter"
     declared = with_drag(build(campaign.platform), ALL_DRAG, other, SeaState(5.0, 10.0), OPTIONS.low)[0]
     with pytest.raises(InputError, match=f"baseline.drag_laws.column.Cd_t: expected the law that .*{other}.*found .*{name}"):

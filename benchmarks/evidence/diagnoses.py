@@ -71,7 +71,8 @@ def of_case(name: str) -> dict[str, Any]:
     from calibration.campaign import load_campaign
     from calibration.discovery.search import diagnose
 
-    result = diagnose(load_campaign(folder_of(name)))
+    campaign = load_campaign(folder_of(name))
+    result = diagnose(campaign.model, campaign)
     first = result.effects[0] if result.effects else None
     return {
         "verdict": result.verdict,

@@ -29,7 +29,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     campaign = load(path, out, lambda c: calibrations.counted(c, ("decay", *KINDS)))
     try:
         with progress() as show:
-            result = diagnose(campaign, progress=show, kept=out / FILE)
+            result = diagnose(campaign.model, campaign, progress=show, kept=out / FILE)
     except Diverged as error:
         complain(f"{error}; nothing was written")
         return False

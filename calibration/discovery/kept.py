@@ -65,7 +65,7 @@ def fingerprint(search: "Search") -> str:
     """Of all that a diagnosis depends on: records, platform, candidates, and this program's version and sources."""
     study, campaign = search.posed.study, search.campaign
     digest = hashlib.sha256()
-    for text in (version("jaxhydro"), repr(campaign.manifest), repr(campaign.platform), repr(study.names)):
+    for text in (version("jaxhydro"), repr(campaign.manifest), repr(campaign.platform), repr(campaign.own), repr(study.names)):
         digest.update(text.encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())

@@ -18,7 +18,6 @@ from calibration.seas import Options, moving_channels, with_diffraction
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.platform import build
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.statics import equilibrium, linearised
 
@@ -67,7 +66,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     if not used:
         raise InputError(source, [Problem("tests", "at least one decay or test in waves marked `use: fit`", "none")])
     waves = [r for r in campaign.records if r.kind in KINDS and r.use != "ignore"]
-    declared = with_diffraction(build(campaign.platform), options)
+    declared = with_diffraction(campaign.model, options)
     labels = labels_of(campaign, declared, sorted(motions), None)
     mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)

@@ -8,7 +8,6 @@ from calibration.campaign import Campaign
 from calibration.runs import KINDS, Run
 from calibration.seas import Options, sea_of
 from jaxhydro.environment import Environment
-from jaxhydro.platform import build
 
 PRESENT = 0.4  # of what theory has: a record with less has none
 SEEN = 3.0  # times the noise in the band, that theory's part has to be, to say anything
@@ -26,7 +25,7 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
         return options, ()
     from calibration.runs import runs
 
-    environment = build(campaign.platform).environment
+    environment = campaign.model.environment
     found = [_shares(run, environment, options) for run in runs(campaign)]
     kinds, words = list(options.kinds), []
     for i, kind in enumerate(("sum", "difference")):

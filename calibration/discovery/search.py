@@ -25,6 +25,7 @@ from calibration.discovery.study import Look, Place, Prior
 from calibration.fit import Progress, prepare, run
 from calibration.residuals import first_guess
 from calibration.seas import Options
+from jaxhydro.model import Model
 
 ROUNDS = 4  # effects at most
 SHORTLIST = 5
@@ -307,6 +308,7 @@ class Search:
 
 
 def diagnose(
+    model: Model,
     campaign: Campaign,
     *,
     candidates: Sequence[Candidate] = (),
@@ -314,13 +316,13 @@ def diagnose(
     options: Options | None = None,
     kept: Path | None = None,
 ) -> Diagnosis:
-    """What the declared model of a campaign lacks: found, added, judged by the tests marked `holdout`.
+    """What a model of a campaign (that declared: `campaign.model`) lacks: found, added, judged by the tests marked `holdout`.
 
     `candidates` of one's own take part beside the catalogue's. `kept` is a file that has what was reached by round; where it is
     there, of the same campaign, the search goes on from it. Raises InputError where a campaign has nothing to diagnose,
     and KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
     """
-    begun = clock.monotonic()
+    begun, campaign = clock.monotonic(), campaign.with_model(model)
 
     def say(stage: str, fraction: float) -> None:
         if progress is not None:
