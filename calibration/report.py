@@ -7,9 +7,9 @@ from os import PathLike
 from pathlib import Path
 from string import Template
 
-from calibration.folder import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT
+from calibration.folder import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT, UNCERTAINTY
 from calibration.formatting import number, percent, with_deviation
-from calibration.saved import Error, Fitted, Parameter, Saved, read_as, read_saved
+from calibration.saved import Drawn, Error, Fitted, Parameter, Saved, read_as, read_saved
 from calibration.tables import USE
 from jaxhydro.files import write_whole
 from jaxhydro.problems import InputError, Problem
@@ -23,18 +23,23 @@ def write_report(folder: str | PathLike[str]) -> Path:
     """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
     folder = Path(folder)
     try:
-        there = [name for name in (DIAGNOSIS, RESULT, SWEEP) if folder.is_dir() and (folder / name).is_file()]
+        there = [name for name in (DIAGNOSIS, RESULT, UNCERTAINTY, SWEEP) if folder.is_dir() and (folder / name).is_file()]
     except (OSError, ValueError):
         there = []
     if not there:
-        found = f"no {RESULT}, {DIAGNOSIS} or {SWEEP}" if folder.is_dir() else "no such folder"
-        expected = "a folder that `jaxhydro calibrate`, `diagnose` or `sweep` wrote"
+        found = f"no {RESULT}, {DIAGNOSIS}, {UNCERTAINTY} or {SWEEP}" if folder.is_dir() else "no such folder"
+        expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
         raise InputError(str(folder), [Problem("", expected, found)])
     if there[0] == DIAGNOSIS:
         from calibration.discovery.page import page as diagnosis_page
         from calibration.discovery.saved import read_diagnosis
 
         text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS), folder)
+    elif there[0] == UNCERTAINTY:
+        from calibration.uncertainty_page import page as uncertainty_page
+        from calibration.uncertainty_saved import SavedUncertainty
+
+        text = uncertainty_page(read_as(SavedUncertainty, folder / UNCERTAINTY), folder)
     elif there[0] == SWEEP:
         from calibration.sweep_page import SavedSweep
         from calibration.sweep_page import page as sweep_page
@@ -50,7 +55,7 @@ def page(saved: Saved, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
     fitted = saved.baseline
     errors = saved.errors(str(folder / RESULT))
-    drawn = figures(images(saved, folder).values())
+    drawn = figures(images(saved.figures, folder).values())
     body = (
         _state(fitted), "<h2>Tests</h2>", _tests(saved, errors), "<h2>Parameters</h2>", _parameters(fitted.parameters),
         f"<h2>Notes</h2>{listed(fitted.notes)}" if fitted.notes else "", f"<h2>Figures</h2>{drawn}" if drawn else "",
@@ -115,10 +120,10 @@ def listed(texts: Iterable[str]) -> str:
     return f"<ul>{''.join(f'<li>{escape(text)}</li>' for text in texts)}</ul>"
 
 
-def images(saved: Saved, folder: Path) -> dict[str, str]:
+def images(stated: Iterable[Drawn], folder: Path) -> dict[str, str]:
     """Figures by name in their stated order, then others that are there; only PNG files of the folder itself are taken."""
     there = {path.name: path for path in sorted((folder / FIGURES).glob("*.png")) if path.is_file()}
-    captions = {Path(figure.file).name: figure.caption for figure in saved.figures}
+    captions = {Path(figure.file).name: figure.caption for figure in stated}
     names = [name for name in captions if name in there] + [name for name in there if name not in captions]
     parts = {}
     for name in names:

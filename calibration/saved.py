@@ -158,7 +158,7 @@ def read_as(kind: type[S], path: str | PathLike[str]) -> S:
     except UnicodeDecodeError:
         raise _wrong(path, "text in UTF-8", "other bytes") from None
     except (OSError, ValueError) as error:
-        raise _wrong(path, f"a {RESULT} that can be read", str(getattr(error, "strerror", None) or error)) from None
+        raise _wrong(path, "a file that can be read", str(getattr(error, "strerror", None) or error)) from None
     if not isinstance(data, dict):
         raise _wrong(path, "a mapping of keys to values", type(data).__name__)
     return validate(kind, data, str(path))

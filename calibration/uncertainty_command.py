@@ -11,13 +11,14 @@ from calibration.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
 from calibration.campaign import Campaign
 from calibration.command import load
 from calibration.fit import Progress, run
-from calibration.folder import RESULT
+from calibration.folder import RESULT, UNCERTAINTY
 from calibration.formatting import number
 from calibration.likelihood import Likelihood, likelihood_of, reposed
 from calibration.profile import Profile, profile
 from calibration.sampling import Samples, sample
-from calibration.saved import Saved, no_place, read_saved
-from calibration.uncertainty_outputs import Uncertainty, intervals, other_ways, write_uncertainty
+from calibration.saved import Saved, no_place, read_as, read_saved
+from calibration.uncertainty_outputs import Uncertainty, write_uncertainty
+from calibration.uncertainty_saved import SavedUncertainty, intervals, other_ways
 from jaxhydro.console import complain, counting, progress, say, table
 from jaxhydro.problems import InputError, Problem, suggest
 
@@ -54,15 +55,16 @@ def quantify(
     samples = _sampled(likely, seed) if nuts else None
     found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples)
     write_uncertainty(found, out, figures)
-    table(f"Parameters, {found.percent} intervals: Laplace, coloured errors", *intervals(found))
-    if (rows := other_ways(found))[1]:
-        table(f"{found.percent} intervals in other ways", *rows)
-    for note in found.notes():
+    written = read_as(SavedUncertainty, out / UNCERTAINTY)
+    table(f"Parameters, {written.percent} intervals: Laplace, coloured errors", *intervals(written))
+    if (rows := other_ways(written))[1]:
+        table(f"{written.percent} intervals in other ways", *rows)
+    for note in written.notes:
         say(f"Note: {note}")
-    say(f"Results are in {out}")
-    if not found.converged:
+    say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
+    if not written.converged:
         complain("not converged: the results are marked so")
-    return found.converged
+    return written.converged
 
 
 def _check(draws: int | None, nuts: bool, level: float) -> None:

@@ -1,4 +1,4 @@
-"""What `jaxhydro uncertainty` leaves behind: uncertainty.json and figures, whole or not at all; and its tables."""
+"""What `jaxhydro uncertainty` leaves behind: uncertainty.json and figures, whole or not at all."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -10,17 +10,15 @@ import numpy as np
 import jaxhydro
 from calibration.bootstrap import Bootstrap
 from calibration.folder import UNCERTAINTY, draw, or_null, outdated, write_json
-from calibration.formatting import interval, number, to_width
 from calibration.likelihood import Likelihood
 from calibration.profile import Profile
 from calibration.sampling import Samples
 from calibration.saved import Saved
-from calibration.tables import Rows
+from calibration.uncertainty_saved import WAYS
 from jaxhydro.files import safe_name, staged
 
 Interval = tuple[float | None, float | None]
 AGREED = 1.05  # r-hat above which chains have not yet seen the same
-WAYS = {"profile": "Profile", "blocks": "Bootstrap, blocks", "repeats": "Bootstrap, repeats", "nuts": "NUTS"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,11 +39,6 @@ class Uncertainty:
     @property
     def converged(self) -> bool:
         return bool(self.likelihood.fit.converged)
-
-    @property
-    def percent(self) -> str:
-        """The level in words."""
-        return f"{100 * self.level:.4g} %"
 
     def ways(self, label: str) -> dict[str, Interval]:
         """A parameter's intervals beside the Laplace interval, by way: quantiles of draws; of repeats, which may be as few as
@@ -176,27 +169,3 @@ def most_correlated(likelihood: Likelihood) -> tuple[str, str] | None:
     first, second = np.triu_indices(p, 1)
     k = int(np.argmax(np.abs(correlation[first, second])))
     return labels[first[k]], labels[second[k]]
-
-
-def intervals(found: Uncertainty) -> Rows:
-    """Value, Laplace interval, and how much too small it would be as if errors were white."""
-    likely, rows = found.likelihood, []
-    excess = likely.excess()
-    for label in likely.labels:
-        one, (low, high) = found.saved.best.parameters[label], likely.interval(label, found.level)
-        flag = "at its bound" if one.at_bound else "" if one.identifiable else "not determined"
-        cells = (to_width(one.value, high - low), interval(low, high), one.unit, f"{number(excess[label], 2)} times", flag)
-        rows.append((label, *cells))
-    return ("Parameter", "Value", f"{found.percent} interval", "Unit", "As if white, too small by", ""), rows
-
-
-def other_ways(found: Uncertainty) -> Rows:
-    """The Laplace interval beside those found in other ways; no rows where none was asked for."""
-    by_label = {label: found.ways(label) for label in found.likelihood.labels}
-    there = [way for way in WAYS if any(way in ways for ways in by_label.values())]
-    rows = [
-        (label, interval(*found.likelihood.interval(label, found.level)),
-         *(interval(*ways[way]) if way in ways else "" for way in there))
-        for label, ways in by_label.items() if ways
-    ]  # fmt: skip
-    return ("Parameter", "Laplace", *(WAYS[way] for way in there)), rows

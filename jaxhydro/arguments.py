@@ -57,9 +57,11 @@ QUANTIFYING = "\n\n".join((
     "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
     "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile column.Cd_t --bootstrap 200",
     "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile '*' --nuts",
+    "jaxhydro report uncertainty",
     "[bold]What it writes[/bold]",
-    "uncertainty.json (docs/formats.md), figures. Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was "
-    "reached written and marked so; 130 stopped, nothing was written.",
+    "uncertainty.json (docs/formats.md), figures. `jaxhydro report` makes one page of them to hand on. "
+    "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so; 130 stopped, "
+    "nothing was written.",
 ))  # fmt: skip
 
 SWEEPING = "\n\n".join((

@@ -212,7 +212,9 @@ def uncertainty(
 
 @app.command()
 def report(
-    folder: Annotated[Path, typer.Argument(help="A folder that `jaxhydro calibrate`, `diagnose` or `sweep` wrote.")],
+    folder: Annotated[
+        Path, typer.Argument(help="A folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote.")
+    ],
 ) -> None:
     """Make one self-contained HTML page, report.html, of what is in a result folder."""
     from calibration.report import write_report

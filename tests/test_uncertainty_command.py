@@ -57,6 +57,7 @@ def test_what_is_written_is_what_python_finds(ship: tuple[Path, Path, Likelihood
     }  # fmt: skip
     assert all((out / one["file"]).stat().st_size > 5000 for one in content["figures"])
     assert any("roll-2 without repeats" in note for note in content["notes"])
+    assert "makes a page of them" in said
 
 
 def test_what_does_not_fit_together_is_told(ship: tuple[Path, Path, Likelihood], tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def page(saved: SavedDiagnosis, folder: Path) -> str:
 
 
 def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
-    drawn = images(saved, folder)
+    drawn = images(saved.figures, folder)
 
     def taken(*starts: str) -> str:
         """The figures whose names begin so, each shown once."""

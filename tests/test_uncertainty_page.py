@@ -1,0 +1,151 @@
+"""The page that is made of uncertainty.json, and what is told of a file that is none."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from matplotlib.figure import Figure
+from test_cli import cache, run  # noqa: F401
+from test_outputs import Page
+
+from calibration import uncertainty_outputs
+from calibration.folder import DIAGNOSIS, UNCERTAINTY
+from calibration.report import write_report
+from calibration.uncertainty_outputs import write_uncertainty
+from jaxhydro.problems import InputError
+
+MASS = {
+    "value": 18.4088, "unit": "kg m2", "meaning": "added mass 4 from acceleration 4", "identifiable": True, "at_bound": False,
+    "laplace": [18.1517, 18.6695], "white": [18.3999, 18.4176], "white_too_small_by": 29.2109,
+    "profile": [None, 18.6676], "blocks": [18.2909, 18.5125],
+}  # fmt: skip
+DAMPING = {
+    "value": 0.76541, "unit": "N m s/rad", "meaning": "linear damping force 4 from velocity 4", "identifiable": False,
+    "at_bound": False, "laplace": [0.027306, 36.393], "white": [0.17589, 3.6609], "white_too_small_by": None,
+    "blocks": [0.30247, 3.7146],
+}  # fmt: skip
+CONTENT: dict[str, Any] = {
+    "campaign": "a roll decay", "platform": "a tanker", "jaxhydro": "0.1.0", "calibration": "results/calibration.json",
+    "level": 0.9, "seed": 0, "converged": True, "parameters": {"added_mass.A44": MASS, "linear_damping.B44": DAMPING},
+    "profiles": {}, "bootstrap": {"blocks": {"asked": 200, "draws": 198, "unsettled": 39, "groups": {"roll-1": 2.54}}},
+    "nuts": None, "notes": ["the records do not determine linear_damping.B44"], "figures": [],
+}  # fmt: skip
+PARAMETERS = CONTENT["parameters"]
+
+
+def alone(one: dict[str, Any]) -> dict[str, Any]:
+    """A parameter without intervals of other ways."""
+    return {key: value for key, value in one.items() if key not in ("profile", "blocks")}
+
+
+def page_of(folder: Path, **changes: Any) -> Page:
+    (folder / UNCERTAINTY).write_text(json.dumps(CONTENT | changes), encoding="utf-8")
+    return Page(write_report(folder).read_text(encoding="utf-8"))
+
+
+def words(page: Page) -> str:
+    return " ".join(page.text.split())
+
+
+def test_the_page_tells_it_in_order_and_needs_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "figures").mkdir()
+    Figure(figsize=(1, 1)).savefig(tmp_path / "figures" / "draws-blocks.png")
+    page = page_of(tmp_path, figures=[{"file": "figures/draws-blocks.png", "caption": "draws of two"}])
+    told = ("a roll decay", "Uncertainty by jaxhydro 0.1.0", "What a 90 % interval means", "about 90 in 100",
+            "does not mean: that the model is right", "What was calibrated", "Campaign: a roll decay", "Platform: a tanker",
+            "results/calibration.json, 2 parameters fitted", "too small an interval would be that takes errors as white",
+            "90 % interval", "added mass 4 from acceleration 4", "29 times", "velocity 4; not determined",
+            "90 % intervals in other ways", "drawn anew in blocks and fitted again, 198 times", "Laplace", "Notes",
+            "the records do not determine", "Figures", "draws of two")  # fmt: skip
+    places, at = [], 0
+    for text in told:
+        at = words(page).find(text, at)
+        places.append(at)
+    assert -1 not in places, list(zip(told, places))
+    assert "did not converge" not in page.text and "NUTS" not in page.text and "Bootstrap, repeats" not in page.text
+    assert len(page.links) == 1 and page.links[0].startswith("data:image/png;base64,")
+    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+
+
+def test_the_tables_have_each_interval_in_its_place(tmp_path: Path) -> None:
+    """A side that is open is told; a way that was not gone for a parameter leaves its cell empty, others leave no column."""
+    page_of(tmp_path)
+    html = (tmp_path / "report.html").read_text(encoding="utf-8")
+
+    def row(*texts: str) -> str:
+        return "".join(f"<td{' class=number' if i else ''}>{text}</td>" for i, text in enumerate(texts))
+
+    first = "<tr><td>added_mass.A44</td><td>added mass 4 from acceleration 4</td>"
+    assert f"{first}<td class=number>18.41</td><td class=number>18.15 to 18.67</td><td>kg m2</td><td>29 times</td>" in html
+    assert row("added_mass.A44", "18.15 to 18.67", "at most 18.7", "18.29 to 18.51") in html
+    assert row("linear_damping.B44", "0.0273 to 36.4", "", "0.302 to 3.71") in html
+    assert '<tr class=muted><td>linear_damping.B44</td>' in html and "<td>N m s/rad</td><td>–</td></tr>" in html
+    assert html.count("<th") == 6 + 4 + 2  # two of them are thead
+
+
+def test_intervals_of_laplace_alone_make_a_page(tmp_path: Path) -> None:
+    bound = {"added_mass.A44": alone(MASS) | {"at_bound": True, "laplace": [None, None]}}
+    page = page_of(tmp_path, parameters=bound, notes=[], bootstrap={}, platform="")
+    assert "in other ways" not in page.text and "Notes" not in page.text and "Figures" not in page.text
+    assert "at its bound" in page.text and "not bounded" in page.text
+    assert "1 parameter fitted to" in words(page) and "Platform" not in page.text
+
+
+def test_draws_of_repeats_and_from_the_posterior_are_told(tmp_path: Path) -> None:
+    one = alone(MASS) | {"repeats": [18.2, 18.6], "nuts": [18.1, 18.7]}
+    nuts = {"chains": 4, "draws": 350, "divergences": 0, "r_hat": {}, "effective": {}}
+    repeats = {"repeats": {"asked": 60, "draws": 60, "unsettled": 0, "groups": {"a": ["b"]}}}
+    page = page_of(tmp_path, parameters={"added_mass.A44": one}, bootstrap=repeats, nuts=nuts)
+    said = words(page)
+    assert "those that repeat each other and fitted again, 60 times" in said and "4 chains of 350" in said
+    assert "18.10 to 18.70" in said and "18.20 to 18.60" in said
+    assert "Bootstrap, blocks" not in said and "Profile" not in said
+
+
+def test_what_did_not_converge_says_so_on_top(tmp_path: Path) -> None:
+    said = words(page_of(tmp_path, converged=False))
+    assert -1 < said.find("did not converge") < said.find("in 100")
+    assert "not intervals of a calibration" in said
+
+
+def test_the_page_escapes_what_comes_from_files(tmp_path: Path) -> None:
+    evil = '<script>alert("1")</script>&amp; $title {level}'
+    parameters = {evil: MASS | {"unit": evil, "meaning": evil}}
+    page = page_of(tmp_path, campaign=evil, platform=evil, calibration=evil, jaxhydro=evil, parameters=parameters, notes=[evil])
+    assert "script" not in page.tags and page.text.count(evil) == 11
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("{", "line 1, column 2: expected valid JSON"),
+        ("[]", "expected a mapping of keys to values, found list"),
+        (CONTENT | {"level": 95}, "level: expected a number > 0 and < 1, found 95"),
+        (CONTENT | {"converged": None}, "converged: expected true or false"),
+        ({key: CONTENT[key] for key in CONTENT if key != "calibration"}, "calibration: expected text, found nothing"),
+        (CONTENT | {"parameters": {"a.b": MASS | {"laplace": [1.0]}}}, "parameters.a.b.laplace"),
+        (CONTENT | {"parameters": {"a.b": MASS | {"laplace": [1.0, "2"]}}}, "parameters.a.b.laplace[1]: expected a number"),
+        (CONTENT | {"parameters": {"a.b": MASS | {"profile": 3}}}, "parameters.a.b.profile: expected"),
+        (CONTENT | {"bootstrap": {"blocks": {"asked": 3}}}, "bootstrap.blocks.draws: expected a whole number"),
+    ],
+)
+def test_a_broken_file_is_told(tmp_path: Path, content: Any, said: str) -> None:
+    """Which file, which key, what was expected and what was found; no page is made."""
+    (tmp_path / UNCERTAINTY).write_text(content if isinstance(content, str) else json.dumps(content))
+    with pytest.raises(InputError) as caught:
+        write_report(tmp_path)
+    assert said in str(caught.value) and str(tmp_path / UNCERTAINTY) in str(caught.value)
+    assert [path.name for path in tmp_path.iterdir()] == [UNCERTAINTY]
+
+
+def test_the_command_makes_the_page_and_a_new_result_takes_it_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found: Any = SimpleNamespace()
+    monkeypatch.setattr(uncertainty_outputs, "document", lambda _: CONTENT)
+    write_uncertainty(found, tmp_path / "out", figures=False)
+    assert "report.html" in run("report", tmp_path / "out") and (tmp_path / "out" / "report.html").exists()
+    (tmp_path / "out" / "notes.txt").write_text("keep")
+    write_uncertainty(found, tmp_path / "out", figures=False)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["notes.txt", UNCERTAINTY]
+    assert f"{DIAGNOSIS}, {UNCERTAINTY} or sweep.json" in run("report", tmp_path, status=2)
