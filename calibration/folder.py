@@ -4,12 +4,9 @@ import json
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import xarray as xr
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 RESULT, MOTION, FIGURES, REPORT = "calibration.json", "simulated.nc", "figures", "report.html"
 COMPARISON = "comparison.json"  # of a campaign's seas
@@ -19,9 +16,9 @@ LAWS, TABLE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws 
 GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 
 
-def draw(figures: "Iterable[tuple[str, str, Figure]]", folder: Path) -> list[dict[str, str]]:
-    """Save figures, each with its file's name and its caption, below a folder, and list them as result files do. `figures` is
-    a generator, which draws when asked to: in the package's style."""
+def draw(figures: Iterable[tuple[str, str, Any]], folder: Path) -> list[dict[str, str]]:
+    """Save matplotlib figures, each with its file's name and its caption, below a folder, and list them as result files do.
+    `figures` is a generator, which draws when asked to: in the package's style."""
     from jaxhydro.plot import save, style
 
     drawn = []

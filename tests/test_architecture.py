@@ -30,7 +30,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start"),
     ("jaxhydro.problems",),
     ("jaxhydro.body_schema", "jaxhydro.files"),
-    ("jaxhydro.platform_schema",),
+    ("jaxhydro.platform_schema", "jaxhydro.drag_laws"),
     ("jaxhydro.platform", "jaxhydro.plot"),
     ("jaxhydro.convergence",),
     ("jaxhydro",),
@@ -68,7 +68,7 @@ EDGE = {  # third-party or built-in, and the only modules that may use it
     "yaml": set(),
     "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals")},
     "xarray": {f"jaxhydro.sweep.{name}" for name in ("outputs", "run", "store")}
-    | {"jaxhydro.export", "calibration.outputs", "calibration.readers", "calibration.seas_outputs"},
+    | {"jaxhydro.export"} | {f"calibration.{name}" for name in ("folder", "outputs", "readers", "seas_outputs")},
     "typer": {"jaxhydro.cli", "jaxhydro.options", "jaxhydro.arguments"},
     "rich": {"jaxhydro.console"},
 }
