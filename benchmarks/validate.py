@@ -22,6 +22,7 @@ from benchmarks.evidence import (
     coverage,
     diagnoses,
     global_search,
+    identified,
     measured,
     measured_waves,
     openfast,
@@ -36,8 +37,8 @@ from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
 
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
-    "seeds", "coverage", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas", "classical_bias",
-    "starts", "global_search", "study", "diagnoses",
+    "seeds", "coverage", "identified", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas",
+    "classical_bias", "starts", "global_search", "study", "diagnoses",
 )  # fmt: skip
 INTRO = """\
 # Validation
@@ -61,6 +62,8 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return coverage.run(figures, options.processes)
     if name == "global_search":
         return global_search.run(figures, options.processes)
+    if name == "identified":
+        return identified.run(figures, options.processes)
     if name == "tuned_seas":
         return tuned_seas.run(figures, options.processes)
     if name == "diagnoses":

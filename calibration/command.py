@@ -28,6 +28,7 @@ from calibration.seas_outputs import write_comparison
 from jaxhydro.console import complain, progress, say, table
 from jaxhydro.problems import InputError, Problem
 
+SECONDS = 60.0  # CPU time of a search
 ENDED = {
     "settled": "ended of its own", "reached": "ended of its own", "budget": "cut off by --search-seconds",
     "interrupted": "stopped by the user",
@@ -72,7 +73,7 @@ def run(
     start: Path | None = None,
     method: str | None = None,
     seed: int = 0,
-    seconds: float = 60.0,
+    seconds: float = SECONDS,
 ) -> Calibration | None:
     """Calibrate, write and print the result; of a fit that the user stops, what was reached; None if that is no number.
 
@@ -82,9 +83,14 @@ def run(
     many CPU `seconds`. Raises InputError, and Interrupted where nothing was reached.
     """
     if law != "constant" and tests != "waves":
-        raise InputError("--law", [Problem("", f"--tests waves beside {law}", f"--tests {tests}")])
+        raise InputError("--law", [Problem("", f"--tests waves beside {law.replace('_', '-')}", f"--tests {tests}")])
     if loss != "squares" and tests != "all":
         raise InputError("--loss", [Problem("", f"--tests all beside {loss}", f"--tests {tests}")])
+    if objective != "bands" and tests == "decays":
+        expected = "--tests waves or all beside it: decays are fitted to their motion"
+        raise InputError("--objective", [Problem("", expected, "--tests decays")])
+    if method is None and (seed, seconds) != (0, SECONDS):
+        raise InputError("--method", [Problem("", "a search beside --search-seed and --search-seconds", "none")])
     if law == "choose" and objective != "bands":
         raise InputError("--objective", [Problem("", "bands, by which laws are chosen", objective)])
     if method is not None and tests == "waves":
@@ -108,7 +114,7 @@ def run(
         with progress() as show:
             if law == "choose":
                 laws = choose_law(campaign, progress=show, **begin)
-                result = laws.chosen.calibration
+                result = laws.chosen.calibration if laws.finished else tables.unfinished(laws.chosen.calibration)
             elif tests == "all":
                 result = calibrate_jointly(campaign, progress=show, objective=objective, loss=loss, **begin)
             elif tests == "waves":

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.directions import Identifiability
+from calibration.directions import Identifiability, family
 from calibration.identifiability import CLEAR, Spread
 from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
@@ -117,6 +117,8 @@ def remarks(
     left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
     if left:
         said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
+    if campaign.used("fit") and not any(family(label) == "damping" for label in parameters):
+        said.append("no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out")
     vague = [label for label, p in parameters.items() if not p.identifiable]
     if vague:
         ends = "its value is no result" if len(vague) == 1 else "their values are not results"

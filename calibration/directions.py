@@ -20,6 +20,7 @@ from calibration.information import collinearity, deviations, eliminated, invers
 from calibration.parameters import ParameterSpace, slopes
 from calibration.result import TestFit
 from calibration.statements import Collinear, Combination, Direction, Fix, Parameters, listed
+from jaxhydro.drag_laws import coefficient_label
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
@@ -175,8 +176,8 @@ def stated(
 
 
 def family(label: str) -> str:
-    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on the sea."""
-    if is_exponent(label):
+    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on sea or motion."""
+    if is_exponent(label) or coefficient_label(label) is not None:
         return "exponent"
     head, _, name = label.rpartition(".")
     if head == "added_mass" or name.startswith("Ca"):

@@ -113,7 +113,8 @@ def parameter_space(
     """Free parameters with their transforms. `bounds` label -> (lower, upper), `priors` label -> (value, standard deviation).
 
     A parameter that cannot be negative is on a logarithmic scale, by default within a factor of 1000 of where it starts and
-    within its physical range. Raises InputError for bounds or priors that make no sense.
+    within its physical range; what is declared as 0 starts in the middle of that. Raises InputError for bounds or priors that
+    make no sense.
     """
     bounds, priors, free, problems = bounds or {}, priors or {}, [], []
     for key, given in (("bounds", bounds), ("priors", priors)):
@@ -129,11 +130,17 @@ def parameter_space(
             physical = f"two numbers between {about.lower:g} and {about.upper:g}"
             problems.append(Problem(f"calibrate.bounds.{label}", physical, f"[{lower:g}, {upper:g}]"))
             continue
+        if not about.lower <= start <= about.upper:
+            physical = f"a value between {about.lower:g} and {about.upper:g} to begin from"
+            problems.append(Problem(f"calibrate: {label}", physical, f"{start:g}"))
+            continue
         transform: AbstractTransform
         if about.lower >= 0:
             size = start if start > 0 else (upper if math.isfinite(upper) else 1.0)
             lower = max(lower, size / RANGE)
             transform = LogInterval(lower, min(upper, size * RANGE) if label not in bounds else upper)
+            # at the end of a logarithmic scale nothing moves
+            start = start if start > 0 else math.sqrt(transform.lower * transform.upper)
         elif math.isfinite(lower) and math.isfinite(upper):
             transform = Interval(lower, upper)
         else:

@@ -1,6 +1,7 @@
 """A written calibration.json, or what of a diagnosis.json is a calibrated model, read back and checked."""
 
 import json
+import math
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 from pydantic import BaseModel, ConfigDict, Field
 
 from calibration.folder import DIAGNOSIS, RESULT
-from jaxhydro.body_schema import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
+from jaxhydro.body_schema import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 from jaxhydro.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
 from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
 from jaxhydro.model import Model
@@ -189,8 +190,16 @@ def applied(path: str | PathLike[str], model: Model, platform: str) -> Applied:
     model = fitting(saved, model, path)
     own = not saved.platform or saved.platform == platform
     values = {k: v for k, v in saved.values().items() if own or not k.startswith(OF_CAMPAIGN)}
+    if not saved.values():
+        raise _wrong(Path(path), "at least one calibrated parameter", "none", f"{saved.key}.parameters")
     if unknown := [label for label in values if label not in model.values]:
         raise no_place(saved, unknown, model, platform, path)
+    for label, value in values.items():
+        about = model.about(label)
+        slack = 1e-6 * max(abs(value), abs(about.lower) if about.lower > -math.inf else 0.0)
+        if not about.lower - slack <= value <= about.upper + slack:
+            expected = f"a number between {about.lower:g} and {about.upper:g}"
+            raise _wrong(Path(path), expected, f"{value:g}", f"{saved.key}.parameters.{label}.value")
     vague = tuple(label for label in values if not saved.best.parameters[label].identifiable)
     left = tuple(label for label in saved.values() if label not in values)
     return Applied(model.with_values(values), values, vague, left, saved.campaign)
@@ -220,13 +229,29 @@ def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
 
 
 def _with_drag(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with the drag laws that were calibrated, for the coefficients that it has."""
-    plain, there = plain_drag(model), drag_laws_of(model)
-    for label, law in saved.best.drag_laws.items():
+    """The model with the drag laws that were calibrated. Raises InputError where it declares others, or has no such drag."""
+    plain, there, laws = plain_drag(model), drag_laws_of(model), saved.best.drag_laws
+    where = f"{saved.key}.drag_laws"
+    for label, law in laws.items():
+        if label not in plain and label not in there:
+            known = [*plain, *there]
+            expected, hint = f"drag coefficients ({', '.join(known) or 'there are none'})", suggest(label, known)
+            raise _wrong(Path(path), expected, repr(label), where, hint)
         if label in there and not _alike(there[label], law):
-            where = f"{saved.key}.drag_laws.{label}"
-            raise _wrong(Path(path), f"the law that the platform declares ({_said(there[label])})", _said(law), where)
-    return with_drag_laws(model, {label: law for label, law in saved.best.drag_laws.items() if label in plain})
+            expected = f"the law that the platform declares ({_said(there[label])})"
+            raise _wrong(Path(path), expected, _said(law), f"{where}.{label}")
+    for label in saved.values():
+        if label in there and label not in laws and not _silent(there[label]):
+            expected = f"the law that the platform declares ({_said(there[label])})"
+            raise _wrong(Path(path), expected, "plain drag", f"{where}.{label}", "A coefficient goes with its law.")
+    return with_drag_laws(model, {label: law for label, law in laws.items() if label in plain})
+
+
+def _silent(law: DragLaw) -> bool:
+    """Whether a law is at its null, plain drag."""
+    if isinstance(law, HighPass):
+        return (law.low_share == 1 or law.cutoff == 0) and not getattr(law, "suction", None)
+    return not (law.exponent if isinstance(law, KeuleganCarpenter) else getattr(law, "suction", 0))
 
 
 def _alike(one: DragLaw, other: DragLaw) -> bool:

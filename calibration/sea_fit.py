@@ -15,6 +15,7 @@ from calibration.laws import PLAIN, Drag, Over, of_law, reference_of, with_drag,
 from calibration.result import BandError, Calibration, TestFit
 from calibration.runs import KINDS
 from calibration.sea_descent import SeaFit
+from calibration.sea_remarks import sea_remarks
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, sea_step, seas_of, with_diffraction
 from calibration.seas_results import in_bands
@@ -117,7 +118,7 @@ def _conclude(
     uncertainty, known = fit.identifiability()
     parameters = estimates(problem.space, problem.model, np.asarray(fit.x), uncertainty)
     tests, warnings = tests_in_waves(campaign, declared, model, options, made)
-    notes = (*remarks(campaign, parameters, known, KINDS), *fit.notes, *warnings)
+    notes = (*remarks(campaign, parameters, known, KINDS), *sea_remarks(model, tests), *fit.notes, *warnings)
     return Calibration(
         campaign.manifest.name, model, parameters, tests, fit.converged, fit.iterations, seconds, tuple(fit.history),
         notes, campaign.platform.name, known,

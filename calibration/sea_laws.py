@@ -85,12 +85,14 @@ class OneSea:
 
 @dataclass(frozen=True, eq=False)
 class SeaLaws:
-    """Laws in the order asked for, calibrations sea by sea, and the tests that judged: held out, or left out one by one."""
+    """Laws in the order asked for, calibrations sea by sea, and the tests that judged: held out, or left out one by one. Where
+    the user stopped it, not `finished`, they are those that had been made."""
 
     laws: tuple[LawFit, ...]
     seas: tuple[OneSea, ...]
     judged_by: tuple[str, ...]
     left_out: bool
+    finished: bool = True
 
     @property
     def chosen(self) -> LawFit:
@@ -118,7 +120,7 @@ def choose_law(
     Every law is fitted to the tests in irregular waves marked `fit` and judged by those marked `holdout`; where none is, by the
     fitted ones left out in turn. The energies in bands are the objective. Arguments are those of `calibrate_in_waves`; the laws
     start where the constants ended, whose values also are the middle of the priors sea by sea. Raises InputError where there
-    are too few tests to judge, Interrupted (of the calibration under way).
+    are too few tests to judge, Interrupted where the user stops it before a law is fitted.
     """
     options = Options() if options is None else options
     source = str(campaign.folder / "campaign.yaml")
@@ -136,7 +138,8 @@ def choose_law(
 
         def report(now: Progress) -> None:
             if progress is not None:
-                progress(replace(now, stage=f"{name}: {now.stage}", fraction=(done + now.fraction) / count))
+                stage = f"{done + 1} of {count}, {name}: {now.stage}"
+                progress(replace(now, stage=stage, fraction=(done + now.fraction) / count))
 
         used, seas = with_uses(campaign, made, uses)
         found = calibrate_in_waves(
@@ -146,22 +149,28 @@ def choose_law(
         return found
 
     found: list[LawFit] = []
-    for name in laws:
-        begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
-        whole = one(name, {}, begin, name)
-        if held:
-            judged = [error(whole, held)]
-        else:
-            judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
-        found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
-    values = {k: p.value for k, p in found[0].calibration.parameters.items() if not of_law(k)}
-    seas = []
-    for id in [*fitted, *held]:
-        alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
-        record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)
-        state = sea_state(run, record, options.low, options.cutoff)
-        seas.append(OneSea(id, record.use, state, one(f"{id} alone", alone, values)))
-    return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held)
+    seas: list[OneSea] = []
+    finished = False
+    try:
+        for name in laws:
+            begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
+            whole = one(name, {}, begin, name)
+            if held:
+                judged = [error(whole, held)]
+            else:
+                judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
+            found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
+        values = {k: p.value for k, p in found[0].calibration.parameters.items() if not of_law(k)}
+        for id in [*fitted, *held]:
+            alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
+            record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)
+            state = sea_state(run, record, options.low, options.cutoff)
+            seas.append(OneSea(id, record.use, state, one(f"{id} alone", alone, values)))
+        finished = True
+    except KeyboardInterrupt:
+        if not found:
+            raise
+    return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held, finished)
 
 
 def error(calibration: Calibration, tests: Sequence[str]) -> float:

@@ -28,7 +28,7 @@ def write_laws(found: SeaLaws, folder: str | PathLike[str], figures: bool = True
     with staged(Path(folder)) as temporary:
         write_json(document(found), temporary / LAWS)
         (temporary / TABLE).write_text(table_text(found), encoding="utf-8")
-        if figures:
+        if figures and found.seas:
             _draw(found, temporary / FIGURES)
 
 
@@ -55,7 +55,8 @@ def document(found: SeaLaws) -> dict[str, Any]:
     seas = {
         sea.id: {"use": sea.use, **sea.state._asdict(), "parameters": _parameters(sea.calibration)} for sea in found.seas
     }
-    return {"chosen": found.chosen.name, "judged_by": list(found.judged_by), "left_out_one_by_one": found.left_out,
+    return {"finished": found.finished, "chosen": found.chosen.name,
+            "judged_by": list(found.judged_by), "left_out_one_by_one": found.left_out,
             "laws": laws, "sea_states": seas}  # fmt: skip
 
 
@@ -118,6 +119,8 @@ def state_words(state: SeaState) -> str:
 def sentence(found: SeaLaws) -> str:
     """Which law, and what it gains."""
     chosen, plain = found.chosen, found.laws[0]
+    if not found.finished:
+        return f"Stopped by the user: of {', '.join(NAMES[law.name] for law in found.laws)} the best is {NAMES[chosen.name]}"
     by = f"{', '.join(found.judged_by)} {'left out in turn' if found.left_out else 'held out'}"
     if chosen is plain:
         return f"No law does better than {NAMES[plain.name]} coefficients on {by} (error {number(plain.held_out, 3)})"

@@ -53,7 +53,7 @@ def quantify(
     likely, along = _likelihood(campaign, saved, calibration, labels, level)
     bootstraps = {} if draws is None else _resampled(likely, draws, seed)
     samples = _sampled(likely, seed) if nuts else None
-    found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples)
+    found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
     write_uncertainty(found, out, figures)
     written = read_as(SavedUncertainty, out / UNCERTAINTY)
     table(f"Parameters, {written.percent} intervals: Laplace, coloured errors", *intervals(written))
@@ -177,7 +177,10 @@ def _resampled(likely: Likelihood, draws: int, seed: int) -> dict[str, Bootstrap
     return found
 
 
-def _sampled(likely: Likelihood, seed: int) -> Samples:
+def _sampled(likely: Likelihood, seed: int) -> Samples | None:
     """NUTS; of a run that the user stops, what there is, if it is enough."""
     with counting(CHAINS * (WARMUP + DRAWS), 0, f"draws of {CHAINS} chains, {WARMUP} of each to find its step") as count:
-        return sample(likely, draws=DRAWS, warmup=WARMUP, chains=CHAINS, seed=seed, progress=count)
+        try:
+            return sample(likely, draws=DRAWS, warmup=WARMUP, chains=CHAINS, seed=seed, progress=count)
+        except KeyboardInterrupt:
+            return None

@@ -10,6 +10,7 @@ import numpy as np
 import jaxhydro
 from calibration.bootstrap import Bootstrap
 from calibration.folder import UNCERTAINTY, draw, or_null, outdated, write_json
+from calibration.formatting import interval
 from calibration.likelihood import Likelihood
 from calibration.profile import Profile
 from calibration.sampling import Samples
@@ -17,6 +18,7 @@ from calibration.saved import Saved
 from calibration.uncertainty_saved import WAYS
 from jaxhydro.files import safe_name, staged
 
+APART = 0.25  # of half the width, by which intervals differ
 Interval = tuple[float | None, float | None]
 AGREED = 1.05  # r-hat above which chains have not yet seen the same
 
@@ -24,7 +26,7 @@ AGREED = 1.05  # r-hat above which chains have not yet seen the same
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
     """Intervals of a calibration's parameters, found in several ways. `source` is its file, `asked` how many resamplings were
-    asked for, `bootstraps` are by method."""
+    asked for, `bootstraps` are by method; `sampled`, whether draws from the posterior were."""
 
     saved: Saved
     source: str
@@ -35,6 +37,7 @@ class Uncertainty:
     asked: int = 0
     bootstraps: dict[str, Bootstrap] = field(default_factory=dict)
     samples: Samples | None = None
+    sampled: bool = False
 
     @property
     def converged(self) -> bool:
@@ -71,6 +74,12 @@ class Uncertainty:
             alone = [ids[0] for ids in one.groups.values() if isinstance(ids, tuple) and len(ids) == 1]
             if alone:
                 yield f"bootstrap over repeats: {', '.join(alone)} without repeats; what differs there is not counted"
+        for label, along in self.profiles.items():
+            if _apart(along):
+                profiled, laplace = interval(*along.interval), interval(*along.laplace)
+                yield f"{label}: {profiled} by the profile, {laplace} by the covariance: believe the profile"
+        if self.sampled and self.samples is None:
+            yield "NUTS: stopped by the user before there were draws enough"
         if self.samples is not None:
             kept = self.samples.value.shape[1]
             if kept < self.samples.asked:
@@ -80,6 +89,12 @@ class Uncertainty:
             apart = [k for k, x in zip(self.samples.labels, self.samples.r_hat, strict=True) if not x < AGREED]
             if apart:
                 yield f"NUTS: the chains do not agree yet on {', '.join(apart)}"
+
+
+def _apart(one: Profile) -> bool:
+    """Whether an end of a profile's interval is open, or off Laplace's by more than `APART` of half its width."""
+    half = 0.5 * (one.laplace[1] - one.laplace[0])
+    return any(a is None or abs(a - b) > APART * half for a, b in zip(one.interval, one.laplace, strict=True))
 
 
 def document(found: Uncertainty) -> dict[str, Any]:

@@ -11,12 +11,13 @@ from test_seas import HULL
 
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
-from calibration.fit import Progress
+from calibration.fit import Interrupted, Progress
 from calibration.laws import base_of, of_law, reference_of, with_drag, with_laws
 from calibration.outputs import write_calibration
 from calibration.saved import applied
 from calibration.sea_laws import LawFit, SeaLaws, choose_law, error, with_uses
 from calibration.sea_laws_outputs import NAMES, laws_table, sentence, states_table, write_laws
+from calibration.sea_laws_outputs import document as document_of_laws
 from calibration.seas import Options, compare, seas_of, with_diffraction
 from calibration.stretches import sea_state, stretches, walk
 from jaxhydro.drag_laws import drag_laws_of, surface_number
@@ -182,7 +183,30 @@ def test_what_is_fitted_and_what_judges(campaign, found, calls) -> None:
     fractions = [now.fraction for now in said]
     assert fractions == sorted(fractions) and 0.8 < fractions[-1] <= 1
     jobs = ["constant", "significant_height", "sea-1 alone", "sea-3 alone", "sea-2 alone"]
-    assert [now.stage.split(":")[0] for now in said] == jobs
+    assert [now.stage.split(":")[0] for now in said] == [f"{i} of 5, {job}" for i, job in enumerate(jobs, 1)]
+
+
+@pytest.mark.parametrize("made_before", [0, 1, 3])
+def test_laws_that_are_stopped(campaign, fitted, made_before: int) -> None:
+    """What has been fitted is kept, and says that it is not all; before a law is, there is nothing."""
+    count = []
+
+    def fake(used, **_):
+        count.append(1)
+        if len(count) > made_before:
+            raise Interrupted(None)
+        return fitted
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("calibration.sea_laws.calibrate_in_waves", fake)
+        if made_before == 0:
+            with pytest.raises(Interrupted):
+                choose_law(campaign, laws=("constant", "significant_height"), options=OPTIONS)
+            return
+        laws = choose_law(campaign, laws=("constant", "significant_height"), options=OPTIONS)
+    assert not laws.finished and len(laws.laws) == min(made_before, 2) and len(laws.seas) == max(made_before - 2, 0)
+    assert sentence(laws).startswith("Stopped by the user: of constant")
+    assert document_of_laws(laws)["finished"] is False
 
 
 def test_seas_left_out_in_turn(campaign, fitted) -> None:
@@ -294,6 +318,22 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
     assert float(used.model.values[added[0]]) == 0.7
     again = applied(tmp_path, changed, campaign.platform.name).model.values
     assert {k: float(again[k]) for k in added} == {k: float(changed.values[k]) for k in added} | {added[0]: 0.7}  # as declared
+    data = json.loads((tmp_path / "calibration.json").read_text())
+    for change, said in (
+        ({"drag_laws": {"colum.Cd_t": law}}, r"baseline\.drag_laws: expected drag coefficients .*'colum\.Cd_t'.*column\.Cd_t"),
+        ({"parameters": {}}, r"baseline\.parameters: expected at least one calibrated parameter"),
+        ({"parameters": {"column.Cd_t": {"value": -1.0, "unit": "-"}}}, r"value: expected a number between 0 and 30, found -1"),
+    ):
+        (tmp_path / "calibration.json").write_text(json.dumps(data | {"baseline": data["baseline"] | change}))
+        with pytest.raises(InputError, match=said):
+            applied(tmp_path, build(campaign.platform), campaign.platform.name)
+    plain = {key: value for key, value in data["baseline"].items() if key != "drag_laws"}
+    plain["parameters"] = {"column.Cd_t": data["baseline"]["parameters"]["column.Cd_t"]}
+    (tmp_path / "calibration.json").write_text(json.dumps(data | {"baseline": plain}))
+    applied(tmp_path, changed, campaign.platform.name)  # a law at its null is plain drag
+    with pytest.raises(InputError, match=r"drag_laws\.column\.Cd_t: expected the law that .* found plain drag"):
+        applied(tmp_path, model, campaign.platform.name)
+    (tmp_path / "calibration.json").write_text(json.dumps(data))
     other = "high_pass" if name == "keulegan_carpenter" else "keulegan_carpenter"
     declared = with_drag(build(campaign.platform), ALL_DRAG, other, SeaState(5.0, 10.0), OPTIONS.low)[0]
     with pytest.raises(InputError, match=f"baseline.drag_laws.column.Cd_t: expected the law that .*{other}.*found .*{name}"):
