@@ -11,6 +11,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.anatomy import anatomy, signature
 from calibration.discovery.catalogue import Candidate, with_candidates, with_effects
+from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence
 from calibration.records import Record
@@ -42,9 +43,11 @@ def conclude(
     much = any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
     verdict = "found" if effects else ("unexplained" if much else "nothing_missing")
     wanted = [one.telling for one in after.chosen if one.telling]
+    latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
         anatomy(search, before), left, share, words, wanted[0] if wanted else "", tuple(notes), seconds,
+        latent,
     )  # fmt: skip
 
 

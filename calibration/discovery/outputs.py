@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from calibration import outputs
-from calibration.discovery.result import Diagnosis, Effect, Finding, Score
+from calibration.discovery.result import Diagnosis, Effect, Finding, LatentForce, Score
 from calibration.folder import DIAGNOSIS, draw, or_null, outdated, write_json, write_motion
 from calibration.outputs import NotFinite, dataset
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
@@ -56,7 +56,11 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
                 {"effect": one.effect, "degree_of_freedom": one.degree_of_freedom, "reason": one.reason}
                 for one in diagnosis.rejected
             ],
-            "unexplained": {"share": _share(diagnosis.unexplained_share), "signature": diagnosis.signature},
+            "unexplained": {
+                "share": _share(diagnosis.unexplained_share),
+                "signature": diagnosis.signature,
+                **({"forces": [_latent(one) for one in diagnosis.latent]} if diagnosis.latent else {}),
+            },
         },
         "augmented": after["baseline"],
         "tests": after["tests"],
@@ -107,6 +111,34 @@ def _parameter(name: str, one: Estimate) -> dict[str, Any]:
         "identifiable": bool(one.identifiable),
         "label": one.label,
         "meaning": one.meaning,
+    }
+
+
+def _latent(one: LatentForce) -> dict[str, Any]:
+    """A latent force: SI, rad."""
+    law = one.law
+    return {
+        "degree_of_freedom": one.motion,
+        "unit": one.unit,
+        "rms": {kind: or_null(value) for kind, value in one.rms.items()},
+        "bands": {kind: {band: or_null(share) for band, share in row.items()} for kind, row in one.shares.items()},
+        "follows": {
+            kind: {
+                name: {"coherence": or_null(f.coherence), "phase": or_null(f.phase), "correlation": or_null(f.correlation)}
+                for name, f in row.items()
+            }
+            for kind, row in one.coherence.items()
+        },
+        "grows_as_power_of": {name: or_null(power) for name, power in one.growth.items()},
+        "law": {
+            "terms": [{"term": term.name, "coefficient": or_null(term.coefficient), "unit": term.unit} for term in law.terms],
+            "share": or_null(law.share),
+            "share_of": law.checked,
+            "share_fitted": or_null(law.fitted),
+            "v0": or_null(law.v0),
+            "omega": or_null(law.pace),
+        },
+        "words": one.words,
     }
 
 

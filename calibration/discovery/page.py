@@ -15,6 +15,7 @@ from calibration.tables import USE, Rows
 _ANATOMY = """<p>What the declared model leaves over once its coefficients are fitted, the largest first: its root mean
 square, as a share of the motion, and over the noise, before and after what was found is added (1:
 nothing but noise).</p>"""
+_LATENT = """<p>The force that would have to act on the model beside all that it has, for it to follow the records:</p>"""
 _BANDS = """<p>Tests in irregular waves: error of the energy in the band of slow motion and of waves, (simulated - measured) /
 measured.</p>"""
 _COEFFICIENTS = """<p>The same coefficients fitted without what was missing (before) and with it (after), ± 1 standard
@@ -50,6 +51,10 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
     if not saved.missing.effects:
         yield "<p>No effect.</p>"
     yield f"<p>{escape(words.left_over(saved))}</p>"
+    if forces := saved.missing.unexplained.forces:
+        yield _LATENT
+        yield listed([one.words for one in forces])
+        yield taken("latent-force")
     if saved.next_test:
         yield f"<p><b>The test to run next:</b> {escape(saved.next_test)}</p>"
     yield taken("effect-")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from calibration.discovery.result import Diagnosis, Effect
-from calibration.discovery.search_plots import anatomy_figure, scores_figure
+from calibration.discovery.search_plots import anatomy_figure, latent_figure, scores_figure
 from calibration.discovery.words import called
 from calibration.formatting import percent
 from calibration.plot import BAND_COLOURS, DECADES, HIGHEST
@@ -44,6 +44,9 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
             yield f"{safe_name(name)}.png", _EFFECT.format(title=title, id=row.test.id), effect_figure(row, title)
     if diagnosis.scores:
         yield "scores.png", _SCORES, scores_figure(diagnosis)
+    if diagnosis.latent:
+        largest = max(diagnosis.latent, key=lambda one: one.relative)
+        yield "latent-force.png", _LATENT.format(motion=largest.motion, id=largest.shown.test), latent_figure(largest)
     for test in compared.tests:
         if test.kind == "irregular" and spectral(test):
             yield f"spectra-{safe_name(test.id)}.png", _SPECTRA.format(id=test.id), spectra_figure(test)
@@ -55,6 +58,8 @@ _EFFECT = ("With {title}, test {id}: the measured motion, and what the model lea
            "it. Grey: two standard deviations of the noise.")  # fmt: skip
 _SCORES = ("How much better the fitted tests are with every candidate, in −2 ln L: at first order (bars) and refitted (dots), "
            "the best of every round.")  # fmt: skip
+_LATENT = ("Test {id}: the force in {motion} that would have to act on the model for it to follow the record, the law of few "
+           "terms that explains it, if there is one, and what may drive it.")  # fmt: skip
 _SPECTRA = "Test {id}: spectra of the motions, measured and simulated without what was missing and with it; bands shaded."
 
 

@@ -76,12 +76,77 @@ class Finding:
 
 
 @dataclass(frozen=True, eq=False)
+class Followed:
+    """How a latent force goes with something: `coherence`, the share of its mean square that follows it linearly; `phase` (rad)
+    by which the force is ahead of it; `correlation` at the same instant."""
+
+    coherence: float
+    phase: float
+    correlation: float
+
+
+@dataclass(frozen=True, eq=False)
+class LawTerm:
+    """A term of a law, in x (m, rad), v (m/s, rad/s) and eta (m), its coefficient (SI), and its number in the library."""
+
+    name: str
+    coefficient: float
+    unit: str
+    kind: int
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """A law of few terms for a latent force; none where it does not explain enough of what was not fitted. `share`, of the
+    force's mean square in what `checked` names, `fitted` in the fitted tests; `v0` (m/s, rad/s) that of tanh(v/v0), `pace`
+    (rad/s) the omega of lagged velocity."""
+
+    terms: tuple[LawTerm, ...]
+    share: float
+    fitted: float
+    checked: str
+    v0: float = 1.0
+    pace: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """A stretch of a latent force (N, N m) over time (s), its law (empty: none), and the velocity or wave `beside` it."""
+
+    test: str
+    time: np.ndarray
+    force: np.ndarray
+    law: np.ndarray
+    beside: str
+    values: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class LatentForce:
+    """The force that the model lacks in one motion, by kind of test (decay, waves): rms (`unit`), shares of its mean square in
+    the mean and in bands, how it goes with other things, and how it grows (`growth`, powers by what it grows with). `relative`
+    is the residual over the motion's standard deviation in the test that is shown."""
+
+    motion: str
+    unit: str
+    rms: dict[str, float]
+    shares: dict[str, dict[str, float]]
+    coherence: dict[str, dict[str, Followed]]
+    growth: dict[str, float]
+    law: Law
+    words: str
+    shown: Shown
+    relative: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
 class Diagnosis:
     """A campaign's model as declared and fitted (`baseline`), what it lacks, and the model with that (`augmented`).
 
     `verdict` is "found", "nothing_missing" or "unexplained". `anatomy_before` and `anatomy_after` are the residuals of both,
     motion by motion; `unexplained_share`, of the error's energy above the floor that is left at the end, `signature` what
-    is known of it in words; `next_test` what to measure next.
+    is known of it in words; `next_test` what to measure next. `latent`, where the verdict is "unexplained", are the forces that
+    would make the model follow the records.
     """
 
     campaign: str
@@ -98,4 +163,4 @@ class Diagnosis:
     next_test: str
     notes: tuple[str, ...]
     seconds: float
-    latent: dict[str, np.ndarray] | None = None
+    latent: tuple[LatentForce, ...] = ()

@@ -40,11 +40,19 @@ class Refused(Open):
     degree_of_freedom: str | None = None
 
 
+class Latent(Open):
+    """The force that would make the model follow the records, of one motion."""
+
+    degree_of_freedom: str
+    words: str
+
+
 class Unexplained(Open):
-    """What is left: its share of the error's energy, and what is known of it."""
+    """What is left: its share of the error's energy, what is known of it, and the forces that are behind it."""
 
     share: Number
     signature: str
+    forces: list[Latent] = Field(default_factory=list)
 
 
 class Missing(Open):

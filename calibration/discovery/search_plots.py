@@ -11,12 +11,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
-from calibration.discovery.result import Diagnosis, Finding, Score
-from jaxhydro.plot import GREY, MEASURED, SIMULATED, WIDTH, header
+from calibration.discovery.result import Diagnosis, Finding, LatentForce, Score
+from calibration.discovery.words import PREFIXES
+from jaxhydro.plot import GREY, MEASURED, SIMULATED, WAVE, WIDTH, for_people, header, stack, unit_of
 
 MOST, FEW = 8, 5  # candidates shown of a round; of more than two rounds
 LEAST = 1.0  # of -2 ln L: what gains less is not worth a bar
 COLOURS = "YlOrRd"
+EXCERPT = 600.0  # s of a latent force in waves
 
 
 def chosen(diagnosis: Diagnosis) -> dict[int, Score]:
@@ -133,3 +135,26 @@ def _strip(ax: Axes, row: int, one: Finding | None, low: float, norm: LogNorm) -
 def _row_name(one: Finding) -> str:
     name = one.test if one.channel in one.test else f"{one.test}, {one.channel}"
     return name if len(name) <= 20 else f"{name[:19]}…"
+
+
+def latent_figure(one: LatentForce) -> Figure:
+    """A latent force over time, with its law, and below it the velocity or the wave: of a test in waves where it is largest."""
+    shown, seen = one.shown, slice(None)
+    step = float(shown.time[1] - shown.time[0])
+    if shown.beside == "wave" and (count := round(EXCERPT / step)) < len(shown.time):
+        power = np.concatenate([[0.0], np.cumsum(shown.force**2)])
+        seen = slice(begin := int(np.argmax(power[count:] - power[:-count])), begin + count)
+    time, highest = shown.time[seen], float(np.abs(shown.force[seen]).max())
+    factor, prefix = next(((size, name) for size, name in PREFIXES if highest >= size), (1.0, ""))
+    figure, axes = stack([1.1, 0.8])
+    artists: dict[str, Artist] = {"latent force": axes[0].plot(time, shown.force[seen] / factor, color=MEASURED)[0]}
+    if len(shown.law):
+        artists["law"] = axes[0].plot(time, shown.law[seen] / factor, color=SIMULATED, lw=0.8)[0]
+    axes[0].set_ylabel(f"{'Moment' if one.unit == 'N m' else 'Force'}\n({prefix}{one.unit})")
+    wave = shown.beside == "wave"
+    values = shown.values[seen] if wave else for_people(one.motion, shown.values[seen])
+    axes[1].plot(time, values, color=WAVE if wave else GREY, lw=0.8)
+    axes[1].set_ylabel("Wave (m)" if wave else f"Velocity\n({unit_of(one.motion)}/s)")
+    axes[1].set_xlabel("Time (s)")
+    header(figure, f"What the model lacks in {one.motion}: {shown.test[:18]}", artists)
+    return figure
