@@ -12,7 +12,10 @@ from benchmarks.evidence.common import SHARED, Absent, Section, fingerprint, par
 NAME = "identified"
 TITLE = "What nine decays tell of eleven coefficients, and a sea beside them"
 FOLDER = SHARED / "campaigns" / "nothing-missing"
-CASES = {"nine decays": ("decays",), "nine decays and one sea": ("decays", "waves")}
+CASES = {
+    "nine decays": (("decays",), "bands"), "and one sea, its energies": (("decays", "waves"), "bands"),
+    "and one sea, its motion": (("decays", "waves"), "motion"),
+}  # fmt: skip
 VAGUE = 0.25  # a deviation, of the value, from which a coefficient is not known
 
 
@@ -20,12 +23,12 @@ def of_case(sea: str, name: str) -> dict[str, Any]:
     """One calibration and its statement."""
     from calibration import calibrate_jointly, load_campaign
 
-    campaign = load_campaign(FOLDER)
+    campaign, (kinds, objective) = load_campaign(FOLDER), CASES[name]
     records = tuple(
-        replace(r, use="fit" if r.kind == "decay" or (r.id == sea and "waves" in CASES[name]) else "ignore")
+        replace(r, use="fit" if r.kind == "decay" or (r.id == sea and "waves" in kinds) else "ignore")
         for r in campaign.records
     )
-    found = calibrate_jointly(replace(campaign, records=records), kinds=CASES[name])  # type: ignore[arg-type]
+    found = calibrate_jointly(replace(campaign, records=records), kinds=kinds, objective=objective)  # type: ignore[arg-type]
     known = found.identifiability
     assert known is not None
     deviation = np.sqrt(np.diag(known.covariance)) * np.abs(known.parameters.relative())
@@ -71,8 +74,8 @@ def words(results: dict[str, dict[str, Any]], decays: int, sea: Any) -> str:
     state = f"Hs {sea.test.significant_wave_height:g} m, Tp {sea.test.peak_period:g} s"
     return f"""
 The shared campaign `nothing-missing`, made by a NumPy model that shares nothing with the package: its {decays} decays, and
-the same with its test {sea.id} in irregular waves ({state}, {np.ptp(sea.time):.0f} s; energies in the low and the
-wave-frequency band).
+the same with its test {sea.id} in irregular waves ({state}, {np.ptp(sea.time):.0f} s), of which the energies in the low and
+the wave-frequency band are fitted, or the motion sample by sample.
 Value and standard deviation with coloured errors; in brackets what is known to no better than {100 * VAGUE:.0f} %:
 
 {table(["Coefficient", *results], rows)}
