@@ -9,7 +9,8 @@ from string import Template
 
 from calibration.folder import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT, UNCERTAINTY
 from calibration.formatting import number, percent, with_deviation
-from calibration.saved import Drawn, Error, Fitted, Parameter, Saved, read_as, read_saved
+from calibration.runs import KINDS
+from calibration.saved import Drawn, Error, Parameter, Saved, read_as, read_saved
 from calibration.tables import USE
 from jaxhydro.files import write_whole
 from jaxhydro.problems import InputError, Problem
@@ -57,7 +58,8 @@ def page(saved: Saved, folder: Path) -> str:
     errors = saved.errors(str(folder / RESULT))
     drawn = figures(images(saved.figures, folder).values())
     body = (
-        _state(fitted), "<h2>Tests</h2>", _tests(saved, errors), "<h2>Parameters</h2>", _parameters(fitted.parameters),
+        _state(saved), "<h2>Tests</h2>", _tests(saved, errors), _bands(saved, str(folder / RESULT)),
+        "<h2>Parameters</h2>", _parameters(fitted.parameters),
         f"<h2>Notes</h2>{listed(fitted.notes)}" if fitted.notes else "", f"<h2>Figures</h2>{drawn}" if drawn else "",
     )  # fmt: skip
     return framed(saved.campaign, f"Calibration by jaxhydro {saved.jaxhydro}", body, saved.jaxhydro)
@@ -70,14 +72,17 @@ def framed(title: str, by: str, body: Iterable[str], version: str) -> str:
     )  # fmt: skip
 
 
-def _state(fitted: Fitted) -> str:
-    objective = fitted.objective
-    meaning = "Objective J, the sum of RMSE over standard deviation"
+def _state(saved: Saved) -> str:
+    fitted, objective = saved.baseline, saved.baseline.objective
+    wavy = any(test.use == "fit" and test.kind in KINDS for test in saved.tests.values())
+    meaning = "J, the sum of RMSE over standard deviation" if wavy else "Objective J, the sum of RMSE over standard deviation"
     lines = [f"{meaning}: <b>{number(objective.fit, 3)}</b> over the fitted tests"]
     if objective.holdout is not None:
         lines[0] += f", <b>{number(objective.holdout, 3)}</b> over those held out"
     if fitted.iterations is not None and fitted.seconds is not None:
         lines.append(f"{fitted.iterations} iterations in {fitted.seconds:.0f} s")
+    if wavy:
+        lines.append("tests in waves are fitted by the objective that was asked for, by default energy in bands")
     warning = "" if fitted.converged else UNCONVERGED.format("a calibration")
     return f"{warning}<p>{'; '.join(lines)}.</p>"
 
@@ -96,6 +101,19 @@ def _tests(saved: Saved, errors: dict[str, dict[str, Error]]) -> str:
             rows.append(f"<tr{muted}>{cells(row, 5)}</tr>")
     heads = ["Test", "Kind", "Length", "Use", "Channel", "RMSE", "of its motion", "before"]
     return table(heads, rows, 5)
+
+
+def _bands(saved: Saved, source: str) -> str:
+    """Errors of energy in bands, where there are any."""
+    rows = []
+    for id, channels in saved.bands(source).items():
+        use = USE.get(str(saved.baseline.error[id].get("use", "")), "")
+        for channel, bands in channels.items():
+            for band, (before, after) in bands.items():
+                shown = ["–" if one is None else f"{100 * one:+.0f} %" for one in (before, after)]
+                rows.append(f"<tr>{cells([id, use, channel, band.replace('_', ' '), *shown], 4)}</tr>")
+    heads = ["Test", "Use", "Channel", "Band", "Before", "After"]
+    return f"<h2>Errors of energy in bands</h2>{table(heads, rows, 4)}" if rows else ""
 
 
 def _error(error: Error | None) -> list[str]:

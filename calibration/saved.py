@@ -51,6 +51,12 @@ class Error(Open):
     before: "Error | None" = None
 
 
+class InBands(Open):
+    """Errors of energy of one test, by motion and band."""
+
+    bands: dict[str, dict[str, Number]]
+
+
 class Objective(Open):
     """J over the fitted and over the held-out tests."""
 
@@ -91,6 +97,7 @@ class About(Open):
     file: str = ""
     duration: Number | None = None
     samples: int | None = None
+    bands_before: dict[str, dict[str, Number]] = Field(default_factory=dict)
 
 
 class Drawn(Open):
@@ -133,6 +140,19 @@ class Saved(Open):
                  for name, value in row.items() if name not in ("use", "bands", "bands_before")}
             for id, row in fitted.error.items()
         }  # fmt: skip
+
+
+    def bands(self, source: str) -> dict[str, dict[str, dict[str, tuple[float | None, float]]]]:
+        """Test -> motion -> band -> error of its energy before and after. Raises InputError for what is none."""
+        found = {}
+        for id, row in self.baseline.error.items():
+            after = validate(InBands, {"bands": row.get("bands", {})}, f"{source}: baseline.error.{id}").bands
+            before = self.tests[id].bands_before if id in self.tests else {}
+            found[id] = {
+                channel: {band: (before.get(channel, {}).get(band), value) for band, value in bands.items()}
+                for channel, bands in after.items()
+            }
+        return found
 
 
 S = TypeVar("S", bound=Open)

@@ -18,7 +18,7 @@ from calibration import outputs, plot
 from calibration.formatting import number, percent, with_deviation
 from calibration.outputs import NotFinite, dataset, document, write_calibration
 from calibration.report import write_report
-from calibration.result import Calibration, Estimate
+from calibration.result import BandError, Calibration, Estimate
 from calibration.saved import read_saved, read_values
 from jaxhydro.files import check_folder, staged
 from jaxhydro.problems import InputError
@@ -317,6 +317,21 @@ def test_the_report_is_one_page_that_needs_nothing_else(written: Path) -> None:
                   "stays near its starting value", "decay in heave"):  # fmt: skip
         assert words in page.text, words
     assert "1.70·10⁵" not in page.text  # the value of what is not identifiable
+
+
+def test_a_page_of_a_fit_in_waves_has_its_bands(result: Calibration, tmp_path: Path) -> None:
+    """Errors of energy before and after; J is not called what was fitted; what is no number is told where."""
+    bands = {"surge": {"low_frequency": BandError(0.21, -0.69, 0.005, 0.025)}}
+    sea = replace(result.tests[0], kind="irregular", degree_of_freedom=None, bands=bands)
+    folder = write_calibration(replace(result, tests=(sea, *result.tests[1:])), tmp_path / "out", figures=False)
+    page = Page(write_report(folder).read_text(encoding="utf-8")).text
+    assert "Errors of energy in bands" in page and "low frequency" in page and "-69 %" in page and "+21 %" in page
+    assert "Objective J" not in page and "fitted by the objective that was asked for" in page
+    data = json.loads((folder / "calibration.json").read_text())
+    data["baseline"]["error"][sea.id]["bands"]["surge"]["low_frequency"] = "much"
+    (folder / "calibration.json").write_text(json.dumps(data))
+    with pytest.raises(InputError, match=f"baseline.error.{sea.id}.*surge.low_frequency"):
+        write_report(folder)
 
 
 def test_the_report_escapes_what_comes_from_files(result: Calibration, tmp_path: Path) -> None:
