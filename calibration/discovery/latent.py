@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from calibration.discovery.search import Search
 
 LINES = 5  # of the periodogram that are averaged
+HARMONICS = 6.0  # times a decay's own frequency: what is faster moves the body little, and is not looked at
 OVER = 3.0  # times the noise, that is taken off it
 DAMPING = 0.03  # of critical
 VISIBLE = 20.0  # times the noise, in power, that the highest peak of a force has: without it there is none
@@ -105,12 +106,16 @@ def filtered(values: np.ndarray, gain: np.ndarray) -> np.ndarray:
     return np.fft.irfft(gain * np.fft.rfft(values), len(values))
 
 
+def peak_of(values: np.ndarray) -> int:
+    """Cycles of what a series has most of."""
+    return max(int(np.abs(np.fft.rfft(values - values.mean())).argmax()), 1)
+
+
 def windows(residual: np.ndarray) -> tuple[np.ndarray, np.ndarray, slice]:
     """Tapers (n,) of the residual and, where that one is 1, of the force, both over half a period of what the residual has most
     of at each end; and what is well inside."""
     n = len(residual)
-    power = np.abs(np.fft.rfft(residual - residual.mean()))
-    ends = int(min(TAPERED * n, max(0.5 * n / max(int(power.argmax()), 1), LINES)))
+    ends = int(min(TAPERED * n, max(0.5 * n / peak_of(residual), LINES)))
     ramp = 0.5 - 0.5 * np.cos(np.pi * (np.arange(ends) + 0.5) / ends)
     first, second = (
         np.concatenate([np.zeros(off), ramp, np.ones(n - 2 * ends - 2 * off), ramp[::-1], np.zeros(off)]) for off in (0, ends)
@@ -159,16 +164,18 @@ def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> di
     """The latent force of every motion that a test measured; `base` (6,) is where its motions count from."""
     n, names = len(test.time), [dof for dof in DOFS if dof in test.measured]
     frequency = np.fft.rfftfreq(n, test.step)
-    omega, fade = 2 * np.pi * frequency, 0.5 + 0.5 * np.cos(np.pi * np.clip(5 * (frequency / highest - 0.8), 0.0, 1.0))
+    omega = 2 * np.pi * frequency
     rest = equilibrium(model)
     mass, stiffness = (np.asarray(one) for one in linearised(model, rest))
     position, rate = np.tile(np.asarray(rest), (n, 1)), np.zeros((n, 6))
     more, faster, pushed = np.zeros((n, 6)), np.zeros((n, 6)), np.zeros((n, 6))
-    cut, noise = {}, np.zeros(6)
+    cut, fades, noise = {}, {}, np.zeros(6)
     for name in names:
         j, residual = DOFS.index(name), test.measured[name] - test.simulated[name]
         cut[name], noise[j] = windows(residual), level_of(residual, test.noise[name])
-        lines = fade * np.fft.rfft(residual * cut[name][0])
+        own = HARMONICS * peak_of(test.measured[name]) / (n * test.step) if test.kind == "decay" else highest
+        fades[name] = 0.5 + 0.5 * np.cos(np.pi * np.clip(5 * (frequency / min(own, highest) - 0.8), 0.0, 1.0))
+        lines = fades[name] * np.fft.rfft(residual * cut[name][0])
         more[:, j], faster[:, j], pushed[:, j] = (np.fft.irfft(lines * (1j * omega) ** k, n) for k in range(3))
         position[:, j] = base[j] + test.simulated[name]
         rate[:, j] = CubicSpline(test.time, test.simulated[name])(test.time, 1)
@@ -182,8 +189,8 @@ def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> di
         j, (_, taper, inside) = DOFS.index(name), cut[name]
         through = impedance[:, j] @ noise**2
         gain, peak = gain_of(force[:, j], taper, through)
-        gain = gain * fade
-        left = float(np.sqrt(2 * (gain**2 * fade**2 * through).sum() / n))
+        gain = gain * fades[name]
+        left = float(np.sqrt(2 * (gain**2 * through).sum() / n))
         found[name] = Force(
             test, name, filtered(force[:, j] * taper, gain), path[:, j], speed[:, j], np.gradient(speed[:, j], test.step),
             gain, taper, inside, left, peak,

@@ -25,6 +25,7 @@ MOST = 3  # terms
 BETTER = 0.03  # by which the held-out share has to rise for another term
 LEAST = 0.2  # of the held-out force, below which there is no law
 NEAR = 0.02  # of what the best set leaves: what leaves as little is as good, and the simplest is taken
+CANCEL = 5.0  # times the force, that a term may be: what all but cancels follows anything
 SLOW = 0.05  # of the rms velocity, at which dry friction turns
 LAGS = (0.3, 1.0, 3.0)  # time constants of lagged velocity over the inverse circular frequency of the motion
 BLOCKS = 4
@@ -119,7 +120,9 @@ def best(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.ndarray]:
     gram = unit[sets[:, :, None], sets[:, None, :]] + 1e-9 * np.eye(size)
     onto = unit[sets, -1]
     found = np.linalg.solve(gram, onto[..., None])[..., 0]
-    left = 1 - (found * onto).sum(axis=1)
+    left = np.where(np.abs(found).max(axis=1) < CANCEL, 1 - (found * onto).sum(axis=1), np.inf)
+    if not np.isfinite(left).any():
+        return (), np.zeros(0)
     i = int(np.flatnonzero(left <= (1 + NEAR) * left.min() + 1e-4)[0])
     return tuple(int(k) for k in sets[i]), found[i] * scale[-1] / scale[sets[i]]
 
@@ -158,7 +161,7 @@ def law_of(motion: str, forces: Sequence[Force]) -> Law:
     for size in range(1, MOST + 1):
         chosen, coefficients = best(every, size)
         if not chosen:
-            break
+            continue
         share = float(np.mean([share_of(asked, chosen, _solved(given, chosen)) for given, asked in folds]))
         if share >= max(LEAST, law.share + BETTER):
             terms = tuple(LawTerm(kinds[i].name, float(c), kinds[i].unit(motion), i) for i, c in zip(chosen, coefficients))

@@ -94,8 +94,9 @@ def followed(forces: Sequence[Force], values: Values, limits: Callable[[Force], 
         frequency, both = signal.csd(*rows, **options)
         u, f = (signal.welch(row, **options)[1] for row in rows)
         low, high = limits(one)
-        inside = (frequency >= low) & (frequency < high) & (u > 1e-9 * u.max())
-        cross, own, other = cross + both[inside].sum(), own + f[inside].sum(), other + u[inside].sum()
+        asked = (frequency >= low) & (frequency < high)
+        inside = asked & (u > 1e-9 * u.max())
+        cross, own, other = cross + both[inside].sum(), own + f[asked].sum(), other + u[inside].sum()
         explained += float((np.abs(both[inside]) ** 2 / u[inside]).sum())
         segments += 2 * count // size - 1
     if segments < FEWEST or not own > 0 or not other > 0:
@@ -176,7 +177,7 @@ BANDS = {
     "own": "at the motion's own frequency",
     "low_frequency": "slower than the waves",
     "wave_frequency": "at the waves' frequencies",
-    "higher": "faster",
+    "higher": "at higher frequencies",
 }
 WITH = {"elevation": "the wave elevation", "squared_envelope": "the squared wave envelope"}
 
