@@ -69,7 +69,9 @@ def words(results: dict[str, dict[str, Any]], decays: int, sea: Any) -> str:
         [[name, *(percent(x) for x in found["spectrum"])] for name, found in results.items()],
     )
     said = "\n\n".join(
-        f"From {name}:\n\n" + "\n".join(f"- {sentence}." for sentence in found["said"][:8]) for name, found in results.items()
+        f"From nine decays {name}:\n\n".replace("decays nine decays", "decays")
+        + "\n".join(f"- {sentence}." for sentence in found["said"][:8])
+        for name, found in results.items()
     )
     state = f"Hs {sea.test.significant_wave_height:g} m, Tp {sea.test.peak_period:g} s"
     return f"""
