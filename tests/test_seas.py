@@ -19,6 +19,7 @@ from calibration.seas import MISMATCH, Options, sea_of
 from calibration.seas_results import bands_of
 from jaxhydro.environment import Environment
 from jaxhydro.platform import load_model
+from jaxhydro.options import results_folder
 from jaxhydro.problems import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -131,16 +132,20 @@ def test_what_is_written(results):
     assert all((results / name).is_file() for name in listed)
 
 
-def test_results_of_other_commands_stay_apart(made, results, tmp_path):
-    """Neither command spoils the other's folder: both write simulated.nc."""
-    from calibration.command import load
-
-    with pytest.raises(InputError, match=r"comparison\.json"):
-        load(made, results)
-    (tmp_path / "calibration.json").write_text("{}")
-    with pytest.raises(InputError, match=r"calibration\.json"):
-        simulate_campaign(made, tmp_path, calibration=None, order=1, stretching="none", diffraction=None, cutoff=0.2)
-    assert [path.name for path in tmp_path.iterdir()] == ["calibration.json"]
+def test_results_of_other_commands_stay_apart(results, tmp_path):
+    """No command spoils another's folder, where files are called alike; a motion.csv alone may be anybody's."""
+    with pytest.raises(InputError, match="the results of a campaign's seas"):
+        results_folder(results, "calibration.json")
+    assert results_folder(results, "comparison.json") == results
+    (tmp_path / "motion.csv").write_text("")
+    assert results_folder(tmp_path, "comparison.json") == tmp_path
+    (tmp_path / "uncertainty.json").write_text("{}")
+    with pytest.raises(InputError, match="the results of an uncertainty"):
+        results_folder(tmp_path, "comparison.json")
+    (tmp_path / "uncertainty.json").rename(tmp_path / "simulated.nc")
+    with pytest.raises(InputError, match="the results of a simulation"):
+        results_folder(tmp_path, "comparison.json")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["motion.csv", "simulated.nc"]
 
 
 # wrong input
