@@ -18,8 +18,8 @@ from calibration.saved import applied
 from calibration.seas import MISMATCH, Options, sea_of
 from calibration.seas_results import bands_of
 from jaxhydro.environment import Environment
-from jaxhydro.platform import load_model
 from jaxhydro.options import results_folder
+from jaxhydro.platform import load_model
 from jaxhydro.problems import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
