@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from calibration import seas_results, tables
+from calibration.applied import Applied, applied
 from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
 from calibration.folder import MOTION
@@ -16,7 +17,6 @@ from calibration.laws import LAWS, of_law
 from calibration.outputs import NotFinite, write_calibration
 from calibration.result import Calibration
 from calibration.runs import KINDS
-from calibration.saved import Applied, applied
 from calibration.sea_fit import calibrate_in_waves
 from calibration.sea_laws import SeaLaws, choose_law
 from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from jaxhydro.waves.sea_state import SeaState
 
 Over = Literal["significant_height", "peak_period"]
 Drag = Literal["keulegan_carpenter", "high_pass"]
+Law = Literal["constant", "significant_height", "peak_period", "both", "keulegan_carpenter", "high_pass"]
 
 PLAIN = 1.0  # standard deviation of the prior of an exponent about 0
 WINDOW = 60.0  # s, of a Keulegan-Carpenter number, where no motion has a natural period
@@ -70,5 +71,6 @@ LAWS: dict[str, tuple[tuple[Over, ...], Drag | None]] = {
     "significant_height": (("significant_height",), None),
     "peak_period": (("peak_period",), None),
     "both": (("significant_height", "peak_period"), None),
-    **{name: ((), name) for name in get_args(Drag)},
+    "keulegan_carpenter": ((), "keulegan_carpenter"),
+    "high_pass": ((), "high_pass"),
 }

@@ -1,6 +1,6 @@
 """What a calibration returns, as values: parameters with their uncertainty, and every test measured against simulated."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -47,6 +47,11 @@ class Series:
     def relative(self) -> float:
         """RMSE over the standard deviation of the measured channel."""
         return self.rmse / max(float(np.std(self.measured)), 1e-300)
+
+
+def error_of_energies(errors: Iterable[float]) -> float:
+    """Root mean square of ln(simulated / measured) over relative errors of energies."""
+    return float(np.sqrt(np.mean(np.log1p(np.maximum(list(errors), -0.999999)) ** 2)))
 
 
 class BandError(NamedTuple):

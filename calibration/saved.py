@@ -1,26 +1,15 @@
 """A written calibration.json, or what of a diagnosis.json is a calibrated model, read back and checked."""
 
 import json
-import math
-from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from calibration.folder import DIAGNOSIS, RESULT
-from jaxhydro.body_schema import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
-from jaxhydro.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
-from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
-from jaxhydro.model import Model
-from jaxhydro.problems import InputError, Number, Positive, Problem, shown, suggest, validate
-from jaxhydro.waves.sea_state import SeaState
-
-OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in one basin, not to the hull
-    "mooring.", "stiffness.", "mooring_nonlinearity.", "umbilical.", "current.", "static_offset.", "mass_properties.",
-    "sensor_reference.", "sensor_lag.", "wave_gauge_position.", "wave_reflection.",
-)  # fmt: skip
+from jaxhydro.body_schema import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
+from jaxhydro.problems import InputError, Number, Positive, Problem, validate
 
 
 class Open(BaseModel):
@@ -164,24 +153,31 @@ def read_saved(path: str | PathLike[str]) -> Saved:
     return read_as(Saved, path)
 
 
-def read_as(kind: type[S], path: str | PathLike[str]) -> S:
-    """`read_saved`, as what holds more of the file than the calibrated models."""
+def file_of(path: str | PathLike[str]) -> Path:
+    """The diagnosis.json or calibration.json of a folder, or the file itself."""
     path = Path(path)
     try:
-        if path.is_dir():
-            path = path / (DIAGNOSIS if (path / DIAGNOSIS).is_file() else RESULT)
+        return path / (DIAGNOSIS if (path / DIAGNOSIS).is_file() else RESULT) if path.is_dir() else path
+    except (OSError, ValueError):
+        return path  # reading it says what is wrong
+
+
+def read_as(kind: type[S], path: str | PathLike[str]) -> S:
+    """`read_saved`, as what holds more of the file than the calibrated models."""
+    path = file_of(path)
+    try:
         data = json.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
-        raise _wrong(path, f"a {RESULT}, as `jaxhydro calibrate` writes it", "no such file") from None
+        raise wrong(path, f"a {RESULT}, as `jaxhydro calibrate` writes it", "no such file") from None
     except (json.JSONDecodeError, RecursionError) as error:
         place = f"line {error.lineno}, column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
-        raise _wrong(path, "valid JSON", getattr(error, "msg", "lists nested too deeply"), place) from None
+        raise wrong(path, "valid JSON", getattr(error, "msg", "lists nested too deeply"), place) from None
     except UnicodeDecodeError:
-        raise _wrong(path, "text in UTF-8", "other bytes") from None
+        raise wrong(path, "text in UTF-8", "other bytes") from None
     except (OSError, ValueError) as error:
-        raise _wrong(path, "a file that can be read", str(getattr(error, "strerror", None) or error)) from None
+        raise wrong(path, "a file that can be read", str(getattr(error, "strerror", None) or error)) from None
     if not isinstance(data, dict):
-        raise _wrong(path, "a mapping of keys to values", type(data).__name__)
+        raise wrong(path, "a mapping of keys to values", type(data).__name__)
     return validate(kind, data, str(path))
 
 
@@ -190,119 +186,6 @@ def read_values(path: str | PathLike[str]) -> dict[str, float]:
     return read_saved(path).values()
 
 
-class Applied(NamedTuple):
-    """A model with values of a calibration, these values, those of them that its records did not determine, and those that were
-    left: moorings and the like are each campaign's own."""
-
-    model: Model
-    values: dict[str, float]
-    vague: tuple[str, ...]
-    left: tuple[str, ...]
-    campaign: str
-
-
-def applied(path: str | PathLike[str], model: Model, platform: str) -> Applied:
-    """Calibrated values used for the model of the platform so named: all of its own, else those of hull and damping.
-
-    Raises InputError for a file that is none, and for values that the model has no place for.
-    """
-    saved = read_saved(path)
-    model = fitting(saved, model, path)
-    own = not saved.platform or saved.platform == platform
-    values = {k: v for k, v in saved.values().items() if own or not k.startswith(OF_CAMPAIGN)}
-    if not saved.values():
-        raise _wrong(Path(path), "at least one calibrated parameter", "none", f"{saved.key}.parameters")
-    if unknown := [label for label in values if label not in model.values]:
-        raise no_place(saved, unknown, model, platform, path)
-    for label, value in values.items():
-        about = model.about(label)
-        slack = 1e-6 * max(abs(value), abs(about.lower) if about.lower > -math.inf else 0.0)
-        if not about.lower - slack <= value <= about.upper + slack:
-            expected = f"a number between {about.lower:g} and {about.upper:g}"
-            raise _wrong(Path(path), expected, f"{value:g}", f"{saved.key}.parameters.{label}.value")
-    vague = tuple(label for label in values if not saved.best.parameters[label].identifiable)
-    left = tuple(label for label in saved.values() if label not in values)
-    return Applied(model.with_values(values), values, vague, left, saved.campaign)
-
-
-def no_place(saved: Saved, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]) -> InputError:
-    """The error of calibrated values that a model has no place for."""
-    expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
-    found, hint = ", ".join(map(shown, unknown)), suggest(unknown[0], model.values)
-    return _wrong(Path(path), expected, found, f"{saved.key}.parameters", hint)
-
-
-def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with what calibrated values need beyond what is declared: laws of drag and over the sea state, and the effects
-    that a diagnosis found, at their null."""
-    model = _with_laws(saved, _with_drag(saved, model, path), path)
-    added = [label for label in saved.values() if label not in model.values]
-    if saved.augmented is None or not added:
-        return model
-    from calibration.discovery.catalogue import with_effects
-
-    try:
-        return with_effects(model, added)
-    except (KeyError, ValueError) as error:
-        said = str(error.args[0] if error.args else error)
-        raise _wrong(Path(path), "parameters of effects that this version knows", said, "augmented.parameters") from None
-
-
-def _with_drag(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with the drag laws that were calibrated. Raises InputError where it declares others, or has no such drag."""
-    plain, there, laws = plain_drag(model), drag_laws_of(model), saved.best.drag_laws
-    where = f"{saved.key}.drag_laws"
-    for label, law in laws.items():
-        if label not in plain and label not in there:
-            known = [*plain, *there]
-            expected, hint = f"drag coefficients ({', '.join(known) or 'there are none'})", suggest(label, known)
-            raise _wrong(Path(path), expected, repr(label), where, hint)
-        if label in there and not _alike(there[label], law):
-            expected = f"the law that the platform declares ({_said(there[label])})"
-            raise _wrong(Path(path), expected, _said(law), f"{where}.{label}")
-    for label in saved.values():
-        if label in there and label not in laws and not _silent(there[label]):
-            expected = f"the law that the platform declares ({_said(there[label])})"
-            raise _wrong(Path(path), expected, "plain drag", f"{where}.{label}", "A coefficient goes with its law.")
-    return with_drag_laws(model, {label: law for label, law in laws.items() if label in plain})
-
-
-def _silent(law: DragLaw) -> bool:
-    """Whether a law is at its null, plain drag."""
-    if isinstance(law, HighPass):
-        return (law.low_share == 1 or law.cutoff == 0) and not getattr(law, "suction", None)
-    return not (law.exponent if isinstance(law, KeuleganCarpenter) else getattr(law, "suction", 0))
-
-
-def _alike(one: DragLaw, other: DragLaw) -> bool:
-    """Whether laws differ in nothing but parameters, which are the calibration's."""
-    def constants(law: DragLaw) -> dict[str, Any]:
-        return law.model_dump(include={"law", "reference", "window"})
-
-    return constants(one) == constants(other)
-
-
-def _said(law: DragLaw) -> str:
-    return ", ".join(f"{key}: {value}" for key, value in law.model_dump(exclude_none=True).items())
-
-
-def _with_laws(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
-    """The model with the laws over the sea state that the calibrated values have exponents of."""
-    stated = saved.best.sea_state_reference
-    labels = [label for label in saved.values() if is_exponent(label) and split(label)[0] in model.values]
-    if not labels:
-        return model
-    if stated is None:
-        where, found = f"{saved.key}.sea_state_reference", "nothing"
-        raise _wrong(Path(path), f"the sea state that {labels[0]} counts from", found, where)
-    reference = SeaState(stated.significant_height, stated.peak_period)
-    try:
-        loads = with_exponents(model.loads, dict.fromkeys(labels, 0.0), reference)
-        return replace(model, loads=loads)
-    except ValueError as error:
-        where = f"{saved.key}.sea_state_reference"
-        raise _wrong(Path(path), "the reference that the platform declares", str(error), where) from None
-
-
-def _wrong(path: Path, expected: str, found: str, where: str = "", hint: str = "") -> InputError:
+def wrong(path: Path, expected: str, found: str, where: str = "", hint: str = "") -> InputError:
+    """The error of one thing in a written result."""
     return InputError(str(path), [Problem(where, expected, found, hint)])

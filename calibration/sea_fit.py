@@ -73,18 +73,18 @@ def calibrate_in_waves(
     if over:
         damping = [label for label in labels if family(label) == "damping"]
         declared = with_laws(declared, damping, over, law_reference(declared.loads) or reference_of(made, options))
-    exponents = [label for label in declared.values if is_exponent(label) and label not in labels]
-    shares: list[str] = []
+    added = [label for label in declared.values if is_exponent(label) and label not in labels]
     if drag is not None:
         state = reference_of(made, options)
-        declared, added = with_drag(declared, labels, drag, state, options.low)
-        if not added:
+        declared, of_drag = with_drag(declared, labels, drag, state, options.low)
+        if not of_drag:
             raise InputError(source, [Problem("calibrate.free", "a coefficient of plain drag", ", ".join(labels))])
-        exponents, shares = (exponents + added, []) if drag == "keulegan_carpenter" else (exponents, added)
+        added += of_drag
     # what a law adds that is not asked for is left out
     begin = {label: value for label, value in (start or {}).items() if label in declared.values or not of_law(label)}
     declared = declared.with_values(begin)
-    space = space_of(campaign, [*labels, *exponents, *shares], declared, {label: (0.0, PLAIN) for label in exponents})
+    exponents = {label: (0.0, PLAIN) for label in added if declared.about(label).null == 0}
+    space = space_of(campaign, [*labels, *added], declared, exponents)
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
         if progress is not None:

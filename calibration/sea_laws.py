@@ -3,15 +3,15 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.directions import Identifiability
 from calibration.fit import Progress
-from calibration.laws import LAWS, base_of, of_law
-from calibration.result import Calibration
+from calibration.laws import LAWS, Law, base_of, of_law
+from calibration.result import Calibration, error_of_energies
 from calibration.sea_fit import calibrate_in_waves
 from calibration.seas import Options, Seas, seas_of
 from calibration.stretches import sea_state
@@ -22,7 +22,6 @@ from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.waves.sea_state import SeaState
 
-Law = Literal["constant", "significant_height", "peak_period", "both", "keulegan_carpenter", "high_pass"]
 CLOSE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
 
 
@@ -176,7 +175,7 @@ def choose_law(
 def error(calibration: Calibration, tests: Sequence[str]) -> float:
     """Root mean square of ln(simulated / measured energy) over the bands of tests."""
     bands = [band for test in calibration.tests if test.id in tests for row in test.bands.values() for band in row.values()]
-    return float(np.sqrt(np.mean([math.log1p(max(band.after, -0.999999)) ** 2 for band in bands])))
+    return error_of_energies(band.after for band in bands)
 
 
 def with_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:

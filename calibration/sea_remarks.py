@@ -3,10 +3,8 @@
 import math
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from calibration.formatting import number
-from calibration.result import TestFit
+from calibration.result import TestFit, error_of_energies
 from jaxhydro.drag_laws import drag_laws_of
 from jaxhydro.model import Model
 from jaxhydro.statics import natural_modes
@@ -49,7 +47,7 @@ def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:
         pairs = [(one.before, one.after) for row in test.bands.values() for one in row.values()]
         if test.use != "holdout" or not pairs:
             continue
-        before, after = (float(np.sqrt(np.mean(np.log1p(np.maximum(x, -0.999999)) ** 2))) for x in np.array(pairs).T)
+        before, after = map(error_of_energies, zip(*pairs, strict=True))
         if after > WORSE * before:
             yield (f"held out, {test.id} is followed worse than by the declared model: error of ln(energy) {number(before, 2)} "
                    f"before, {number(after, 2)} after")  # fmt: skip

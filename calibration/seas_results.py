@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 import jaxhydro
+from calibration.applied import Applied
 from calibration.campaign import Campaign
 from calibration.formatting import number, percent
 from calibration.runs import KINDS
-from calibration.saved import Applied
 from calibration.seas import Compared, Options, SeaTest, moving_channels
 from calibration.tables import Rows
 from jaxhydro.analysis import BANDS, LONG, SEGMENT, PowerSpectrum, band_integral, bands, power_spectrum

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration.applied import no_place
 from calibration.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats, repeats
 from calibration.campaign import Campaign
 from calibration.command import load
@@ -16,7 +17,7 @@ from calibration.formatting import number
 from calibration.likelihood import Likelihood, likelihood_of, reposed
 from calibration.profile import Profile, profile
 from calibration.sampling import Samples, sample
-from calibration.saved import Saved, no_place, read_as, read_saved
+from calibration.saved import Saved, read_as, read_saved
 from calibration.uncertainty_outputs import Uncertainty, write_uncertainty
 from calibration.uncertainty_saved import SavedUncertainty, intervals, other_ways
 from jaxhydro.console import complain, counting, progress, say, table

@@ -59,27 +59,17 @@ def model_of(platform: Platform, diffraction: str | None = None, elements: int |
 
 
 def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
-    """`with_calibration`, and what of it is to be known is printed."""
-    model, values, vague, of = with_calibration(model, asked, source)
-    if of and of != name:
-        complain(f"warning: {source} is a calibration of {of!r}, and its values are used for {name!r}")
-    say(f"Calibrated values used: {', '.join(values)}")
-    if vague:
-        complain(f"warning: among them the records did not determine {', '.join(vague)}")
-    return model
+    """The model with the values, laws and effects of a calibration.json or diagnosis.json; what is to be known of them is
+    printed. `asked` is the platform as it was asked for, `name` its own. Raises InputError."""
+    from calibration.applied import applied
 
-
-def with_calibration(model: Model, asked: str, source: Path) -> tuple[Model, dict[str, float], list[str], str]:
-    """The model with the values, laws and effects of a calibration.json or diagnosis.json; these values, those of them that its
-    records did not determine, and the platform it is of. `asked` is the platform as it was asked for. Raises InputError."""
-    from calibration.saved import fitting, no_place, read_saved
-
-    saved = read_saved(source)
-    model, values = fitting(saved, model, source), saved.values()
-    if unknown := [label for label in values if label not in model.values]:
-        raise no_place(saved, unknown, model, asked, source)
-    vague = [label for label, one in saved.best.parameters.items() if not one.identifiable]
-    return model.with_values(values), values, vague, saved.platform
+    used = applied(source, model, asked, everything=True)
+    if used.platform and used.platform != name:
+        complain(f"warning: {source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
+    say(f"Calibrated values used: {', '.join(used.values)}")
+    if used.vague:
+        complain(f"warning: among them the records did not determine {', '.join(used.vague)}")
+    return used.model
 
 
 def finite(times: np.ndarray, position: np.ndarray) -> bool:

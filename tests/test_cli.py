@@ -39,6 +39,7 @@ def run(*words: object, status: int = 0) -> str:
 
 
 def result_with(folder: Path, **parameters: float) -> Path:
+    folder.mkdir(exist_ok=True)
     path = folder / "calibration.json"
     found = {label: {"value": value, "unit": "-"} for label, value in parameters.items()}
     baseline = {"parameters": found, "error": {}, "objective": {"fit": 1.0}, "converged": True}
@@ -176,11 +177,14 @@ def test_bad_calibrations_are_told(tmp_path: Path) -> None:
     broken = tmp_path / "broken.json"
     broken.write_text("{")
     unknown = result_with(tmp_path, **{"column.Ca_x": 1.0, "column.Cd_t": 1.0})
+    out_of_range = result_with(tmp_path / "range", **{"column.Cd_t": -1.0})
     for path, words in (
         (tmp_path / "none.json", "found no such file"),
         (broken, "expected valid JSON"),
         (unknown, "expected parameters of"),
         (unknown, "found 'column.Ca_x'. Did you mean 'column.Ca_"),
+        (out_of_range, "column.Cd_t.value: expected a number between 0 and 30, found -1"),
+        (result_with(tmp_path / "empty"), "expected at least one calibrated parameter, found none"),
     ):
         options = ["--release", "surge=1", "--calibration", path, "--out", tmp_path / "o"]
         assert words in run("simulate", PLATFORM, *options, status=2)

@@ -15,12 +15,13 @@ from test_outputs import Page, changed
 from typer.testing import CliRunner
 
 import jaxhydro as jh
+from calibration.applied import applied
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Diagnosis
 from calibration.fit import Interrupted, Progress
 from calibration.outputs import write_calibration
 from calibration.report import write_report
-from calibration.saved import applied, read_saved
+from calibration.saved import read_saved
 from calibration.seas import Diverged
 from jaxhydro import cli
 from jaxhydro.problems import InputError, Problem

@@ -11,10 +11,10 @@ from test_seas import HULL
 
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
+from calibration.applied import applied
 from calibration.fit import Interrupted, Progress
 from calibration.laws import base_of, of_law, reference_of, with_drag, with_laws
 from calibration.outputs import write_calibration
-from calibration.saved import applied
 from calibration.sea_laws import LawFit, SeaLaws, choose_law, error, with_uses
 from calibration.sea_laws_outputs import NAMES, laws_table, sentence, states_table, write_laws
 from calibration.sea_laws_outputs import document as document_of_laws

@@ -10,11 +10,11 @@ import xarray as xr
 from ruamel.yaml import YAML
 
 from benchmarks.reference_waves import WaveModel, Waves, march
+from calibration.applied import applied
 from calibration.campaign import load_campaign
 from calibration.command import simulate_campaign
 from calibration.fit import calibrate
 from calibration.runs import Run, evenly, runs
-from calibration.saved import applied
 from calibration.seas import MISMATCH, Options, sea_of
 from calibration.seas_results import bands_of
 from jaxhydro.environment import Environment

@@ -137,10 +137,11 @@ What the laws of drag add, exponents of KC and shares of the coefficient that sl
 
 def _rms(found: dict[str, Any], tests: list[str]) -> float:
     """Root mean square of ln(simulated / measured energy) after calibration."""
+    from calibration.result import error_of_energies
+
     rows = [found["bands"][id] for id in tests]
     bands = [bands for row in rows for channel, bands in row.items() if channel != "use"]
-    logs = [math.log1p(pair[1]) for row in bands for pair in row.values()]
-    return math.sqrt(sum(x * x for x in logs) / len(logs))
+    return error_of_energies(pair[1] for row in bands for pair in row.values())
 
 
 def words(results: dict[str, dict[str, Any]]) -> tuple[str, tuple[str, ...]]:

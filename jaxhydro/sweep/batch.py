@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.command import model_of, with_calibration
+from jaxhydro.command import model_of
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock, integrate
 from jaxhydro.loads import MooringLines
@@ -53,7 +53,9 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     declared = load_platform(platform)
     model = model_of(declared, plan.diffraction)
     if calibration is not None:
-        model = with_calibration(model, str(platform), calibration)[0]
+        from calibration.applied import applied
+
+        model = applied(calibration, model, str(platform), everything=True).model
     times = plan.time_step * np.arange(math.floor(plan.duration / plan.time_step * (1 + 1e-12)) + 1)
     limit = largest_step(model, plan.cutoff) if plan.step is None else plan.step
     return Setup(plan, model, times, limit)

@@ -12,7 +12,6 @@ import xarray as xr
 
 from jaxhydro.files import check_folder
 from jaxhydro.platform_schema import builtin_platforms
-from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.load import load_sweep
@@ -56,8 +55,10 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
 
     Raises InputError, EquilibriumError.
     """
+    from calibration.saved import file_of
+
     plan, left_out = plan_of(sweep, source)
-    calibration = None if sweep.calibration is None else _calibration_file(Path(sweep.calibration))
+    calibration = None if sweep.calibration is None else file_of(sweep.calibration)
     setup = setup_of(plan, sweep.platform, calibration)
     # as chosen for this platform: workers need not choose again
     setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
@@ -142,12 +143,3 @@ def _platform_text(asked: str) -> str:
     if name in builtin_platforms() and not Path(asked).is_file():
         return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
     return Path(asked).read_text(encoding="utf-8-sig")
-
-
-def _calibration_file(path: Path) -> Path:
-    """The file that a calibration's path means."""
-    if path.is_dir():
-        path = next((path / name for name in ("diagnosis.json", "calibration.json") if (path / name).is_file()), path)
-    if not path.is_file():
-        raise InputError(str(path), [Problem("", "a calibration.json or diagnosis.json", "no such file")])
-    return path
