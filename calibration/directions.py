@@ -6,6 +6,7 @@ within their bounds. Information is that of the records alone; the fit's prior e
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # products, weight, variance, inflation: see `spread`
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
 NOTHING = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
+TOLD = 4  # weak directions in words
+LEAST = 0.01  # of the others' summed variance: what takes less away is no advice
 NAMED = 0.5 * CLEAR  # a parameter that a direction leaves uncertain by less than this is not named in it
 
 
@@ -64,14 +67,28 @@ class Identifiability:
         said = [f"{self.source}: {known}"]
         said += [f"{label} stands at a bound and is taken as fixed there" for label in self.at_bound]
         said += [f"no record responds to {label}: fix it, or add a test that moves it" for label in self.untouched]
-        said += [x for a, fix in zip(self.weak, self.fixes, strict=True) for x in (a.sentence(self.source), str(fix))]
+        known_of: set[str] = set()
+        for weak, fix in list(zip(self.weak, self.fixes, strict=True))[:TOLD]:
+            # one combination may be what is known of several directions
+            again = str(weak.known) in known_of
+            said += [weak.sentence(self.source, again), *([str(fix)] if fix.share >= LEAST else [])]
+            known_of.add(str(weak.known))
+        if rest := self.weak[TOLD:]:
+            labels = listed(list(dict.fromkeys(label for weak in rest for label in weak.movement)))
+            said.append(f"{len(rest)} further combinations of {labels} are not known to {percent(CLEAR)} either")
         told = [set(a.movement) for a in self.weak]
+        alike: list[tuple[set[str], float]] = []  # groups with parameters in common are one
         for group in sorted(self.collinear, key=lambda group: len(group.labels)):
             # a group is at least as bad as any part of it, and a weak direction says more
             if group.gamma > COLLINEAR and not any(other <= set(group.labels) for other in told):
                 told.append(set(group.labels))
-                said.append(f"{listed(group.labels)} act alike (collinearity index {number(group.gamma, 2)}, poor from "
-                            f"{COLLINEAR:.0f}): only exact records tell them apart")  # fmt: skip
+                met = [one for one in alike if one[0] & told[-1]]
+                whole = told[-1].union(*(labels for labels, _ in met)), max(group.gamma, *(gamma for _, gamma in met), 0.0)
+                alike = [*(one for one in alike if one not in met), whole]
+        for some, gamma in alike:
+            index = f"index {number(gamma, 2)}" if math.isfinite(gamma) else "index without bound"
+            said.append(f"{listed([x for x in self.parameters.labels if x in some])} act alike (collinearity {index}, poor "
+                        f"from {COLLINEAR:.0f}): only exact records tell them apart")  # fmt: skip
         return tuple(said)
 
 
@@ -94,9 +111,11 @@ def identifiability(
     ]
     weak = weak_directions(parameters, information, active)
     # what no record responds to is as wide as its prior whatever is fixed, and no measure of anything
-    fixes, left = [], within(covariance, active)
+    fixes: list[Fix] = []
+    left = within(covariance, active)
     for direction in weak:
-        fix, left = _best_fix(labels, left, list(direction.movement))
+        open_ = [label for label in direction.movement if label not in {fix.label for fix in fixes}]
+        fix, left = _best_fix(labels, left, open_ or list(direction.movement))
         fixes.append(fix)
     return Identifiability(
         parameters, information, covariance, source, spectrum, axes, covariance / np.outer(d, d),

@@ -9,6 +9,9 @@ from calibration.formatting import number, percent, with_deviation
 from calibration.identifiability import VAGUE
 
 
+SMALL = 0.005  # weight of a combination, the largest 1, that is not told
+
+
 class Parameters(NamedTuple):
     """The free parameters where the fit ended; `slope` is d value / d coordinate."""
 
@@ -37,9 +40,10 @@ class Combination(NamedTuple):
 
     def __str__(self) -> str:
         if self.product:
-            powers = " ".join(f"{label}^{weight:.2f}" for label, weight in self.weights.items())
+            powers = " ".join(f"{label}^{weight:.2f}" for label, weight in self.weights.items() if abs(weight) >= SMALL)
             return f"the product {powers} is known to {percent(self.standard_deviation)}"
-        terms = " ".join(f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}" for label, w in self.weights.items())
+        terms = " ".join(f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}" for label, w in self.weights.items()
+                         if abs(w) >= SMALL)  # fmt: skip
         unit = "" if self.unit == "-" else f" {self.unit}"
         value = with_deviation(self.value, self.standard_deviation)
         return f"their weighted sum {terms.removeprefix('+ ')} = {value}{unit} is known"
@@ -52,8 +56,8 @@ class Direction(NamedTuple):
     standard_deviation: float  # in the coordinates, along the direction with unit length
     known: Combination | None
 
-    def sentence(self, source: str) -> str:
-        """In words."""
+    def sentence(self, source: str, again: bool = False) -> str:
+        """In words; what is known instead is not said `again`."""
         labels = list(self.movement)
         if len(labels) == 1:
             if self.standard_deviation > VAGUE:
@@ -62,8 +66,8 @@ class Direction(NamedTuple):
         verb = "cannot tell" if self.standard_deviation > 1 else "can hardly tell"
         apart = f"{labels[0]} from {labels[1]}" if len(labels) == 2 else f"{listed(labels)} from one another"
         moves = listed([f"{label} {100 * change:+.2g} %" for label, change in self.movement.items()])
-        known = self.known or "no combination of them is known either"
-        return f"{source} {verb} {apart}: {moves} together leave the records as they are; {known}"
+        known = "" if again else f"; {self.known or 'no combination of them is known either'}"
+        return f"{source} {verb} {apart}: {moves} together leave the records as they are{known}"
 
 
 class Fix(NamedTuple):

@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 import jaxhydro as jh
 from calibration.candidates import decay_information, effective_noise, expected_information, rank_tests
 from calibration.conclusion import series_of
-from calibration.directions import Identifiability, identifiability, identifiability_of
+from calibration.directions import TOLD, Identifiability, identifiability, identifiability_of
 from calibration.fit import Fit, pose, run
 from calibration.identifiability import CLEAR, VAGUE, spread
 from calibration.information import collinearity, eliminated, varimax
@@ -99,6 +99,20 @@ def test_two_open_directions_of_three_are_told_with_their_one_sum() -> None:
         assert weak.known.weights == pytest.approx({"a.Cd_t": 1.0, "b.Cd_t": 0.7, "c.Cd_t": 0.4})
         assert weak.known.standard_deviation == pytest.approx(0.02)
     assert len({fix.label for fix in found.fixes}) == 2
+    # what is known is said once, and of what is fixed nothing more
+    assert " | ".join(found.sentences()).count("their weighted sum a.Cd_t") <= 1
+    assert found.fixes[0].label not in found.fixes[1].after and len(found.fixes[1].after) == 1
+
+
+def test_many_unknown_directions_are_told_briefly() -> None:
+    labels = [f"{x}.Cd_t" for x in "abcdefgh"]
+    row = np.array([[1.0, *[0.5] * 6, 1e-4]])
+    found = judged(stated(" ".join(labels)), row.T @ row / 0.02**2 + np.diag([0.0] * 7 + [900.0]))
+    said = found.sentences()
+    assert len(found.weak) == 6 and sum(" from " in x and "act alike" not in x for x in said) == TOLD
+    assert sum("act alike (collinearity index without bound" in x for x in said) == 1
+    assert any(x.startswith("2 further combinations of ") and x.endswith("are not known to 25 % either") for x in said)
+    assert not any("0.00" in x or " -0 " in x for x in said)
 
 
 def test_unknown_directions_are_told_one_pair_at_a_time() -> None:

@@ -124,12 +124,22 @@ def linearly(study: Study, look: Look, step: np.ndarray, own: np.ndarray) -> np.
 
 
 class Predicted(NamedTuple):
-    """Steps of the parameters, gains of -2 ln L in the fitted and the held-out tests, and the covariance."""
+    """Steps of the parameters, gains of -2 ln L by series (s,), which of these are of `used` tests, and the covariance."""
 
     step: np.ndarray
-    fitted: float
-    held: float
+    gain: np.ndarray
+    used: np.ndarray
     covariance: np.ndarray
+
+    @property
+    def fitted(self) -> float:
+        """The gain in the fitted tests."""
+        return float(self.gain[self.used].sum())
+
+    @property
+    def held(self) -> float:
+        """The gain in the held-out tests."""
+        return float(self.gain[~self.used].sum())
 
     @property
     def deviation(self) -> np.ndarray:
@@ -148,4 +158,4 @@ def predict(study: Study, look: Look, prior: Prior) -> Predicted:
         step = -covariance @ slope
         residual = linearly(study, look, step, own_steps(study, back, step))
     gain = likelihoods(study, look.residual) - likelihoods(study, residual)
-    return Predicted(step, float(gain[study.used].sum()), float(gain[~study.used].sum()), covariance)
+    return Predicted(step, gain, study.used, covariance)

@@ -176,7 +176,7 @@ class Search:
                 look = replace(state.look.beside(seen.along(mine)), place=place if one.grid else state.look.place)
                 found = predict(self.study, look, self.prior([*state.chosen, one]))
                 if self.wrong_sign(one, look, found):
-                    found = found._replace(fitted=0.0, held=0.0)
+                    found = found._replace(gain=0 * found.gain)
                 if one.name not in best or found.fitted > best[one.name].predicted.fitted:
                     best[one.name] = Scored(one, found, look)
         ranked = sorted(best.values(), key=lambda item: -item.predicted.fitted)
@@ -225,15 +225,32 @@ class Search:
         done = 0.15 + 0.8 * (number - 1) / ROUNDS
         enough = 2 * math.log(self.count)
         ranked = self.score(state, number, done)
-        short = [item for item in ranked if item.predicted.fitted > enough][:SHORTLIST]
-        tried: list[Tried] = []
+        some = [item for item in ranked if item.predicted.fitted > enough]
         for item in ranked:
+            weak = not any(item is one for one in some)
+            self.refuse(item.candidate, f"{'explains too little' if weak else 'others explain more'} at first order")
+        after = self.best(state, some[:SHORTLIST], number, done)
+        if after is None and (others := self.by_motion(some[SHORTLIST:], enough)):
+            after = self.best(state, others, number, done + 0.1)
+        return after
+
+    def by_motion(self, rest: Sequence[Scored], enough: float) -> list[Scored]:
+        """What explains the most of one motion, among those that do not explain the most of all."""
+        found: dict[str, Scored] = {}
+        for channel in dict.fromkeys(one.channel for one in self.study.series) if rest else ():
+            mine = self.study.used & np.array([one.channel == channel for one in self.study.series])
+            gains = [float(item.predicted.gain[mine].sum()) for item in rest]
+            if max(gains) > enough:
+                best = rest[int(np.argmax(gains))]
+                found[best.candidate.name] = best
+        return list(found.values())
+
+    def best(self, state: State, short: Sequence[Scored], number: int, done: float) -> State | None:
+        """The best effect of a shortlist let in; None where none survives."""
+        tried: list[Tried] = []
+        for item in short:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
-            if item.predicted.fitted <= enough:
-                self.refuse(item.candidate, "explains too little at first order")
-            elif not any(item is one for one in short):
-                self.refuse(item.candidate, "others explain more at first order")
-            elif item.predicted.fitted < FAR * highest:
+            if item.predicted.fitted < FAR * highest:
                 self.refuse(item.candidate, "explains far less than others")
             else:
                 tried.append(self.attempt(state, item, number, done + 0.02 * (len(tried) + 1)))
