@@ -8,7 +8,6 @@ import numpy as np
 from calibration.formatting import number, percent, with_deviation
 from calibration.identifiability import VAGUE
 
-
 SMALL = 0.005  # weight of a combination, the largest 1, that is not told
 
 

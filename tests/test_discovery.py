@@ -14,8 +14,9 @@ from calibration.campaign import load_campaign
 from calibration.discovery import kept
 from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.catalogue import Candidate
+from calibration.discovery.linear import Predicted
 from calibration.discovery.pose import pose
-from calibration.discovery.search import diagnose
+from calibration.discovery.search import Scored, Search, diagnose
 from calibration.seas import Options
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 from jaxhydro.problems import InputError
@@ -191,3 +192,18 @@ def test_a_model_of_ones_own_is_calibrated(tmp_path):
     assert_allclose(found.parameters["repeating.strength"].value, 4.0, rtol=0.05)
     with pytest.raises(InputError, match=r"repeating\.strength"):
         calibrate(campaign, free=["repeating.strength"])
+
+
+def test_the_best_of_every_motion_is_tried_where_the_best_of_all_do_not_last():
+    """Of the fitted tests, each candidate once; a motion of which none explains enough has none."""
+    series = [SimpleNamespace(channel=channel) for channel in ("surge", "heave", "pitch", "surge")]
+    study = SimpleNamespace(series=series, used=np.array([True, True, True, False]))
+    gains = {"a": [9, 30, 0, 99], "b": [20, 29, 1, 0], "c": [1, 31, 2, 0]}
+    rest = [
+        Scored(Candidate(name, None, ()), Predicted(np.zeros(0), np.array(gain, float), study.used, np.zeros((0, 0))), None)
+        for name, gain in gains.items()
+    ]
+    found = Search.by_motion(SimpleNamespace(study=study), rest, 5.0)
+    assert [one.candidate.effect for one in found] == ["b", "c"]
+    assert (rest[0].predicted.fitted, rest[0].predicted.held) == (39.0, 99.0)
+    assert Search.by_motion(SimpleNamespace(study=study), [], 5.0) == []
