@@ -267,7 +267,7 @@ def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
     path = Path(path)
     path = path / "campaign.yaml" if _there(path, folder=True) else path
     folder = path.parent
-    data: Any = read_yaml(path)
+    data: Any = read_yaml(path, "campaign")
     manifest = validate(Manifest, data, str(path))
     problems = []
     for i, test in enumerate(manifest.tests):

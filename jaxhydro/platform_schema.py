@@ -259,8 +259,8 @@ def load_platform(path_or_name: str | PathLike[str]) -> Platform:
     is_path = not isinstance(path_or_name, str) or "/" in name or name.endswith((".yaml", ".yml"))
     if not is_path and name.lower() in known:
         with resources.as_file(resources.files("jaxhydro") / "platforms" / f"{name.lower()}.yaml") as path:
-            return validate(Platform, read_yaml(path), f"{name} (built in)")
+            return validate(Platform, read_yaml(path, "platform"), f"{name} (built in)")
     if not is_path and not Path(name).exists():
         expected = f"a YAML file or a built-in platform ({', '.join(known)})"
         raise InputError(name, [Problem("", expected, shown(name), suggest(name, known))])
-    return validate(Platform, read_yaml(path_or_name), name)
+    return validate(Platform, read_yaml(path_or_name, "platform"), name)

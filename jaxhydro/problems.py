@@ -122,8 +122,12 @@ def shown(value: object) -> str:
     return _repr.repr(str(value))
 
 
-def read_yaml(path: str | PathLike[str]) -> dict[Any, Any]:
-    """The mapping in a YAML 1.2 file, as plain dicts, lists and scalars; `InputError` for whatever is wrong."""
+KEYS = {"platform": {"members", "rigid_body"}, "campaign": {"tests", "channels"}, "sweep": {"scatter", "seeds"}}
+
+
+def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
+    """The mapping in a YAML 1.2 file, as plain dicts, lists and scalars; `InputError` for whatever is wrong, and for one that
+    is another of KEYS than the `kind` asked for."""
     source = str(path)
 
     def wrong(where: str, expected: str, found: str) -> InputError:
@@ -160,6 +164,9 @@ def read_yaml(path: str | PathLike[str]) -> dict[Any, Any]:
         raise wrong("", "valid YAML", f"a value that cannot be read ({shown(str(error))})") from None
     if not isinstance(data, dict):
         raise wrong("", "a mapping of keys to values", "an empty file" if data is None else shown(data))
+    others = [name for name, keys in KEYS.items() if keys & data.keys()]
+    if kind and others and kind not in others:
+        raise wrong("", f"a {kind} file ({', '.join(sorted(KEYS[kind]))})", f"a {others[0]} file")
     return data
 
 

@@ -38,6 +38,8 @@ UNREADABLE: list[tuple[bytes, str]] = [
     (b"{1: 2, 1.5: 3, null: 4}\n", "1: expected a known key"),
     (b"coefficients: {1: {}}\n", "coefficients.1: expected a key that is text, found 1"),
     (b'"k\\ney": 1\n', "k ey: expected a known key"),
+    (b"name: a\ntests: []\n", "expected a platform file (members, rigid_body), found a campaign file"),
+    (b"platform: a\nscatter: []\n", "found a sweep file"),
 ]
 
 

@@ -17,7 +17,7 @@ def load_sweep(path: str | Path) -> Sweep:
     Raises InputError with all that is wrong in it, or with the first row of a scatter table that is.
     """
     path = Path(path)
-    sweep = validate(Sweep, read_yaml(path), str(path))
+    sweep = validate(Sweep, read_yaml(path, "sweep"), str(path))
     changed: dict[str, Any] = {}
     if isinstance(sweep.scatter, str):
         changed["scatter"] = read_scatter(path.parent / sweep.scatter, f"{path}: scatter")
