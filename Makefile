@@ -19,7 +19,7 @@ demo: $(READY)     ## calibrate VolturnUS-S to the nine embedded decays: coeffic
 	$(BIN)/jaxhydro demo --out out/demo
 
 test: $(READY)     ## all tests, on two cores
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not validate"
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not validate" --durations=40 --durations-min=5
 
 validate: $(READY) ## slow: regenerates the evidence in docs/validation.md
 	$(BIN)/python -m pytest -m validate -s

@@ -72,6 +72,20 @@ def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     return used.model
 
 
+def with_calibration(model: Model, asked: str, source: Path) -> Model:
+    """`calibrated`, and nothing is printed."""
+    from calibration.applied import applied
+
+    return applied(source, model, asked, everything=True).model
+
+
+def calibration_file(path: str) -> Path:
+    """The diagnosis.json or calibration.json of a folder, or the file itself."""
+    from calibration.saved import file_of
+
+    return file_of(path)
+
+
 def finite(times: np.ndarray, position: np.ndarray) -> bool:
     """Whether a motion is all numbers; where it is not, says from when on."""
     if np.isfinite(position).all():

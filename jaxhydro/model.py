@@ -18,6 +18,7 @@ from jaxhydro.strips import end_wetted
 from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
+from jaxhydro.waves.transfer import Transfer
 
 
 class RigidBody(eqx.Module):
@@ -132,9 +133,18 @@ class Model(eqx.Module):
         loads = tuple(load.in_sea(state) for load in self.loads)
         return self if all(a is b for a, b in zip(loads, self.loads)) else eqx.tree_at(lambda m: m.loads, self, loads)
 
+    @property
+    def transfer(self) -> Transfer | None:
+        """What of second order irregular seas are to be prepared with. Raises ValueError for two of it."""
+        found = [one for load in self.loads if (one := load.drifts()) is not None]
+        if len(found) > 1:
+            raise ValueError("two loads have a difference-frequency transfer function: expected one")
+        return found[0] if found else None
+
     def through(self, sea: AbstractSea) -> AbstractSea:
         """The sea as the platform meets it."""
-        for load in self.loads:
+        # what belongs to the waves themselves before what becomes of them
+        for load in sorted(self.loads, key=lambda load: load.drifts() is None):
             sea = load.through(sea)
         return sea
 

@@ -126,9 +126,9 @@ def in_irregular(
     """
     begin = float(times[0])
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
-    points, excursion = model.hull.extremities(), EXCURSION
+    points, excursion, transfer = model.hull.extremities(), EXCURSION, model.transfer
     while True:
-        prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion)
+        prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, transfer=transfer)
         found = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
         met: Any = model.through(prepared)  # with the box moved where the sea is
         reached = float(_farthest(found.position, jnp.asarray(points), met))

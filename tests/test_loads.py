@@ -26,6 +26,7 @@ from jaxhydro.loads import (
     CoveredEnds,
     CubicDamping,
     Current,
+    DriftTransfer,
     EndDrag,
     EndInertia,
     HiddenOscillator,
@@ -55,6 +56,7 @@ from jaxhydro.loads import (
     WaveReflection,
     Weight,
 )
+from jaxhydro.waves.transfer import Transfer
 
 RHO, G = 1025.0, 9.81
 BODY = {"mass": 8e6, "centre_of_mass": [0, 0, -8], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}
@@ -94,6 +96,9 @@ EVERYTHING = {
 }
 
 
+TRANSFER = Transfer.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(3).normal(0, 2e4, (6, 5, 5)) + 3e4j * np.tri(5))
+
+
 def build(*members: dict, **changes) -> jh.Model:
     """A platform of these members, all with the same coefficients."""
     members = members or tuple(changes.pop("members", ()))
@@ -123,6 +128,7 @@ FOUND = {  # what no platform file declares: effects that were found to be missi
     "sensor_lag": {"delay": 0.4},
     "wave_drift": {"envelope": 2e4, "quadrature": -7e3, "frequency_weighted": 9e3},
     "wave_drift_damping": {"coefficient": 1e4},
+    "drift_transfer": {"share": 0.8},
     "amplitude_dependent_drag": {"exponent": -0.3},
     "sea_state_dependent_drag": {"low_share": 1.4, "cutoff": 0.04},
     "coupled_damping": {"B15": 3e5},
@@ -152,7 +158,8 @@ def in_water(model: jh.Model) -> jh.Model:
     ]
     drag = [law.null({label: model.values[label]}) for label, law in taken.items()]
     others = (CoupledDamping, CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
-    return model_of(model, *plain, *drag, *(kind.null() for kind in others), WaveDrift.null(DOFS), WaveDriftDamping.null())
+    drift = (WaveDrift.null(DOFS), WaveDriftDamping.null(), DriftTransfer.of(TRANSFER, 0.0))
+    return model_of(model, *plain, *drag, *(kind.null() for kind in others), *drift)
 
 
 @cache

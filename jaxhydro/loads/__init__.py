@@ -8,6 +8,7 @@ from jaxhydro.loads.coupled_damping import CoupledDamping
 from jaxhydro.loads.covered_ends import CoveredEnds
 from jaxhydro.loads.cubic_damping import CubicDamping
 from jaxhydro.loads.current import Current
+from jaxhydro.loads.drift_transfer import DriftTransfer
 from jaxhydro.loads.end_drag import EndDrag
 from jaxhydro.loads.end_inertia import EndInertia
 from jaxhydro.loads.hidden_oscillator import HiddenOscillator
@@ -69,6 +70,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "wave_gauge_position": WaveGaugePosition,
     "wave_reflection": WaveReflection,
     "wave_drift": WaveDrift,
+    "drift_transfer": DriftTransfer,
     "wave_drift_damping": WaveDriftDamping,
     "power_drag": PowerDrag,
     "slow_drag": SlowDrag,

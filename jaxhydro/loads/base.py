@@ -13,6 +13,7 @@ from jaxhydro.hull import Hull, Wetted
 from jaxhydro.waves.flow import EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.sea_state import SeaState
+from jaxhydro.waves.transfer import Transfer
 
 
 class Parameter(NamedTuple):
@@ -59,7 +60,7 @@ class Instant(eqx.Module):
     strip_flow: StripFlow
     end_flow: EndFlow
     lines: Lines
-    drift: Float[Array, "3"] | None = None
+    drift: Float[Array, " d"] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""
@@ -124,6 +125,10 @@ class AbstractLoad(eqx.Module):
     def through(self, sea: AbstractSea) -> AbstractSea:
         """The sea as the platform meets it; itself where the load does not touch it."""
         return sea
+
+    def drifts(self) -> Transfer | None:
+        """What of second order an irregular sea has to be prepared with for it; None: nothing."""
+        return None
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
         """What the motion sensors make of a position (m, rad)."""

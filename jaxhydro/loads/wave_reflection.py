@@ -56,7 +56,7 @@ class ReflectedSea(AbstractSea):
         back = self.sea.surface(time - self.delay, self._mirror(points))
         return None if back is None else self.sea.surface(time, points) + self._share(time) * back
 
-    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"] | None:
+    def drift(self, time: Float[Array, ""]) -> Float[Array, " d"] | None:
         return self.sea.drift(time)
 
     def direction(self) -> Float[Array, "2"]:

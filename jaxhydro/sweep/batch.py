@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.command import model_of
+from jaxhydro.command import model_of, with_calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock, integrate
 from jaxhydro.loads import MooringLines
@@ -53,9 +53,7 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     declared = load_platform(platform)
     model = model_of(declared, plan.diffraction)
     if calibration is not None:
-        from calibration.applied import applied
-
-        model = applied(calibration, model, str(platform), everything=True).model
+        model = with_calibration(model, str(platform), calibration)
     times = plan.time_step * np.arange(math.floor(plan.duration / plan.time_step * (1 + 1e-12)) + 1)
     limit = largest_step(model, plan.cutoff) if plan.step is None else plan.step
     return Setup(plan, model, times, limit)
@@ -164,7 +162,8 @@ def prepared_for(
 ) -> tuple[SupportSea, float, int]:
     """The sea for the model's hull, and the steps taken: size (s) and number, those of `simulate`."""
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
-    return sea.prepared(model.hull.extremities(), model.cylinders, clock("ab4", float(times[0]), step, steps)), step, steps
+    instants = clock("ab4", float(times[0]), step, steps)
+    return sea.prepared(model.hull.extremities(), model.cylinders, instants, transfer=model.transfer), step, steps
 
 
 @eqx.filter_jit

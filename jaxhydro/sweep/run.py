@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
+from jaxhydro.command import calibration_file
 from jaxhydro.files import check_folder
 from jaxhydro.platform_schema import builtin_platforms
 from jaxhydro.sweep.batch import Setup, setup_of
@@ -55,10 +56,8 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
 
     Raises InputError, EquilibriumError.
     """
-    from calibration.saved import file_of
-
     plan, left_out = plan_of(sweep, source)
-    calibration = None if sweep.calibration is None else file_of(sweep.calibration)
+    calibration = None if sweep.calibration is None else calibration_file(sweep.calibration)
     setup = setup_of(plan, sweep.platform, calibration)
     # as chosen for this platform: workers need not choose again
     setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))

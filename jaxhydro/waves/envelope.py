@@ -9,17 +9,18 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components
+from jaxhydro.waves.transfer import Transfer
 
 
 class Envelope(eqx.Module):
-    """`AbstractSea.drift` on a clock: `series` (m2) step by step, read `lead` (s) ahead; `slowness` (s/m) is the inverse of the
-    group velocity, by energy."""
+    """`AbstractSea.drift` on a clock: `series` (m2; N, N m) step by step, read `lead` (s) ahead; `slowness` (s/m) is the
+    inverse of the group velocity, by energy."""
 
-    series: Float[Array, "t 3"]
+    series: Float[Array, "t d"]
     slowness: Float[Array, ""]
     lead: Float[Array, ""]
 
-    def at(self, steps: Float[Array, ""]) -> Float[Array, "3"]:
+    def at(self, steps: Float[Array, ""]) -> Float[Array, " d"]:
         """`steps` after the first, of any fraction, by the cubic through four of them; held beyond both ends."""
         last = self.series.shape[0] - 1
         place = jnp.clip(steps, 0.0, last)
@@ -44,20 +45,26 @@ def envelope(
     share: Float[Array, " t"],
     size: int,
     start: Float[Array, ""],
+    transfer: Transfer | None = None,
 ) -> Envelope:
     """|a|^2, its Hilbert transform and Re(a_w conj(a)), a the complex elevation at the origin and a_w that with components
-    times `weight`, times `share`, at steps from `start` (s) on of which `size` are a period.
+    times `weight`, and the six forces of a `transfer`, times `share`, at steps from `start` (s) on of which `size` are a
+    period.
 
     By products over one period at so many times that every difference of frequencies has a place of its own.
     """
     n, amplitude = waves.omega.size, waves.complex_amplitude()
     count = 1 << (2 * n - 1).bit_length()
     one, weighted = jnp.fft.ifft(jnp.stack([amplitude, weight * amplitude]), n=count) * count
-    found = jnp.fft.rfft(jnp.stack([one * one.conj(), weighted * one.conj()]).real)[:, :n] / count
+    products = jnp.stack([one * one.conj(), weighted * one.conj()]).real
+    if transfer is not None:
+        filtered = jnp.fft.ifft(transfer.at(waves.omega) * amplitude, n=count) * count
+        products = jnp.concatenate([products, transfer.force(filtered)])
+    found = jnp.fft.rfft(products)[:, :n] / count
     beats = found * jnp.where(jnp.arange(n) > 0, 2.0, 1.0)
     shifted = (-1j * beats[0]).at[0].set(0.0)
     turn = jnp.exp(1j * 2 * math.pi / waves.period * jnp.arange(n) * start)
-    series = (jnp.fft.ifft(jnp.stack([beats[0], shifted, beats[1]]) * turn, n=size) * size).real
+    series = (jnp.fft.ifft(jnp.concatenate([jnp.stack([beats[0], shifted]), beats[1:]]) * turn, n=size) * size).real
     depths = waves.wavenumber * environment.depth
     tanh = jnp.tanh(depths)
     slow = 2 * waves.omega / (environment.gravity * (tanh + depths * (1 - tanh**2)))

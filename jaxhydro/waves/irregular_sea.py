@@ -17,6 +17,7 @@ from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth, stretched
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum, fold
 from jaxhydro.waves.supports import Box, field, supports, surface, weights
+from jaxhydro.waves.transfer import Transfer
 
 EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
 
@@ -100,9 +101,10 @@ class IrregularSea(AbstractSea):
         clock: Clock,
         excursion: float = EXCURSION,
         linear: bool = False,
+        transfer: Transfer | None = None,
     ) -> "SupportSea":
         """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock; of its
-        first order alone where `linear`, in arrays of the same shapes.
+        first order alone where `linear`, in arrays of the same shapes. `drift` has the forces of a `transfer`, too.
 
         Raises ValueError for components of several headings, that are no harmonics, or where the clock's steps do not divide
         the period or are too long for the highest frequency.
@@ -146,14 +148,14 @@ class IrregularSea(AbstractSea):
             clock.nodes,
             self.stretching,
             box.half,
-            self._envelope(clock, size),
+            self._envelope(clock, size, transfer),
         )
 
-    def _envelope(self, clock: Clock, size: int) -> Envelope:
+    def _envelope(self, clock: Clock, size: int, transfer: Transfer | None) -> Envelope:
         """Of the first-order waves on a clock of which `size` steps are a period."""
         share = growth(clock.start + clock.step * jnp.arange(clock.steps + 1), self.ramp) ** 2
         weight = (self.components.omega / MIDDLE) ** 2
-        return envelope(self.components, self.environment, weight, share, size, jnp.asarray(clock.start))
+        return envelope(self.components, self.environment, weight, share, size, jnp.asarray(clock.start), transfer)
 
 
 _elevation = eqx.filter_jit(elevation_spectrum)
@@ -330,7 +332,7 @@ class SupportSea(AbstractSea):
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)
 
-    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"] | None:
+    def drift(self, time: Float[Array, ""]) -> Float[Array, " d"] | None:
         if self.envelope is None:
             return None
         return self.envelope.at((time + self.envelope.lead - self.start) / self.step)

@@ -13,6 +13,7 @@ from jaxhydro.environment import Environment
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.flow import Cylinders, Flow
+from jaxhydro.waves.transfer import Transfer
 
 Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
 MIDDLE = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
@@ -36,12 +37,13 @@ class AbstractSea(eqx.Module):
         """The elevation up to which the platform is wetted; None: still water level."""
         return self.elevation(time, points)
 
-    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"] | None:
+    def drift(self, time: Float[Array, ""]) -> Float[Array, " d"] | None:
         """What slow second-order forces go with (m2), of first-order waves at the origin; None: nothing is known of it.
 
         With a the complex elevation, eta = Re a: the squared envelope |a|^2; its Hilbert transform, which turns cos into sin
         and a mean into nothing; and Re(a_w conj(a)), a_w the waves weighted by (omega / `MIDDLE`)^2. Differences of
-        frequencies only: there are no sums to be filtered out.
+        frequencies only: there are no sums to be filtered out. Where the sea was made with a platform's transfer function, its
+        six forces (N, N m) come after these three.
         """
         return None
 
@@ -74,7 +76,8 @@ class WaveSea(AbstractSea):
     "extrapolation", those of z = 0 and their slope (Rodenbusch and Forristall 1986 for first order); "wheeler", the profile
     moved with the surface, that of z' = h (z - eta) / (h + eta) (Wheeler 1970, Journal of Petroleum Technology 22, 359-367);
     "none": as vertical, and the platform is wetted to still water level. Waves grow from rest over the first `ramp` seconds
-    by a half cosine (0: at full height from the start). `bound` is what the waves bind at second order.
+    by a half cosine (0: at full height from the start). `bound` is what the waves bind at second order, `transfer` a platform's
+    difference-frequency forces.
     """
 
     waves: PlaneWaves
@@ -82,6 +85,7 @@ class WaveSea(AbstractSea):
     ramp: Float[Array, ""] | float = 0.0
     stretching: Stretching = eqx.field(static=True, default="vertical")
     bound: PlaneWaves | None = None
+    transfer: Transfer | None = None
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
         level, above = stretched(self, self.stretching, time, points, self.environment.depth)
@@ -129,13 +133,16 @@ class WaveSea(AbstractSea):
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)
 
-    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+    def drift(self, time: Float[Array, ""]) -> Float[Array, " d"]:
         omega = self.waves.omega
         one = self.growth(time) * self.waves.elevation * jnp.exp(1j * omega * time)
         every = one.sum().conj()
         sooner = jnp.sign(omega[:, None] - omega)
         pairs = (sooner * (one[:, None] * one.conj()).imag).sum()
-        return jnp.stack([(every * every.conj()).real, pairs, (((omega / MIDDLE) ** 2 * one).sum() * every).real])
+        plain = jnp.stack([(every * every.conj()).real, pairs, (((omega / MIDDLE) ** 2 * one).sum() * every).real])
+        if self.transfer is None:
+            return plain
+        return jnp.concatenate([plain, self.transfer.force(self.transfer.at(omega) @ one)])
 
     def direction(self) -> Float[Array, "2"]:
         return direction(self.waves.vector, jnp.abs(self.waves.elevation) ** 2)
@@ -148,7 +155,7 @@ class WaveSea(AbstractSea):
             return PlaneWaves(waves.omega, waves.vector, waves.elevation * turn, waves.potential * turn)
 
         bound = None if self.bound is None else on(self.bound)
-        return WaveSea(on(self.waves), self.environment, self.ramp, self.stretching, bound)
+        return WaveSea(on(self.waves), self.environment, self.ramp, self.stretching, bound, self.transfer)
 
     def growth(self, time: Float[Array, "..."]) -> Float[Array, "..."]:
         """Share of their full height (-) that the waves have at a time (s)."""

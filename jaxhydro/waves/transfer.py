@@ -1,0 +1,60 @@
+"""Difference-frequency quadratic transfer functions, as few squared envelopes of filtered waves."""
+
+from typing import Self
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Complex, Float
+
+KEPT = 1e-6  # of the largest eigenvalue: what is less adds nothing
+
+
+class Transfer(eqx.Module):
+    """Second-order force at differences of frequencies: F_i = Re sum_kl A_k conj(A_l) exp(i (w_k - w_l) t) T_i(w_k, w_l).
+
+    A_k are the complex amplitudes of first-order waves at the origin, eta = Re sum A_k exp(i w_k t) (Faltinsen 1990, Sea Loads
+    on Ships and Offshore Structures, chapter 5; Pinkster 1980, Low frequency second order wave exciting forces on floating
+    structures, section 2). T is Hermitian, so that T = sum_m e_m u_m conj(u_m)^T and
+
+        F_i(t) = sum_m e_im |sum_k u_im(w_k) A_k exp(i w_k t)|^2,
+
+    which costs a Fourier transform per eigenvalue in place of all pairs. Between the frequencies of the table T is bilinear in
+    both, outside them zero.
+
+    `omega` (n,) in rad/s, ascending; `eigenvalue` (6, m) in N/m2 and N m/m2, `filters` (6, m, n), of surge, sway, heave, roll,
+    pitch and yaw about the origin, along earth axes.
+    """
+
+    omega: Float[Array, " n"]
+    eigenvalue: Float[Array, "6 m"]
+    filters: Complex[Array, "6 m n"]
+
+    @classmethod
+    def of(cls, omega: Float[np.ndarray, " n"], table: Complex[np.ndarray, "6 n n"], newman: bool = False) -> Self:
+        """From T at all pairs of frequencies; of its Hermitian part. `newman`: from its diagonal alone, the drift in regular
+        waves: T_kl = (T_kk + T_ll) / 2 (Newman 1974, Second-order, slowly-varying forces on vessels in irregular waves)."""
+        table = 0.5 * (table + np.conj(np.swapaxes(table, 1, 2)))
+        if newman:
+            curve = np.einsum("ikk->ik", table).real
+            table = 0.5 * (curve[:, :, None] + curve[:, None, :]).astype(complex)
+        value, vector = np.linalg.eigh(table)  # columns
+        size = np.abs(value)
+        count = max(1, int((size > KEPT * size.max(axis=1, keepdims=True)).sum(axis=1).max()))
+        largest = np.argsort(-size, axis=1)[:, :count]
+        vector = np.take_along_axis(vector, largest[:, None, :], axis=2)
+        value = np.take_along_axis(value, largest, axis=1)
+        return cls(jnp.asarray(omega), jnp.asarray(value), jnp.asarray(np.swapaxes(vector, 1, 2)))
+
+    def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 m w"]:
+        """The filters at other frequencies (rad/s)."""
+        place = jnp.clip(jnp.searchsorted(self.omega, omega, side="right") - 1, 0, len(self.omega) - 2)
+        share = (omega - self.omega[place]) / (self.omega[place + 1] - self.omega[place])
+        inside = (share >= -1e-9) & (share <= 1 + 1e-9)
+        found = (1 - share) * self.filters[..., place] + share * self.filters[..., place + 1]
+        return jnp.where(inside, found, 0.0)
+
+    def force(self, filtered: Complex[Array, "6 m ..."]) -> Float[Array, "6 ..."]:
+        """The force, or moment, of filtered waves."""
+        square = (filtered * filtered.conj()).real
+        return jnp.einsum("im,im...->i...", self.eigenvalue, square)
