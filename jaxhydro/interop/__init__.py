@@ -1,0 +1,1 @@
+"""Files of other programs of the field, read into plain arrays."""
