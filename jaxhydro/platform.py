@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from os import PathLike
+from pathlib import Path
 
 import equinox as eqx
 import jax
@@ -10,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro import platform_schema as schema
+from jaxhydro.computed import computed_radiation
 from jaxhydro.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
@@ -63,6 +65,9 @@ def build(platform: schema.Platform) -> Model:
         letter = "A" if name == "added_mass" else "B"
         if values := _entries(f"{name}.{letter}", matrix):
             loads.append(load(values))
+    if (declared := platform.radiation) is not None:
+        how = (str(declared.kind), water.density, declared.length or 1.0, declared.order, declared.tolerance)
+        loads.append(computed_radiation(Path(declared.file), *how, share=float(declared.use == "load")))
     if values := _entries("stiffness.C", platform.stiffness.matrix()):
         loads.append(Stiffness(values, jnp.zeros(6), "stiffness"))
     if members:

@@ -112,7 +112,7 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
     hankel = _Hankel(response / np.outer(size, size), step)
     onto = np.eye(6)[:, active] * size
     best: Realisation | None = None
-    for n in range(2, order + 1):
+    for n in range(2, min(order, len(hankel.values)) + 1):
         rates, drive, output, misfit = hankel.space(n)
         if len(rates) and (best is None or misfit < best.misfit) and (least := _least(rates, drive, output)) > -GIVES:
             best = Realisation(rates, drive @ onto.T, onto @ output, misfit, least)
@@ -145,10 +145,12 @@ class _Hankel:
         """Rates, drive, output and misfit of a state space of `order` states, less those that grow; none where that leaves none
         to be fitted."""
         size = np.sqrt(np.abs(self.values[:order]))
-        observed = self.vectors[:, :order] * size
-        shift = np.linalg.lstsq(observed[: -self.motions], observed[self.motions :], rcond=None)[0]
+        vectors = self.vectors[:, :order]
+        earlier, later, last = vectors[: -self.motions], vectors[self.motions :], vectors[-self.motions :]
+        shift = np.linalg.solve(np.eye(order) - last.T @ last, earlier.T @ later) * size / size[:, None]  # least squares
         poles, modes = np.linalg.eig(shift)
-        driven = np.linalg.solve(modes, (np.sign(self.values[:order]) * observed)[: self.motions].T.astype(complex))
+        drive = (np.sign(self.values[:order]) * size * vectors)[: self.motions].T
+        driven = np.linalg.solve(modes, drive.astype(complex))
         kept = (np.abs(poles) < 1) & (poles.imag >= 0) & ((poles.imag > 0) | (poles.real > 0))
         rate, driven = np.log(poles[kept]) / self.step, driven[kept]
         driven /= np.linalg.norm(driven, axis=1, keepdims=True)

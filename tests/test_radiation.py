@@ -1,8 +1,10 @@
 """Computed radiation: readers, retardation function and its state space, the load; against closed forms and convolutions."""
 
+import json
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -11,16 +13,19 @@ import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
-from test_loads import BODY, COLUMN, build, model_of, only
+from test_loads import BODY, COEFFICIENTS, COLUMN, build, model_of, only
 
 import jaxhydro as jh
+from calibration.discovery.catalogue import Scales, catalogue, sought, with_candidates
 from jaxhydro.interop.capytaine import read_capytaine
 from jaxhydro.interop.coefficients import RadiationCoefficients
 from jaxhydro.interop.wamit import read_wamit
 from jaxhydro.loads import ComputedRadiation, Stiffness
+from jaxhydro.platform_schema import load_platform
 from jaxhydro.problems import InputError
-from jaxhydro.retardation import Damping, realise
+from jaxhydro.retardation import Damping, Realisation, realise
 from jaxhydro.simulate import default_step, memory_step
+from jaxhydro.sweep.run import _platform_text
 
 WAMIT = Path("/work/shared/reference/iea15-umaine/HydroData/IEA-15-240-RWT-UMaineSemi.1")
 SHARED = Path(__file__).resolve().parents[2] / "shared/reference/iea15-umaine/HydroData" / WAMIT.name
@@ -321,3 +326,82 @@ def test_capytaine_datasets(tmp_path: Path) -> None:
         read_capytaine(file)
     with pytest.raises(InputError, match="found no such file"):
         read_capytaine(tmp_path / "none.nc")
+
+
+# the platform file and the catalogue
+
+
+def folder(path: Path, **keys: Any) -> Path:
+    """A platform file beside the coefficients that it names."""
+    given = coefficients(np.arange(0.05, 4.01, 0.05))
+    given = given._replace(zero=given.infinite)
+    (path / "hull.1").write_text(wamit_text(given, 2.0, 1025.0))
+    dataset(given, ["Surge", "Heave", "Pitch"], [0, 2, 4]).to_netcdf(path / "hull.nc")
+    springs = {f"C{i + 1}{i + 1}": float(c) for i, c in enumerate(C) if c}
+    data = {
+        "name": "rig",
+        "water": {"density": 1025.0, "depth": 200.0},
+        "rigid_body": BODY | {"mass": M},
+        "members": [COLUMN],
+        "coefficients": {"column": COEFFICIENTS},
+        "stiffness": springs,
+        "radiation": {"file": "hull.1", "length": 2.0} | keys,
+    }
+    (path / "platform.yaml").write_text(json.dumps(data))
+    return path / "platform.yaml"
+
+
+def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
+    """Beside the platform file, wherever it is loaded from; both formats give one force; a candidate is at its null."""
+    models = [
+        jh.load_model(folder(tmp_path, **keys))
+        for keys in ({}, {"file": "hull.nc", "length": None}, {"use": "candidate", "order": 6, "tolerance": 0.2})
+    ]
+    loads = [next(load for load in model.loads if isinstance(load, ComputedRadiation)) for model in models]
+    assert [float(model.values["computed_radiation.share"]) for model in models] == [1.0, 1.0, 0.0]
+    assert loads[2].rates.shape[0] <= 6 < loads[0].rates.shape[0]
+    omega = np.array([0.1, 0.5, 1.0])
+    first, second = (Realisation(*map(np.asarray, (one.rates, one.drive, one.output)), 0.0, 0.0) for one in loads[:2])
+    peak = np.abs(first.transfer(omega)).max(axis=0)
+    assert_allclose(second.transfer(omega), first.transfer(omega), atol=1e-5 * peak.max(), rtol=1e-3)
+    assert_allclose(first.transfer(omega)[:, 2, 2], transfer(omega) * SHAPE[2, 2], atol=0.03 * SHAPE[2, 2])
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"file": "none.1"}, "none.1: expected a WAMIT .1 file, found no such file"),
+        ({"file": "a.txt"}, "format: expected wamit or capytaine, as the file's ending is neither .1 nor .nc, found nothing"),
+        ({"file": "hull.nc"}, "radiation.length: expected no length, as Capytaine's coefficients have dimensions, found 2.0"),
+        ({"format": "nemoh"}, "radiation.format: expected"),
+        ({"fiel": "a"}, "radiation.fiel: expected a known key"),
+        ({"order": 3}, "radiation.order: expected enough states to follow the coefficients, found a misfit of"),
+    ],
+)  # fmt: skip
+def test_wrong_declarations_are_told(tmp_path: Path, keys: dict, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        jh.load_model(folder(tmp_path, **keys))
+    assert words in str(caught.value)
+
+
+def test_a_declared_candidate_is_in_the_catalogue(tmp_path: Path) -> None:
+    """Beside the lowest-order memory; not where the platform has it already. What was found is used without the catalogue."""
+    scales = {"heave": Scales(1.0, 0.3, 1e5, 1e7)}
+    for use, there in (("candidate", True), ("load", False)):
+        model = jh.load_model(folder(tmp_path, use=use))
+        found, free, sizes = catalogue(model, scales, False, 1.0)
+        names = [one.effect for one in found]
+        assert "radiation_memory" in names and ("computed_radiation" in names) == there == bool(sought(model))
+        if there:
+            one = found[names.index("computed_radiation")]
+            assert one.positive == one.amplitudes == ("computed_radiation.share",) and one.telling and one.source
+            assert free[one.amplitudes[0]].start == 0.0 and sizes[one.amplitudes[0]] > 0
+            assert with_candidates(model, [one]) is model
+
+
+def test_sweeps_find_the_coefficients_from_their_own_folder(tmp_path: Path) -> None:
+    """The platform that a store keeps names the file where it is."""
+    (elsewhere := tmp_path / "store").mkdir()
+    (elsewhere / "platform.yaml").write_text(_platform_text(str(folder(tmp_path))))
+    kept, asked = (load_platform(path / "platform.yaml").radiation for path in (elsewhere, tmp_path))
+    assert kept == asked and Path(kept.file).is_file()

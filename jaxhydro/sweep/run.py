@@ -1,5 +1,6 @@
 """A sweep from its file to its results: made or resumed, run by run, with what failed recorded."""
 
+import json
 import time as clock
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -11,7 +12,8 @@ from typing import NamedTuple
 import xarray as xr
 
 from jaxhydro.files import check_folder
-from jaxhydro.platform_schema import builtin_platforms
+from jaxhydro.platform_schema import builtin_platforms, load_platform
+from jaxhydro.problems import read_yaml
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.load import load_sweep
@@ -142,4 +144,10 @@ def _platform_text(asked: str) -> str:
     name = asked.lower()
     if name in builtin_platforms() and not Path(asked).is_file():
         return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
-    return Path(asked).read_text(encoding="utf-8-sig")
+    text = Path(asked).read_text(encoding="utf-8-sig")
+    radiation = load_platform(asked).radiation
+    if radiation is None:
+        return text
+    # a store is elsewhere, and has to find the file; JSON is YAML
+    data = read_yaml(asked)
+    return json.dumps(data | {"radiation": data["radiation"] | {"file": radiation.file}}, indent=1)
