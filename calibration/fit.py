@@ -19,6 +19,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError
 from jaxhydro.problems import Problem as Wrong
+from jaxhydro.simulate import memory_step
 from jaxhydro.statics import equilibrium, natural_modes
 
 SIDE = 0.1  # weight of a record's other channels against the released one, on the same footing in metres of the hull
@@ -288,7 +289,7 @@ def pose(model: Model, campaign: Campaign, records: Sequence[Record], space: Par
     periods = natural_modes(model).period
     step = float(periods.min()) / STEPS_PER_PERIOD
     # a model that starts with periods far too long would step too far for the true ones
-    step = min([step, *(dominant_period(record) / STEPS_PER_PERIOD for record in records)])
+    step = min([step, memory_step(model, "tsit5"), *(dominant_period(record) / STEPS_PER_PERIOD for record in records)])
     data = gather(records, model, step)
     rest = None if space.moves_equilibrium else equilibrium(model)
     return Problem(model, data, space, campaign.manifest.zero is not None, rest)

@@ -117,7 +117,7 @@ def with_diffraction(model: Model, options: Options) -> Model:
 
 def sea_step(model: Model, options: Options) -> float:
     """The largest time step (s) that follows the platform and the waves."""
-    return min(SEA_STEP, default_step(model), RESOLVED / options.cutoff)
+    return min(SEA_STEP, default_step(model, "ab4"), RESOLVED / options.cutoff)
 
 
 def seas_of(campaign: Campaign, environment: Environment, options: Options) -> Seas:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from os import PathLike
+from pathlib import Path
 
 import equinox as eqx
 import jax
@@ -10,13 +11,16 @@ import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro import platform_schema as schema
+from jaxhydro.computed import computed_radiation
 from jaxhydro.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
+from jaxhydro.interop.quadratic_transfer import read_transfer
 from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
+    DriftTransfer,
     EndDrag,
     EndInertia,
     LinearDamping,
@@ -63,6 +67,13 @@ def build(platform: schema.Platform) -> Model:
         letter = "A" if name == "added_mass" else "B"
         if values := _entries(f"{name}.{letter}", matrix):
             loads.append(load(values))
+    if (declared := platform.radiation) is not None:
+        how = (str(declared.kind), water.density, declared.length or 1.0, declared.order, declared.tolerance)
+        loads.append(computed_radiation(Path(declared.file), *how, share=float(declared.use == "load")))
+    if (drift := platform.drift) is not None:
+        file, newman = Path(drift.file), drift.approximation == "newman"
+        transfer = read_transfer(file, water.density, water.gravity, length=drift.length, heading=drift.heading, newman=newman)
+        loads.append(DriftTransfer.of(transfer, share=float(drift.use == "load")))
     if values := _entries("stiffness.C", platform.stiffness.matrix()):
         loads.append(Stiffness(values, jnp.zeros(6), "stiffness"))
     if members:

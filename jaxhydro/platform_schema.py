@@ -182,6 +182,47 @@ class Hydrostatics(Schema):
         return self
 
 
+class Radiation(Schema):
+    """Radiation damping computed by another program: `file`, beside the platform file, as WAMIT's `.1` of ULEN `length` (m) or
+    Capytaine's `.nc`, followed to `tolerance` by a state space of at most `order` states. `use`: part of the model, or a
+    candidate that `diagnose` may find to be missing."""
+
+    file: Text
+    format: Literal["wamit", "capytaine"] | None = None
+    length: Positive | None = None
+    tolerance: Annotated[float, Field(strict=True, gt=0, lt=1)] = 0.01
+    order: Annotated[int, Field(strict=True, ge=2, le=200)] = 40
+    use: Literal["load", "candidate"] = "load"
+
+    @property
+    def kind(self) -> str | None:
+        """The format, or that of the file's ending."""
+        return self.format or {".1": "wamit", ".nc": "capytaine"}.get(Path(self.file).suffix.lower())
+
+    @model_validator(mode="after")
+    def _of_a_kind(self) -> Self:
+        if self.kind is None:
+            raise Faults(Problem("format", "wamit or capytaine, as the file's ending is neither .1 nor .nc", "nothing"))
+        if self.kind == "capytaine" and self.length is not None:
+            raise Faults(Problem("length", "no length, as Capytaine's coefficients have dimensions", shown(self.length)))
+        return self
+
+
+class Drift(Schema):
+    """Difference-frequency second-order forces computed by another program: `file`, beside the platform file, as WAMIT's
+    `.12d` of ULEN `length` (m), for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation.
+    `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+
+    file: Text
+    length: Positive = 1.0
+    heading: Number = 0.0
+    approximation: Literal["full", "newman"] = "full"
+    use: Literal["load", "candidate"] = "load"
+
+
+BESIDE = ("radiation", "drift")  # keys that name a file
+
+
 class ReferenceSea(Schema):
     """The sea state in which coefficients are as declared: m, s."""
 
@@ -222,6 +263,8 @@ class Platform(Consistent):
         description="a mapping with `kind`: none, linear_springs or stiffness_matrix",
     )
     hydrostatics: Hydrostatics = Hydrostatics()
+    radiation: Radiation | None = None
+    drift: Drift | None = None
     wetting: Literal["mean", "instantaneous"] = "instantaneous"
     diffraction: Literal["maccamy_fuchs", "ramp", "none"] = "maccamy_fuchs"
     directions: Literal["body", "earth"] = "body"
@@ -263,4 +306,10 @@ def load_platform(path_or_name: str | PathLike[str]) -> Platform:
     if not is_path and not Path(name).exists():
         expected = f"a YAML file or a built-in platform ({', '.join(known)})"
         raise InputError(name, [Problem("", expected, shown(name), suggest(name, known))])
-    return validate(Platform, read_yaml(path_or_name, "platform"), name)
+    platform = validate(Platform, read_yaml(path_or_name, "platform"), name)
+    folder = Path(path_or_name).absolute().parent
+    beside = {
+        key: one.model_copy(update={"file": str(folder / one.file)})
+        for key in BESIDE if (one := getattr(platform, key)) is not None
+    }  # fmt: skip
+    return platform.model_copy(update=beside) if beside else platform

@@ -88,7 +88,7 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
 
 def largest_step(model: Model, cutoff: float) -> float:
     """s, where none is asked for: what follows the platform's motions, and waves of up to `cutoff` (Hz)."""
-    return min(SEA_STEP, default_step(model), RESOLVED / cutoff)
+    return min(SEA_STEP, default_step(model, "ab4"), RESOLVED / cutoff)
 
 
 def build_sea(model: Model, asked: Asked, duration: float) -> Built:

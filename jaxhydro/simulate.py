@@ -24,15 +24,25 @@ from jaxhydro.waves.sea_state import state_of
 
 SEA_STEP = 0.25  # s, in irregular seas where no step is asked for
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
+RESOLVED = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
+RESOLVED_ELSE = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
 
 
-def default_step(model: Model) -> float:
-    """A time step (s) that follows the model's fastest natural motion: a 24th of its shortest period, at most 1 s.
+def default_step(model: Model, method: Method = "tsit5") -> float:
+    """A time step (s) that follows the model's fastest natural motion: a 24th of its shortest period, at most 1 s, and what
+    its loads remember (`memory_step`).
 
     The error of a decay is then some 1e-6 of its amplitude. Waves shorter than the platform's motions ask for less.
     """
     periods = natural_modes(model).period
-    return min(1.0, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else 0.5
+    step = min(1.0, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else 0.5
+    return min(step, memory_step(model, method))
+
+
+def memory_step(model: Model, method: Method) -> float:
+    """The longest step (s) with which a method follows what loads remember (`AbstractLoad.fastest`); infinite for most."""
+    fastest = max(load.fastest() for load in model.loads)
+    return RESOLVED.get(method, RESOLVED_ELSE) / fastest if fastest else math.inf
 
 
 @eqx.filter_jit
@@ -87,16 +97,17 @@ def simulate(
     sea = StillWater() if sea is None else sea
     irregular = isinstance(sea, IrregularSea)
     method = ("ab4" if irregular else "tsit5") if method is None else method
-    limit = step if step is not None else SEA_STEP if irregular else default_step(model)
+    if step is None:
+        step = min(SEA_STEP, memory_step(model, method)) if irregular else default_step(model, method)
     named = position is None or isinstance(position, Mapping)
     memory = model.settled(by_name(position)) if named else model.rest().memory
     rest = equilibrium(model) if named else jnp.zeros(6)
     q = rest + by_name(position)
     start = State(q, model.body_velocity(q, by_name(rate)), memory)
     if isinstance(sea, IrregularSea):
-        return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, limit, method, adjoint).response
+        return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
     duration = float(times[-1] - times[0])
-    steps = max(1, math.ceil(duration / limit - 1e-9))
+    steps = max(1, math.ceil(duration / step - 1e-9))
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
 
 

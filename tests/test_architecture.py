@@ -29,7 +29,9 @@ LAYERS = (  # a module imports from layers below its own
     # files in, files out: the edge
     ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start"),
     ("jaxhydro.problems",),
-    ("jaxhydro.body_schema", "jaxhydro.files", "jaxhydro.interop.*"),
+    ("jaxhydro.body_schema", "jaxhydro.files", "jaxhydro.interop.coefficients"),
+    ("jaxhydro.interop.wamit", "jaxhydro.interop.capytaine", "jaxhydro.interop.quadratic_transfer", "jaxhydro.retardation"),
+    ("jaxhydro.interop", "jaxhydro.computed"),
     ("jaxhydro.platform_schema", "jaxhydro.drag_laws"),
     ("jaxhydro.platform", "jaxhydro.plot"),
     ("jaxhydro.convergence",),
@@ -68,7 +70,8 @@ EDGE = {  # third-party or built-in, and the only modules that may use it
     "yaml": set(),
     "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals")},
     "xarray": {f"jaxhydro.sweep.{name}" for name in ("outputs", "run", "store")}
-    | {"jaxhydro.export"} | {f"calibration.{name}" for name in ("folder", "outputs", "readers", "seas_outputs")},
+    | {"jaxhydro.export", "jaxhydro.interop.capytaine"}
+    | {f"calibration.{name}" for name in ("folder", "outputs", "readers", "seas_outputs")},
     "typer": {"jaxhydro.cli", "jaxhydro.options", "jaxhydro.arguments"},
     "rich": {"jaxhydro.console"},
 }

@@ -13,10 +13,12 @@ from test_loads import COLUMN, build, model_of
 from test_water_effects import HULL, WATER, acts, irregular
 
 import jaxhydro as jh
+from calibration.discovery.catalogue import Scales, catalogue, sought
 from jaxhydro.interop.quadratic_transfer import read_transfer
 from jaxhydro.loads import DriftTransfer
 from jaxhydro.problems import InputError
 from jaxhydro.statics import linearised
+from jaxhydro.sweep.run import _platform_text
 from jaxhydro.waves.irregular_sea import Clock
 from jaxhydro.waves.transfer import Transfer
 
@@ -153,6 +155,28 @@ def test_broken_files_are_told(tmp_path: Path) -> None:
     (tmp_path / "g").write_text("PER1 PER2\n1 2\n")
     with pytest.raises(InputError, match="expected rows of 9 numbers"):
         read_transfer(tmp_path / "g", 1025.0, 9.81)
+
+
+def test_a_platform_file_names_one(tmp_path: Path) -> None:
+    """A load of all of it, found beside the platform file, by a sweep's copy too; as a candidate at its null, and scored."""
+    written(tmp_path, rows_of(table()), "hull.12d")
+    text = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "a.yaml"
+    path.write_text(text + "\ndrift: {file: hull.12d, approximation: newman}\n", encoding="utf-8")
+    model = jh.load_model(path)
+    assert float(model.values["drift_transfer.share"]) == 1.0 and model.transfer.eigenvalue.shape == (6, 2)
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "platform.yaml").write_text(_platform_text(str(path)), encoding="utf-8")
+    assert jh.load_model(tmp_path / "b" / "platform.yaml").transfer is not None
+    path.write_text(text + "\ndrift: {file: hull.12d, use: candidate}\n", encoding="utf-8")
+    model = jh.load_model(path)
+    assert sought(model) == {"drift_transfer.share"}
+    scales = {"surge": Scales(5.0, 0.1, 1e5, 2e7)}
+    known = {waves: [one.effect for one in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
+    assert "drift_transfer" in known[True] and "drift_transfer" not in known[False]
+    path.write_text(text + "\ndrift: {file: none.12d}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"none\.12d: expected a \.12d file, found no such file"):
+        jh.load_model(path)
 
 
 @pytest.mark.skipif(not WAMIT.exists() or not RUN.exists(), reason="../shared/reference has no iea15-umaine or no openfast")

@@ -21,6 +21,7 @@ from jaxhydro.loads import (
     AddedMass,
     Buoyancy,
     ChangingDrag,
+    ComputedRadiation,
     CoulombFriction,
     CoupledDamping,
     CoveredEnds,
@@ -118,6 +119,7 @@ FOUND = {  # what no platform file declares: effects that were found to be missi
     "hysteresis": {"force": 8e4, "yield_displacement": 0.3},
     "mooring_nonlinearity": {"odd_quadratic": 800.0, "even_quadratic": -300.0, "cubic": 40.0},
     "radiation_memory": {"strength": 3e5, "frequency": 0.5, "damping_ratio": 0.3},
+    "computed_radiation": {"share": 0.8},
     "hidden_oscillator": {"mass": 2e5, "period": 14.0, "damping_ratio": 0.05},
     "nonlinear_hydrostatics": {"even_quadratic": 3e4, "cubic": 5e3, "quintic": 200.0, "pitch_squared": 2e7},
     "cubic_damping": {"coefficient": 3e4},
@@ -136,12 +138,18 @@ FOUND = {  # what no platform file declares: effects that were found to be missi
 }
 
 
+# states that the motions drive together
+RADIATION = (np.kron(np.eye(6), [[-0.3, 0.7], [-0.7, -0.2]]), np.kron(np.eye(6) + 0.1, [[3.0], [2.0]]))
+RADIATION += (1e3 * RADIATION[1].T,)
+
+
 def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad, ...]:
     """The loads that no platform file declares, at their nulls."""
     return (
         Umbilical.null(),
         NonlinearHydrostatics.null(),
         MassError.null(model.body.mass, model.body.centre),
+        ComputedRadiation.of(*RADIATION),
         *(kind.null(dofs) for kind in (CoulombFriction, CubicDamping, StaticForce, MooringNonlinearity)),
         *(kind.null(dofs) for kind in (Hysteresis, RadiationMemory, HiddenOscillator)),
     )

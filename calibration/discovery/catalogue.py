@@ -14,11 +14,13 @@ from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
     ChangingDrag,
+    ComputedRadiation,
     CoulombFriction,
     CoupledDamping,
     CoveredEnds,
     CubicDamping,
     Current,
+    DriftTransfer,
     EndDrag,
     HiddenOscillator,
     Hysteresis,
@@ -40,6 +42,7 @@ from jaxhydro.model import Model
 
 PERIODS = (8.0, 16.0, 32.0, 64.0)  # s: of hidden oscillators, tried in turn
 RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
+SHARE = 0.1  # of computed radiation or drift that is noticeable
 SHARP = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
 YIELDS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hysteresis yields
 
@@ -120,6 +123,12 @@ WHOLE: dict[str, Callable[[], AbstractLoad]] = {
     "covered_ends": CoveredEnds.null,
 }
 DRAG = ("amplitude_dependent_drag", "sea_state_dependent_drag")
+
+
+def sought(model: Model) -> set[str]:
+    """Labels of what the platform declares to be looked for: its load is there, at its null."""
+    labels = ("computed_radiation.share", "drift_transfer.share")
+    return {label for label in labels if label in model.values and float(model.values[label]) == 0}
 
 
 def with_effects(model: Model, labels: Iterable[str]) -> Model:
@@ -297,6 +306,25 @@ def catalogue(
                 telling=f"a {dof} decay in regular waves of two heights",
                 source=WaveDriftDamping.source,
             )
+    looked_for = sought(model)
+    if waves and "drift_transfer.share" in looked_for:
+        add(
+            "drift_transfer",
+            None,
+            [linear("drift_transfer.share", SHARE)],
+            passive=True,
+            telling="the same irregular sea at another height: drift goes as Hs^2",
+            source=DriftTransfer.source,
+        )
+    if "computed_radiation.share" in looked_for:
+        add(
+            "computed_radiation",
+            None,
+            [linear("computed_radiation.share", SHARE)],
+            passive=True,
+            telling="forced oscillation at three periods, or a decay in each motion from a small amplitude",
+            source=ComputedRadiation.source,
+        )
     if "surge" in scales:
         s = scales["surge"]
         stiff = s.force / s.amplitude

@@ -19,6 +19,7 @@ from calibration.stretches import window
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock
 from jaxhydro.model import Model
+from jaxhydro.simulate import memory_step
 from jaxhydro.statics import equilibrium, natural_modes
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
@@ -52,7 +53,7 @@ def study_of(
     decays, own_width = None, np.zeros((0, 0))
     if decaying:
         shortest = min([HIGHEST / highest, *(dominant_period(r) for r in decaying)])
-        step = shortest / STEPS_PER_PERIOD
+        step = min(shortest / STEPS_PER_PERIOD, memory_step(model, "tsit5"))
         decays, found, own_width, rows = of_decays(decaying, model, space, from_rest, step, highest)
         series += found
         cuts.append(rows)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.discovery.catalogue import Candidate, catalogue, scales_of, with_candidates, with_drag
+from calibration.discovery.catalogue import Candidate, catalogue, scales_of, sought, with_candidates, with_drag
 from calibration.discovery.gathering import study_of
 from calibration.discovery.study import Prior, Study
 from calibration.fit import labels_of, space_of
@@ -79,8 +79,9 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
             scaled[label], units[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)
     candidates = [*candidates, *extra]
     # what the platform file has is fitted, not looked for
-    candidates = [one for one in candidates if not set(one.amplitudes) & set(declared.values)]
-    scaled = {label: one for label, one in scaled.items() if label not in declared.values}
+    taken = set(declared.values) - (sought(declared) - set(labels))
+    candidates = [one for one in candidates if not set(one.amplitudes) & taken]
+    scaled = {label: one for label, one in scaled.items() if label not in taken}
     base_space = space_of(campaign, labels, declared)
     nuisances: dict[str, tuple[dict[str, float], float]] = {}  # name -> parameters and how they go together, deviation
     free: list[Free] = [*base_space.free]

@@ -1,1 +1,1 @@
-"""Files of other programs."""
+"""Files of other programs of the field, read into plain arrays."""

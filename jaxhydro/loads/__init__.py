@@ -3,6 +3,7 @@
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.changing_drag import ChangingDrag
+from jaxhydro.loads.computed_radiation import ComputedRadiation
 from jaxhydro.loads.coulomb_friction import CoulombFriction
 from jaxhydro.loads.coupled_damping import CoupledDamping
 from jaxhydro.loads.covered_ends import CoveredEnds
@@ -59,6 +60,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "hysteresis": Hysteresis,
     "mooring_nonlinearity": MooringNonlinearity,
     "radiation_memory": RadiationMemory,
+    "computed_radiation": ComputedRadiation,
     "hidden_oscillator": HiddenOscillator,
     "nonlinear_hydrostatics": NonlinearHydrostatics,
     "cubic_damping": CubicDamping,

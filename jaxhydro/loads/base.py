@@ -114,6 +114,10 @@ class AbstractLoad(eqx.Module):
         """Its memory after having been moved slowly to a displacement (m, rad, from rest) and held there."""
         return self.rest()
 
+    def fastest(self) -> float:
+        """Largest rate (1/s) of its memory by itself, which a time step has to resolve; 0: it has none, or slow ones only."""
+        return 0.0
+
     def in_sea(self, state: SeaState) -> "AbstractLoad":
         """The load as it is in a sea state; itself where it does not depend on that."""
         return self

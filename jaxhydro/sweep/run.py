@@ -1,5 +1,6 @@
 """A sweep from its file to its results: made or resumed, run by run, with what failed recorded."""
 
+import json
 import time as clock
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -12,7 +13,8 @@ import xarray as xr
 
 from jaxhydro.command import calibration_file
 from jaxhydro.files import check_folder
-from jaxhydro.platform_schema import builtin_platforms
+from jaxhydro.platform_schema import BESIDE, builtin_platforms, load_platform
+from jaxhydro.problems import read_yaml
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.load import load_sweep
@@ -141,4 +143,7 @@ def _platform_text(asked: str) -> str:
     name = asked.lower()
     if name in builtin_platforms() and not Path(asked).is_file():
         return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
-    return Path(asked).read_text(encoding="utf-8-sig")
+    platform, data = load_platform(asked), read_yaml(asked)
+    # a store is elsewhere, and has to find the files; JSON is YAML
+    beside = {key: data[key] | {"file": one.file} for key in BESIDE if (one := getattr(platform, key)) is not None}
+    return json.dumps(data | beside, indent=1) if beside else Path(asked).read_text(encoding="utf-8-sig")

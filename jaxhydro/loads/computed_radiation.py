@@ -1,0 +1,54 @@
+"""Fluid memory of computed radiation damping, all motions coupled."""
+
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+
+SHARE = Parameter("-", "share of the computed radiation memory, which at 1 is complete", 0.0, 2.0)
+
+
+class ComputedRadiation(AbstractLoad):
+    """F = -s int_0^inf K(u) v(t - u) du along body axes, K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega (Cummins 1962).
+
+    v is the velocity of the reference point (m/s) and the angular velocity (rad/s), B the radiation damping of potential
+    theory, all 36 entries, about the same point; s the share of it, complete at 1. K is that of a state space
+    (`retardation.realise`):
+
+        dr/dt = A r + B v,  F = -s C r.
+
+    It gives damping B(omega), and added mass A(omega) - A(infinity) = -1/omega int_0^inf K sin(omega t) dt (Ogilvie 1964).
+    Added mass at infinite frequency is not here but stays the strips' own: with this load a `Ca` means that one, and what was
+    tuned to slow motion counts part of it twice. Linear: memory of the mean wetted hull, moving with the body. Before t = 0 the
+    platform was at rest.
+
+    Its label is `computed_radiation.share`. A, B and C are constants: another hull has others.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    rates: Float[Array, "n n"]
+    drive: Float[Array, "n 6"]
+    output: Float[Array, "6 n"]
+    source: ClassVar[str] = "Cummins 1962, Schiffstechnik 9, 101-109"
+
+    @classmethod
+    def of(cls, rates: np.ndarray, drive: np.ndarray, output: np.ndarray, share: float = 0.0) -> "ComputedRadiation":
+        """With a state space, and a share of it: none is the null."""
+        space = (jnp.asarray(matrix, float) for matrix in (rates, drive, output))
+        return cls({"computed_radiation.share": jnp.asarray(share, float)}, *space)
+
+    def rest(self) -> Float[Array, " n"]:
+        return jnp.zeros(self.rates.shape[-1])
+
+    def fastest(self) -> float:
+        return float(np.abs(np.linalg.eigvals(np.asarray(self.rates))).max())
+
+    def about(self, label: str) -> Parameter:
+        return SHARE
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        force = -self.values["computed_radiation.share"] * (self.output @ memory)
+        return Action(body_force=force, memory_rate=self.rates @ memory + self.drive @ now.velocity)
