@@ -1,4 +1,4 @@
-"""WAMIT's `.1` file: added mass and radiation damping (WAMIT User Manual 7.5, section 4.9 and chapter 3)."""
+"""WAMIT's `.1` file: added mass and radiation damping, by the conventions of its manual as HydroDyn reads them (WAMIT.f90)."""
 
 import math
 from os import PathLike
