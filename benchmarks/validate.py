@@ -25,6 +25,7 @@ from benchmarks.evidence import (
     identified,
     measured,
     measured_waves,
+    numerical_tank,
     openfast,
     openfast_waves,
     periods,
@@ -38,7 +39,7 @@ from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
     "seeds", "coverage", "identified", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas",
-    "classical_bias", "starts", "global_search", "study", "diagnoses",
+    "classical_bias", "starts", "global_search", "study", "diagnoses", "numerical_tank",
 )  # fmt: skip
 INTRO = """\
 # Validation
@@ -66,6 +67,8 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return identified.run(figures, options.processes)
     if name == "tuned_seas":
         return tuned_seas.run(figures, options.processes)
+    if name == "numerical_tank":
+        return numerical_tank.run(figures, options.processes)
     if name == "diagnoses":
         return diagnoses.run(figures, options.processes, options.diagnoses)
     plain = {"periods": periods, "openfast": openfast, "openfast_waves": openfast_waves,

@@ -1,0 +1,91 @@
+"""Section: what `diagnose` says of OpenFAST's potential-flow runs, taken as measurements of a strip model."""
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.evidence import numerical_tank_runs as runs
+from benchmarks.evidence import numerical_tank_truth as truth
+from benchmarks.evidence.common import Absent, Section, begin, cached, fingerprint, parallel, say
+from benchmarks.evidence.numerical_tank_text import shortcomings, words
+
+TITLE = "A numerical wave tank taken as measurements"
+SLOW = 0.025  # Hz: the upper end of surge's low-frequency band
+
+
+def one(part: str) -> dict[str, Any]:
+    """One of the calculations of `runs`."""
+    return {"declared": runs.declared, "calibrated": runs.calibrated}.get(part, partial(runs.diagnosed, part))()
+
+
+def run(figures: Path, processes: int) -> Section:
+    """The declared model, calibrated, and two diagnoses: of decays and sea, and of the decays alone."""
+    if not runs.FOLDER.exists() or not truth.HYDRO.exists():
+        raise Absent("OpenFAST's runs and WAMIT's files (../shared/reference) are not on this machine")
+    begin()
+    folder = runs.written()
+    key = fingerprint(Path(runs.__file__), *sorted(folder.glob("*.csv")), *sorted(folder.glob("*.yaml")))
+    results: dict[str, Any] = {}
+    for name, found in parallel(runs.NAME, key, ("declared", "calibrated", "all", "decays"), one, processes):
+        results[name] = found
+        if "verdict" in found:
+            named = [" ".join(filter(None, (x["effect"], x["motion"]))) for x in found["effects"]]
+            say(f"  {name}: {', '.join(named) or found['verdict']}, {found['seconds']:.0f} s")
+    law: dict[str, dict[str, float]] = {}
+    for x in results["all"]["effects"]:
+        if x["effect"] == "wave_drift":
+            law[x["motion"]] = {label.split(".")[-1]: value for label, (value, _, _) in x["parameters"].items()}
+    fits = {
+        "declared": {}, "calibrated": results["calibrated"]["parameters"],
+        **{k: results["all"][k]["parameters"] for k in ("before", "after")},
+    }  # fmt: skip
+    known = cached(runs.NAME, fingerprint(key, Path(truth.__file__), repr(law)), "truth", partial(known_of, law, fits))
+    path = figures / "numerical-tank-surge.png"
+    draw(results["all"], path)
+    return Section(TITLE, words(results, known), (path,), shortcomings(results))
+
+
+def known_of(law: dict[str, dict[str, float]], fits: dict[str, dict[str, Any]]) -> dict[str, Any]:
+    """What is known of the tank; `law`, of wave drift, as it was found, and surge's natural period (s) by the `fits`."""
+    import jaxhydro as jh
+
+    model = jh.load_model(runs.CAMPAIGN / "platform.yaml")
+    periods = {}
+    for name, fit in fits.items():
+        values = {label: one[0] for label, one in fit.items() if label in model.values}
+        periods[name] = float(jh.natural_modes(model.with_values(values)).of("surge"))
+    return {
+        "mooring": truth.mooring(), "radiation": truth.radiation(), "drift": truth.drift(law),
+        "excitation": truth.excitation(), "surge": periods,
+    }  # fmt: skip
+
+
+def slow(x: np.ndarray, step: float) -> np.ndarray:
+    """What of a motion is slower than `SLOW`, its mean with it."""
+    lines = np.fft.rfft(x)
+    lines[np.fft.rfftfreq(len(x), step) > SLOW] = 0
+    return np.fft.irfft(lines, len(x))
+
+
+def draw(found: dict[str, Any], path: Path) -> None:
+    """Surge of the sea that was held out: measured, of the fitted declared model and with what was found; its slow part."""
+    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style
+
+    motions = found["motions"][runs.HELD]
+    time = np.array(motions["time"])
+    series = dict(zip(("measured", "declared, fitted", "with what was found"), np.array(motions["surge"])))
+    looks = ((MEASURED, 1.5), (BEFORE, 1.0), (SIMULATED, 0.8))
+    with style():
+        figure, axes = stack([1.2, 1.2])
+        artists = {}
+        for (name, x), (colour, width) in zip(series.items(), looks):
+            artists[name] = axes[0].plot(time, x, color=colour, lw=width)[0]
+            axes[1].plot(time, slow(x, float(time[1] - time[0])), color=colour, lw=width)
+        axes[0].set_ylabel("Surge (m)")
+        axes[1].set_ylabel(f"slower than\n{SLOW:g} Hz (m)")
+        axes[1].set_xlabel("Time (s)")
+        axes[1].set_xlim(runs.HALF, runs.HALF + 1200)
+        header(figure, "Surge, held-out half of the sea", artists, columns=2)
+        save(figure, path)

@@ -1,0 +1,194 @@
+"""OpenFAST's potential-flow runs as a campaign of measurements, its calibration and its diagnoses."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from benchmarks.evidence.common import CACHE
+from benchmarks.evidence.openfast import FOLDER, platform
+
+NAME = "numerical_tank"
+CAMPAIGN = CACHE / "numerical-tank-campaign"
+DECAYS = ("surge", "heave", "pitch")
+SEA, REST = "ss1_nwt", "nwt_static"
+RUNS = (*(f"decay_{dof}_nwt" for dof in DECAYS), SEA, REST)
+COLUMNS = {"surge_m": "PtfmSurge", "heave_m": "PtfmHeave", "pitch_deg": "PtfmPitch"}
+NOISE = {"surge": 0.01, "heave": 0.005, "pitch": 0.01}  # m, m, deg: the contract's
+EVERY = 5  # of OpenFAST's samples, 0.1 s apart
+TRANSIENT, HALF, END = 300.0, 2100.0, 3900.0  # s: of the sea, the fitted half's end, the held-out one's
+PERIOD = 8.96  # s
+FITTED, HELD = "sea-fitted", "sea-held-out"
+SHOWN = 2  # samples between those that are drawn
+
+
+def columns(name: str) -> dict[str, np.ndarray]:
+    """The table of one of OpenFAST's runs."""
+    import pandas as pd
+
+    found = pd.read_csv(FOLDER / name / "out.csv.gz", skiprows=[1]).astype(float)
+    return {key: found[key].to_numpy() for key in found}
+
+
+def setup() -> dict[str, Any]:
+    """Numbers of the strip model that is declared."""
+    return json.loads((FOLDER / "decay_surge_strip" / "setup.json").read_text())
+
+
+def written() -> Path:
+    """The campaign's folder: the strip model as declared, and the runs with a sensor's noise."""
+    CAMPAIGN.mkdir(parents=True, exist_ok=True)
+    random = np.random.default_rng(0)
+    for name in RUNS:
+        table = {key: values[::EVERY] for key, values in columns(name).items()}
+        noisy = {
+            to: table[of] + NOISE[to.split("_")[0]] * random.standard_normal(len(table[of])) for to, of in COLUMNS.items()
+        }
+        series = {"time_s": table["Time"], **noisy, "wave_m": table["Wave1Elev"]}
+        head = ",".join(series)
+        np.savetxt(CAMPAIGN / f"{name}.csv", np.stack([*series.values()], axis=1), "%.6g", ",", header=head, comments="")
+    sea = {"kind": "irregular", "file": f"{SEA}.csv", "significant_wave_height": 3.1, "peak_period": PERIOD}
+    units = {"time": "s", "surge": "m", "heave": "m", "pitch": "deg"}
+    manifest = {
+        "name": "numerical wave tank",
+        "platform": "platform.yaml",
+        "channels": {name: {"column": f"{name}_{unit}", "unit": unit} for name, unit in units.items()},
+        "wave_channel": {"column": "wave_m", "unit": "m", "position": [0.0, 0.0]},
+        "noise": NOISE,
+        "zero": {"test": "rest"},
+        "tests": [
+            {"id": "rest", "kind": "static", "file": f"{REST}.csv", "use": "ignore"},
+            *({"id": dof, "kind": "decay", "degree_of_freedom": dof, "file": f"decay_{dof}_nwt.csv"} for dof in DECAYS),
+            {"id": FITTED, **sea, "window": [0.0, HALF], "transient": TRANSIENT},
+            {"id": HELD, **sea, "window": [HALF, END], "use": "holdout"},
+        ],
+    }
+    (CAMPAIGN / "campaign.yaml").write_text(yaml.safe_dump(manifest, sort_keys=False))
+    declared = {**platform(setup()), "name": "VolturnUS-S by strips"}
+    (CAMPAIGN / "platform.yaml").write_text(yaml.safe_dump(declared, sort_keys=False))
+    return CAMPAIGN
+
+
+def errors_of(found: Any) -> dict[str, Any]:
+    """Test -> RMSE over the standard deviation by motion, and errors of energies by motion and band."""
+    return {
+        test.id: {
+            "use": test.use,
+            "relative": {one.channel: one.relative for one in test.series},
+            "mean": {one.channel: [float(one.measured.mean()), float(one.simulated.mean())] for one in test.series},
+            "bands": {channel: {band: one.after for band, one in row.items()} for channel, row in test.bands.items()},
+        }
+        for test in found.tests
+    }
+
+
+def errors_in_waves(tests: Any) -> dict[str, Any]:
+    """The same of tests that `compare` simulated."""
+    from calibration.seas_results import in_bands
+
+    found = {}
+    for test in tests:
+        series = test.fit.series
+        found[test.fit.id] = {
+            "use": test.fit.use,
+            "relative": {one.channel: one.relative for one in series},
+            "mean": {one.channel: [float(one.measured.mean()), float(one.simulated.mean())] for one in series},
+            "bands": {k: {b: one.error for b, one in row.items()} for k, row in in_bands(test).items() if k in DECAYS},
+        }
+    return found
+
+
+def declared() -> dict[str, Any]:
+    """Errors of the declared model, nothing fitted: decays released as OpenFAST released them, and the sea."""
+    import jax.numpy as jnp
+
+    import jaxhydro as jh
+    from calibration.campaign import load_campaign
+    from calibration.discovery.records import options_for
+    from calibration.seas import compare
+
+    campaign = load_campaign(CAMPAIGN)
+    model, errors = campaign.model, {}
+    for dof in DECAYS:
+        record = campaign.record(dof)
+        start = np.array(json.loads((FOLDER / f"decay_{dof}_nwt" / "setup.json").read_text())["q0"], float)
+        start[3:] = np.radians(start[3:])
+        motion = jh.simulate(model, record.time, position=jnp.asarray(start), step=0.25)
+        missed = {name: np.asarray(motion[name]) - record.values[name] for name in DECAYS}
+        relative = {name: float(np.sqrt((x**2).mean()) / np.std(record.values[name])) for name, x in missed.items()}
+        errors[dof] = {"use": record.use, "relative": relative, "bands": {}}
+    options, notes = options_for(campaign)
+    found = compare(campaign, model, options)
+    errors |= errors_in_waves(found.tests)
+    return {"errors": errors, "order": options.order, "notes": [*notes, *found.notes]}
+
+
+def calibrated() -> dict[str, Any]:
+    """The declared model calibrated to the three decays as `calibrate` does, and what it then makes of the sea."""
+    from calibration import calibrate
+    from calibration.campaign import load_campaign
+    from calibration.discovery.records import options_for
+    from calibration.seas import compare
+
+    campaign = load_campaign(CAMPAIGN)
+    result = calibrate(campaign)
+    errors = {name: one for name, one in errors_of(result).items() if name in DECAYS}
+    errors |= errors_in_waves(compare(campaign, result.model, options_for(campaign)[0]).tests)
+    return {"errors": errors, "parameters": values_of(result.parameters), "converged": result.converged}
+
+
+def values_of(parameters: Any) -> dict[str, Any]:
+    """Parameters as JSON."""
+    return {k: [p.value, p.standard_deviation if p.identifiable else None, p.unit] for k, p in parameters.items()}
+
+
+def diagnosed(which: str) -> dict[str, Any]:
+    """What `diagnose` says: of `all`, or of the `decays` alone, of which blocks are left out in turn. Killed, it goes on."""
+    from calibration.campaign import load_campaign
+    from calibration.discovery.search import diagnose
+
+    campaign = load_campaign(CAMPAIGN)
+    if which == "decays":
+        campaign = replace(campaign, records=tuple(one for one in campaign.records if one.id in DECAYS))
+
+    def show(now: Any) -> None:
+        if now.fraction != shown[0]:
+            shown[0] = now.fraction
+            print(f"  {which}: {now.stage}", flush=True)
+
+    shown = [-1.0]
+    kept = CAMPAIGN / f".{which}-under-way"
+    result = diagnose(campaign.model, campaign, progress=show, kept=kept)
+    kept.unlink(missing_ok=True)
+    motions = {}
+    for before, after in zip(result.baseline.tests, result.augmented.tests):
+        motions[after.id] = {"time": after.time[::SHOWN].tolist()} | {
+            one.channel: [x[::SHOWN].tolist() for x in (one.measured, was.simulated, one.simulated)]
+            for was, one in zip(before.series, after.series)
+        }
+    return {
+        "verdict": result.verdict,
+        "effects": [
+            {
+                "effect": one.effect, "motion": one.degree_of_freedom, "parameters": values_of(one.parameters),
+                "score": one.evidence.score, "bic": one.evidence.delta_bic, "held": one.evidence.holdout_gain,
+                "clear": one.evidence.clear, "share": one.share, "alike": list(one.indistinguishable),
+            }
+            for one in result.effects
+        ],
+        "rejected": [[one.effect, one.degree_of_freedom, one.reason] for one in result.rejected],
+        "scores": [
+            [s.round, s.effect, s.degree_of_freedom, s.gain, s.holdout, s.refitted, s.refitted_holdout] for s in result.scores
+        ],
+        "before": {"errors": errors_of(result.baseline), "parameters": values_of(result.baseline.parameters)},
+        "after": {"errors": errors_of(result.augmented), "parameters": values_of(result.augmented.parameters)},
+        "objective": {use: [one.objective(use) for one in (result.baseline, result.augmented)] for use in ("fit", "holdout")},
+        "anatomy": [[one.test, one.channel, one.rms, one.noise, one.relative, one.words] for one in result.anatomy_before],
+        "latent": [[one.motion, one.words] for one in result.latent],
+        "unexplained": [result.unexplained_share, result.signature],
+        "converged": [result.baseline.converged, result.augmented.converged],
+        "notes": list(result.notes), "next": result.next_test, "seconds": result.seconds, "motions": motions,
+    }  # fmt: skip

@@ -1,0 +1,234 @@
+"""The words and tables of the section on the numerical tank."""
+
+import math
+from typing import Any
+
+from benchmarks.evidence.common import TRUE, table
+from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT, setup
+from benchmarks.evidence.numerical_tank_truth import REACH
+from calibration.discovery.words import called, plain, quantity, several
+from calibration.formatting import number, percent
+
+HALVES = {FITTED: "fitted", HELD: "held out"}
+BANDS = {"low_frequency": "low", "wave_frequency": "wave"}
+MISSING = ("radiation_memory", "mooring_nonlinearity", "wave_drift")
+MENDED = 0.3  # of a band's energy: what is further off with what was found is said to fall short
+FOLLOWED = 0.05  # of a decay's motion
+
+
+def stages(results: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Errors by stage of the model."""
+    return {
+        "as declared": results["declared"]["errors"],
+        "calibrated to decays": results["calibrated"]["errors"],
+        "fitted to decays and sea": results["all"]["before"]["errors"],
+        "with what was found": results["all"]["after"]["errors"],
+    }  # fmt: skip
+
+
+def decays_table(results: dict[str, Any]) -> str:
+    """RMSE over the standard deviation of the released motion."""
+    columns = stages(results) | {"decays alone, with what was found": results["decays"]["after"]["errors"]}
+    rows = [(dof, *(percent(errors[dof]["relative"][dof]) for errors in columns.values())) for dof in DECAYS]
+    return table(("Decay", *columns), rows)
+
+
+def sea_table(results: dict[str, Any]) -> str:
+    """Errors of energies in bands, of the mean of surge, and RMSE over the standard deviation."""
+    columns, rows = stages(results), []
+    for test, half in HALVES.items():
+        for dof in DECAYS:
+            for band, name in BANDS.items():
+                cells = [f"{100 * errors[test]['bands'][dof][band]:+.0f} %" for errors in columns.values()]
+                rows.append((f"{half}: {dof}, {name}", *cells))
+        means = [errors[test]["mean"]["surge"] for errors in columns.values()]
+        rows.append((f"{half}: mean surge, {means[0][0]:.2f} m", *(f"{simulated:.2f} m" for _, simulated in means)))
+        for dof in DECAYS:
+            rows.append((f"{half}: RMSE of {dof}", *(percent(errors[test]["relative"][dof]) for errors in columns.values())))
+    return table(("Half of the sea", *columns), rows)
+
+
+def effects_table(found: dict[str, Any]) -> str:
+    """What was found, a row for every parameter."""
+    rows = []
+    for one in found["effects"]:
+        head = one["effect"] + (f".{one['motion']}" if one["motion"] else "")
+        evidence = (number(one["bic"], 3), percent(one["held"]), f"{one['clear']:.0f}")
+        for i, (label, (value, deviation, unit)) in enumerate(one["parameters"].items()):
+            size = quantity(value, deviation, unit) if deviation is not None else f"({quantity(value, None, unit)})"
+            name = plain(label.removeprefix(f"{head}.").removeprefix(f"{one['effect']}."))
+            about, rest = (called(one["effect"], one["motion"]), evidence) if i == 0 else ("", ("", "", ""))
+            rows.append((about, name, size, *rest))
+    return table(("Effect", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "sd from none"), rows)
+
+
+def said_of(found: dict[str, Any], effect: str, motion: str) -> str:
+    """What became of an effect in a motion."""
+    for one in found["effects"]:
+        if (one["effect"], one["motion"]) == (effect, motion):
+            return "**found**"
+    for name, dof, reason in found["rejected"]:
+        if (name, dof) == (effect, motion):
+            return reason
+    return "not tried"
+
+
+def missing_table(results: dict[str, Any], known: dict[str, Any]) -> str:
+    """What the tank has and strips do not, its size, and what the diagnoses say of it."""
+    rows = []
+    for effect in MISSING:
+        for motion in ("surge",) if effect == "mooring_nonlinearity" else DECAYS:
+            alone = "–" if effect == "wave_drift" else said_of(results["decays"], effect, motion)
+            said = said_of(results["all"], effect, motion)
+            rows.append((called(effect, motion), size_of(effect, motion, known), said, alone))
+    return table(("In the tank", "Its size", "Decays and sea", "Decays alone"), rows)
+
+
+def size_of(effect: str, motion: str, known: dict[str, Any]) -> str:
+    """How large an effect is in the tank."""
+    if effect == "mooring_nonlinearity":
+        moving, even, cubic = known["mooring"]["static"]
+        return f"{quantity(moving, None, 'N/m')}, even {number(even, 3)} N/m², cubic {number(cubic, 3)} N/m³"
+    unit = "N" if motion != "pitch" else "N m"
+    if effect == "wave_drift":
+        one = known["drift"][motion]
+        return f"mean {quantity(one['mean'], None, unit)}, slow sd {quantity(one['slow'], None, unit)}"
+    one = known["radiation"][motion]
+    per = "N s/m" if motion != "pitch" else "N m s/rad"
+    waves, natural = (quantity(one["damping"][k], None, per) for k in ("waves", "natural"))
+    change = one["added"]["natural"] / one["added"]["waves"] - 1
+    return f"damping {waves} at the waves' peak, {natural} at the natural period; added mass {100 * change:+.0f} %"
+
+
+def coefficients_table(results: dict[str, Any]) -> str:
+    """What the coefficients become."""
+    fits = [results["calibrated"]["parameters"], *(results["all"][k]["parameters"] for k in ("before", "after"))]
+    fits += [results["decays"]["after"]["parameters"]]
+    rows = []
+    for label in fits[0]:
+        declared = TRUE[label]
+        cells = [quantity(fit[label][0], fit[label][1], fit[label][2]) for fit in fits]
+        cells = [cell if fit[label][1] is not None else f"({cell})" for cell, fit in zip(cells, fits)]
+        rows.append((f"`{label}`", quantity(declared, None, fits[0][label][2]), *cells))
+    heads = ("calibrated to decays", "fitted to decays and sea", "with what was found", "decays alone, with what was found")
+    return table(("Coefficient", "declared", *heads), rows)
+
+
+def drift_table(known: dict[str, Any]) -> str:
+    """Second-order forces of the tank against the laws found."""
+    rows = []
+    for motion, one in known["drift"].items():
+        unit = "N" if motion != "pitch" else "N m"
+        law = [quantity(x, None, unit) for x in one["law"]] if one["law"] else ["–", "–"]
+        alike = f"{one['correlation']:.2f}" if one["law"] else "–"
+        rows.append((motion, quantity(one["mean"], None, unit), law[0], quantity(one["slow"], None, unit), law[1], alike))
+    heads = ("Mean in the tank", "of the law found", "Slow sd in the tank", "of the law found", "Correlation")
+    return table(("Second-order force", *heads), rows)
+
+
+def words(results: dict[str, Any], known: dict[str, Any]) -> str:
+    """The section."""
+    found, alone = results["all"], results["decays"]
+    lines, held = known["mooring"], found["objective"]["holdout"]
+    surge = [percent(stages(results)[k][HELD]["relative"]["surge"]) for k in ("calibrated to decays", "with what was found")]
+    stiff, at_rest = (quantity(x, None, "N/m") for x in (setup()["AddCLin"][0][0], lines["static"][0]))
+    return f"""
+OpenFAST's runs with potential flow (`decay_*_nwt` and `{SEA}` of the shared reference runs: radiation with memory, the
+full difference-frequency QTF, catenary lines, quadratic damping; waves of first order) are given to `jaxhydro diagnose` as if
+they were measured: every {EVERY}th sample, with noise of 0.01 m in surge, 0.005 m in heave and 0.01 deg in pitch. The declared
+model is that of OpenFAST's runs by strips: the same rigid body, Table 1's coefficients, linear damping, a linear mooring.
+Three decays and the sea's first half, from {TRANSIENT:.0f} to {HALF:.0f} s, are fitted; its second half is held out. No run is
+a static pull-out (`{REST}` rests at zero), so the mooring declared is the tangent at rest, the stiffness matrix of the runs by
+strips: {stiff} in surge, where catenaries of these lines give {at_rest}.
+
+RMSE over the standard deviation of the released motion:
+
+{decays_table(results)}
+Errors of energies in the paper's bands, (simulated - measured) / measured; the mean of surge; RMSE over the standard
+deviation, offset included:
+
+{sea_table(results)}
+**Decays and sea**: {verdict_of(found)} J of the held-out half goes from {held[0]:.2f} to {held[1]:.2f}, by heave and pitch:
+RMSE of surge there is {surge[1]} with what was found and {surge[0]} with the coefficients of the decays.
+
+{effects_table(found) if found["effects"] else ""}
+**The decays alone**, blocks left out in turn: {verdict_of(alone)}
+
+{effects_table(alone) if alone["effects"] else ""}
+What the tank has and the strips do not, and what becomes of it (*slow*: in the motion's low-frequency band):
+
+{missing_table(results, known)}
+{drift_table(known)}
+Coefficients, in brackets those that the records do not determine:
+
+{coefficients_table(results)}
+{reasons(results, known)}
+"""
+
+
+def reasons(results: dict[str, Any], known: dict[str, Any]) -> str:
+    """Why the diagnosis says what it says."""
+    found, loads = results["all"], known["excitation"]
+    shares = several([f"{100 * a / b:.0f} % in {motion}" for motion, (a, b, _) in loads.items()])
+    ahead = sorted(-math.degrees(angle) for _, _, angle in loads.values())
+    fits = [results["calibrated"], found["before"], found["after"]]
+    labels = ("column.Ca_t", "pontoon.Ca_t", "linear_damping.B11")
+    mass, other, damping = ([fit["parameters"][label][0] for fit in fits] for label in labels)
+    waves = [100 * fit["errors"][FITTED]["bands"]["surge"]["wave_frequency"] for fit in fits]
+    decay = [percent(fit["errors"]["surge"]["relative"]["surge"]) for fit in fits]
+    periods, lines = known["surge"], known["mooring"]
+    settled = "" if found["converged"][0] else " That fit had not settled when it was stopped."
+    static, moving = lines["static"], lines["moving"]
+    drifted, drifts = results["declared"]["errors"][FITTED]["mean"]["surge"]
+    secants = [f"{quantity(lines['secant'][f'{x:+g}'], None, 'N/m')} ({x:+g} m)" for x in (-REACH, REACH)]
+    return f"""
+**What else is missing.** At the waves' peak the strips' first-order excitation is {shares} of WAMIT's, and ahead of it by
+{ahead[0]:.0f} to {ahead[-1]:.0f} deg. No effect that is tried is an excitation. Coefficients seem to stand in for it where the
+sea is fitted: `column.Ca_t` goes from {mass[0]:.2f} (decays) to {mass[1]:.2f} and `pontoon.Ca_t` from {other[0]:.2f} to
+{other[1]:.2f}, which takes the error of wave-frequency surge from {waves[0]:+.0f} to {waves[1]:+.0f} % and leaves the surge
+period ({periods["calibrated"]:.1f} and {periods["before"]:.1f} s; the tank's is 131.5 to 134.3 s). Slow surge in waves is by
+the decays' coefficients about as large as the tank's, but out of step with it. The fit damps it: `linear_damping.B11` goes from
+{quantity(damping[0], None, "N s/m")} to {quantity(damping[1], None, "N s/m")}, and the surge decay, which the coefficients
+can follow to {decay[0]}, is given up ({decay[1]}, and {decay[2]} with what was found).{settled} From there nothing in surge
+survives: a nonlinear mooring and drift gain in the fitted half and not in the other.
+
+**The three.** Drift is found in heave and pitch, where slow motion is not damped away. Beside strips that drift
+themselves (their mean surge as declared is {drifts:.2f} m, the tank's {drifted:.2f} m) and whose excitation is wrong, the
+laws found are no estimate of the tank's forces, as the table of their sizes shows. Radiation damps motions at the waves'
+frequencies only, where excitation is wrong, too, and is next to nothing at the natural periods: decays cannot tell it. The
+lines' stiffness in surge goes from {" to ".join(secants)}, secants of static catenaries; in the decay, where lines drag, its
+linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0], None, "N/m")}. The decays alone gain by a
+nonlinear mooring, but less than what counts.
+"""
+
+
+def verdict_of(found: dict[str, Any]) -> str:
+    """The verdict in a sentence or two."""
+    names = several([called(one["effect"], one["motion"]) for one in found["effects"]])
+    share, signature = found["unexplained"]
+    head = {"found": f"*found*, {names}", "nothing_missing": "*nothing missing*"}.get(found["verdict"], "*unexplained*")
+    left = f"{head}. {percent(share)} of the error's energy is left: {signature.rstrip('.')}."
+    return " ".join([left, *(f"{words.split(';')[0]}." for _, words in found["latent"])])
+
+
+def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
+    """What falls short."""
+    errors = results["all"]["after"]["errors"]
+    left = [
+        f"{dof} {BANDS[band]} {100 * error:+.0f} %"
+        for dof in DECAYS
+        for band, error in errors[HELD]["bands"][dof].items()
+        if abs(error) > MENDED
+    ]  # fmt: skip
+    which = [(effect, motion) for effect in MISSING for motion in (("surge",) if "mooring" in effect else DECAYS)]
+    lost = [pair for pair in which if "**found**" not in (said_of(results[k], *pair) for k in ("all", "decays"))]
+    decay = [one["surge"]["relative"]["surge"] for one in (results["calibrated"]["errors"], errors)]
+    short = []
+    if left:
+        short.append(f"numerical tank: with what was found, the held-out sea is off by {', '.join(left)}")
+    if decay[1] > FOLLOWED > decay[0]:
+        short.append(f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "
+                     f"what was found, {percent(decay[0])} where the decays are fitted alone")  # fmt: skip
+    if lost:
+        short.append(f"numerical tank: there and not found: {several([called(*pair) for pair in lost])}")
+    return tuple(short)

@@ -1,0 +1,154 @@
+"""What OpenFAST's potential-flow runs have that strips on a linear mooring lack, from its own outputs and files."""
+
+import json
+from typing import Any
+
+import numpy as np
+from scipy.optimize import fsolve
+from scipy.signal import hilbert, savgol_filter
+
+from benchmarks.evidence.common import SHARED
+from benchmarks.evidence.numerical_tank_runs import DECAYS, END, FOLDER, PERIOD, REST, SEA, TRANSIENT, columns, platform, setup
+from jaxhydro.analysis import BANDS
+
+HYDRO = SHARED / "reference" / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.1"
+DENSITY, GRAVITY = 1025.0, 9.81
+# MoorDyn's md.dat: three lines at 120 deg
+ANCHOR, FAIRLEAD, DROP, LENGTH = 837.6, 58.0, 186.0, 850.0  # m
+WEIGHT, AXIAL = (685.0 - DENSITY * np.pi / 4 * 0.333**2) * GRAVITY, 3.27e9  # N/m, N
+REACH = 8.0  # m: of offsets that are compared
+DOF = {"surge": 1, "heave": 3, "pitch": 5}
+NATURAL = {"surge": 131.5, "heave": 20.6, "pitch": 27.4}  # s: at small amplitudes, as the runs' README has them
+
+
+def line(distance: float) -> tuple[float, float]:
+    """Horizontal and vertical tension (N) at the fairlead of an elastic catenary partly on the bottom, without friction."""
+
+    def missed(logs: np.ndarray) -> list[float]:
+        h, v = np.exp(logs)
+        slope = v / h
+        along = LENGTH - v / WEIGHT + h / WEIGHT * np.arcsinh(slope) + h * LENGTH / AXIAL
+        down = h / WEIGHT * (np.hypot(1, slope) - 1) + v**2 / (2 * AXIAL * WEIGHT)
+        return [along - distance, down - DROP]
+
+    h, v = np.exp(fsolve(missed, np.log([1.4e6, 1.5e6])))
+    return float(h), float(v)
+
+
+def pulled(offset: float) -> float:
+    """Surge force (N) of the three lines at a static offset (m)."""
+    total = 0.0
+    for angle in np.radians([180.0, 60.0, -60.0]):
+        way = (ANCHOR - FAIRLEAD) * np.array([np.cos(angle), np.sin(angle)]) - [offset, 0.0]
+        distance = float(np.hypot(*way))
+        total += line(distance)[0] * way[0] / distance
+    return total
+
+
+def mooring() -> dict[str, Any]:
+    """Stiffness (N/m), its even quadratic (N/m2) and cubic (N/m3) part: of static lines, and as they act in the surge decay, by
+    mass times acceleration less HydroDyn's force. There they drag through the water, too."""
+    offsets = np.linspace(-REACH, REACH, 41)
+    static = np.linalg.lstsq(np.stack([offsets, offsets**2, offsets**3], axis=1), -np.array([pulled(x) for x in offsets]))[0]
+    table = columns("decay_surge_nwt")
+    setup = json.loads((FOLDER / "decay_surge_nwt" / "setup.json").read_text())
+    time, surge = table["Time"], table["PtfmSurge"]
+    centre = surge + setup["zcg"] * np.sin(np.radians(table["PtfmPitch"]))
+    step = float(time[1] - time[0])
+    force = setup["mass"] * savgol_filter(centre, 41, 3, deriv=2, delta=step) - table["HydroFxi"]
+    speed = savgol_filter(surge, 41, 3, deriv=1, delta=step)
+    some = slice(200, -200)
+    terms = np.stack([surge, surge**2, surge**3, speed, speed * np.abs(speed), np.ones(len(surge))], axis=1)[some]
+    moving = np.linalg.lstsq(terms, -force[some])[0]
+    missed = force[some] + terms @ moving
+    return {
+        "static": static.tolist(), "moving": moving.tolist(), "missed": float(missed.std() / force[some].std()),
+        "secant": {f"{x:+g}": -pulled(x) / x for x in (-REACH, -0.1, 0.1, REACH)},
+        "tension": [float(np.hypot(*line(ANCHOR - FAIRLEAD))), float(columns(REST)["FAIRTEN1"][-100:].mean())],
+    }  # fmt: skip
+
+
+def radiation() -> dict[str, Any]:
+    """Added mass and radiation damping (SI) of WAMIT by motion, at infinite frequency, the natural one and the waves' peak.
+
+    The file has A / density and B / (density omega), by period; 0 s is infinite frequency.
+    """
+    rows = [[float(cell) for cell in text.split()] for text in HYDRO.read_text().splitlines()]
+    found: dict[str, Any] = {}
+    for motion, dof in DOF.items():
+        mine = sorted((row for row in rows if row[1:3] == [dof, dof] and row[0] > 0), key=lambda row: 1 / row[0])
+        omega = 2 * np.pi / np.array([row[0] for row in mine])
+        added = DENSITY * np.array([row[3] for row in mine])
+        damping = DENSITY * omega * np.array([row[4] for row in mine])
+        at = {"natural": 2 * np.pi / NATURAL[motion], "waves": 2 * np.pi / PERIOD}
+        peak = int(np.argmax(np.where(omega < 1.9, damping, 0.0)))
+        found[motion] = {
+            "infinite": DENSITY * next(row[3] for row in rows if row[0] == 0 and row[1:3] == [dof, dof]),
+            "added": {k: float(np.interp(w, omega, added)) for k, w in at.items()},
+            "damping": {k: float(np.interp(w, omega, damping)) for k, w in at.items()},
+            "largest": [float(damping[peak]), float(omega[peak])],
+        }
+    return found
+
+
+def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
+    """Mean of the second-order force by motion (N, N m), its standard deviation in the motion's low-frequency band, those of a
+    `law` of the squared envelope (motion -> way -> coefficient) on the same waves, and their correlation in the band."""
+    table = columns(SEA)
+    time = table["Time"]
+    some = (time >= TRANSIENT) & (time <= END)
+    _, omega, _, amplitude, phase = np.loadtxt(FOLDER / SEA / "components.csv.gz", delimiter=",", skiprows=2, ndmin=2).T
+    parts = amplitude * np.exp(1j * phase)
+    turning = np.exp(1j * np.outer(time[::5], omega))
+    plain, weighed = turning @ parts, turning @ (parts * (omega / 0.6) ** 2)
+    envelope = np.abs(plain) ** 2
+    ways = {
+        "envelope": envelope,
+        "quadrature": np.imag(hilbert(envelope - envelope.mean())),
+        "frequency_weighted": np.real(weighed * np.conj(plain)),
+    }
+    found = {}
+    for motion, channel in zip(DECAYS, ("B1WvsF2xi", "B1WvsF2zi", "B1WvsM2yi")):
+        force = table[channel][::5][some[::5]]
+        mine = {k: float(v) for k, v in law.get(motion, {}).items()}
+        made = sum((value * ways[way] for way, value in mine.items()), np.zeros(len(envelope)))[some[::5]]
+        slow, of_law = (_within(x, *BANDS[motion]) for x in (force, made))
+        found[motion] = {
+            "mean": float(force.mean()), "slow": float(slow.std()),
+            "law": [float(made.mean()), float(of_law.std())] if mine else None,
+            "correlation": float(np.corrcoef(slow, of_law)[0, 1]) if mine else None,
+        }  # fmt: skip
+    return found
+
+
+def _within(x: np.ndarray, low: float, high: float, step: float = 0.5) -> np.ndarray:
+    """What of a series is in a band (Hz)."""
+    lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
+    lines[(frequency < low) | (frequency > high)] = 0
+    return np.fft.irfft(lines, len(x))
+
+
+def excitation() -> dict[str, list[float]]:
+    """First-order excitation at the waves' peak by motion (N/m, N m/m): amplitude by strips without drag on the platform held
+    upright, the same by WAMIT, and how far WAMIT's is ahead (rad)."""
+    import jax.numpy as jnp
+
+    import jaxhydro as jh
+    from benchmarks.evidence.openfast_sea import WATER, _loads
+    from jaxhydro.waves.components import PlaneWaves, components
+
+    rows = [row for row in np.loadtxt(HYDRO.with_suffix(".3")) if abs(row[1]) < 1e-6]
+    period = min({row[0] for row in rows}, key=lambda one: abs(one - PERIOD))
+    height = 0.05
+    one = components(jnp.array([height]), jnp.array([2 * np.pi / period]), WATER, phase=jnp.zeros(1))
+    model = jh.build(jh.Platform.model_validate(platform(setup())))
+    model = model.with_values({label: 0.0 for label in model.values if ".Cd_" in label})
+    times = period * np.arange(64) / 64
+    loads = np.array(_loads(model, jh.WaveSea(PlaneWaves.free(one, WATER), WATER, 0.0, "none"), jnp.asarray(times)))
+    turning = np.exp(-2j * np.pi * times / period)
+    found = {}
+    for motion, dof in DOF.items():
+        mine = 2 * (loads[:, dof - 1] * turning).mean() / height
+        theirs = DENSITY * GRAVITY * next(complex(row[5], row[6]) for row in rows if (row[0], row[2]) == (period, dof))
+        found[motion] = [float(abs(mine)), float(abs(theirs)), float(np.angle(theirs / mine))]
+    return found
