@@ -14,6 +14,7 @@ from calibration.campaign import load_campaign
 from calibration.discovery import kept
 from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.catalogue import Candidate
+from calibration.discovery.judgement import Left, given_up
 from calibration.discovery.linear import Predicted
 from calibration.discovery.pose import pose
 from calibration.discovery.search import Scored, Search, diagnose
@@ -207,3 +208,17 @@ def test_the_best_of_every_motion_is_tried_where_the_best_of_all_do_not_last():
     assert [one.candidate.effect for one in found] == ["b", "c"]
     assert (rest[0].predicted.fitted, rest[0].predicted.held) == (39.0, 99.0)
     assert Search.by_motion(SimpleNamespace(study=study), [], 5.0) == []
+
+
+def test_a_decay_that_the_seas_take_away_is_said():
+    """Of fitted decays, in their own motion; not where little is left, nor where it was no better alone."""
+    series = [
+        SimpleNamespace(test=test, kind=kind, channel="surge", spread=2.0)
+        for test, kind in (("a", "decay"), ("b", "decay"), ("c", "decay"), ("d", "irregular"), ("e", "decay"), ("f", "decay"))
+    ]
+    used, main = np.array([True, True, True, True, False, True]), np.array([True, True, True, True, True, False])
+    study = SimpleNamespace(series=series, used=used, main=main)
+    alone = Left(np.zeros(6), np.array([0.1, 0.1, 0.6, 0.1, 0.1, 0.1]))
+    now = Left(np.zeros(6), np.array([1.5, 0.19, 1.5, 1.5, 1.5, 1.5]))
+    (said,) = given_up(study, alone, now)
+    assert "the decay a is given up: 75 % of its motion is left, 5 % where decays are fitted alone" in said

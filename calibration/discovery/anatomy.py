@@ -67,5 +67,5 @@ def signature(search: Search, before: State, after: State) -> tuple[float, str]:
     i = int(np.argmax(np.where(told, after.left.error / spread, 0.0)))
     one = study.series[i]
     k = int(np.argmax((study.mean_squares(after.residual)[i] - 1) * one.dof * one.floor**2))
-    where = f"largest in {one.channel} of {one.test}, {one.low[k]:.3g} to {one.high[k]:.3g} Hz"
+    where = f"largest in {one.channel} of the test {one.test}, {one.low[k]:.3g} to {one.high[k]:.3g} Hz"
     return share, f"{said or 'small in every motion'}; {where}"

@@ -9,6 +9,7 @@ import numpy as np
 from calibration.discovery.catalogue import Candidate
 from calibration.discovery.linear import predict
 from calibration.discovery.study import Look, Prior, Study
+from calibration.formatting import percent
 
 # thresholds, set by what they do on campaigns with nothing missing
 LEAST_BIC = 30.0
@@ -16,6 +17,7 @@ LEAST_GAIN = 0.15  # share of the held-out error above the floor, squared
 LEAST_CLEAR = 3.0  # standard deviations
 LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
 LEAST_SEEN = 3.0  # ... and less than that many times the floor, is no business of engineers, nor sure of its name
+LOST, TIMES = 0.1, 3.0  # of a decay's motion, and of what is left alone: what a joint fit may leave of it
 
 
 class Left(NamedTuple):
@@ -110,6 +112,21 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
     elif grounds.matters() < 1:
         refused = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
     return Verdict(bic, held, grounds.unseen, clear, refused)
+
+
+def given_up(study: Study, alone: Left, now: Left) -> list[str]:
+    """In words, the decays that a fit to them `alone` follows and one to seas, too, does not."""
+    said = []
+    for i, one in enumerate(study.series):
+        if one.kind == "decay" and study.used[i] and study.main[i] and one.spread > 0:
+            before, after = float(alone.error[i]) / one.spread, float(now.error[i]) / one.spread
+            if after > max(LOST, TIMES * before):
+                said.append(
+                    f"fitted together with the seas, the decay {one.test} is given up: {percent(after)} of its motion is left, "
+                    f"{percent(before)} where decays are fitted alone. The model cannot follow both, and what is said of "
+                    f"{one.channel} is in doubt"
+                )
+    return said
 
 
 def clearness(study: Study, one: Candidate, state: State, prior: Prior) -> float:

@@ -30,6 +30,7 @@ def keep(path: Path, search: "Search", states: list[State]) -> None:
         "scores": search.scores,
         "rejected": search.rejected,
         "notes": search.notes,
+        "alone": search.alone,
     }  # fmt: skip
     with staged(path.parent) as temporary:
         (temporary / path.name).write_bytes(pickle.dumps(content))
@@ -52,7 +53,7 @@ def resumed(path: Path, search: "Search") -> list[State]:
         search.take_linear_seas()
     found = {name: one._replace(before=whole(one.before), after=whole(one.after)) for name, one in content["found"].items()}
     search.found, search.scores, search.rejected = found, content["scores"], content["rejected"]
-    search.notes = content["notes"]
+    search.notes, search.alone = content["notes"], content["alone"]
     return [whole(state) for state in content["states"]]
 
 

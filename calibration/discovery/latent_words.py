@@ -213,6 +213,7 @@ def law_in_words(law: Law) -> str:
     """The law and what it explains, or that there is none."""
     if not law.terms:
         return f"no law of up to three terms explains it (the best {percent(law.share)} of it in {law.checked or 'the tests'})"
-    text = " + ".join(f"({number(term.coefficient, 3)} {pretty(term.unit)}) {term.name}" for term in law.terms)
+    parts = [f"({number(term.coefficient, 3)} {pretty(term.unit)}) {term.name}".removesuffix(" 1") for term in law.terms]
+    text = " + ".join(parts)
     v0 = f", v0 = {number(law.v0, 2)} in SI" if any("v0" in term.name for term in law.terms) else ""
     return f"{text} explains {percent(law.share)} of it in {law.checked}{v0}"

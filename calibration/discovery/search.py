@@ -15,7 +15,7 @@ from calibration.discovery.blocks import Blocks
 from calibration.discovery.catalogue import Candidate
 from calibration.discovery.conclusion import conclude
 from calibration.discovery.descent import Reached, fit
-from calibration.discovery.judgement import LEAST_BIC, Grounds, Left, State, Verdict, judge
+from calibration.discovery.judgement import LEAST_BIC, Grounds, Left, State, Verdict, given_up, judge
 from calibration.discovery.kept import keep, resumed
 from calibration.discovery.linear import Predicted, likelihoods, predict
 from calibration.discovery.pose import WIDE, Posed, pose
@@ -71,6 +71,7 @@ class Search:
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
         self.notes: list[str] = []
+        self.alone: Left | None = None  # of a calibration to the decays, where there are seas, too
         self.base = self.study.index([*posed.base, *posed.nuisances])
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
@@ -113,6 +114,8 @@ class Search:
         """The declared model, fitted."""
         self.say("calibrating the declared model", 0.03)
         place = self.start()
+        if self.study.decays is not None and self.study.seas:
+            self.alone = Left.of(self.study, self.study.residual(place))
         self.say("declared model: slopes", 0.08)
         state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
         if not self.study.linear_seas:
@@ -362,7 +365,8 @@ def diagnose(
         reach(search.declared())
 
     def concluded() -> Diagnosis:
-        return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes), clock.monotonic() - begun)
+        lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
+        return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes, *lost), clock.monotonic() - begun)
 
     try:
         while len(states) <= ROUNDS and (after := search.grow(states[-1], len(states))) is not None:
