@@ -112,7 +112,7 @@ def decay_information(
     stated = {"id": f"{dof} decay", "kind": "decay", "file": "simulated", "degree_of_freedom": dof}
     test = Test.model_validate(stated)
     record = Record(test.id, test.kind, test.use, dof, time, values, None, None, dict(noise), True, 0.0, test, test.file)
-    data = gather([record], model, min(float(modes.period.min()) / STEPS_PER_PERIOD, memory_step(model, "tsit5")))
+    data = gather([record], model, min(float(modes.period.min()) / STEPS_PER_PERIOD, memory_step(model)))
     problem = Problem(model, data, space, True, None if space.moves_equilibrium else rest)
     own = np.zeros((3, len(data.dofs)))
     own[0] = [values[DOFS[i]][0] / float(unit) for i, unit in zip(data.dofs, data.unit[0], strict=True)]

@@ -289,7 +289,7 @@ def pose(model: Model, campaign: Campaign, records: Sequence[Record], space: Par
     periods = natural_modes(model).period
     step = float(periods.min()) / STEPS_PER_PERIOD
     # a model that starts with periods far too long would step too far for the true ones
-    step = min([step, memory_step(model, "tsit5"), *(dominant_period(record) / STEPS_PER_PERIOD for record in records)])
+    step = min([step, memory_step(model), *(dominant_period(record) / STEPS_PER_PERIOD for record in records)])
     data = gather(records, model, step)
     rest = None if space.moves_equilibrium else equilibrium(model)
     return Problem(model, data, space, campaign.manifest.zero is not None, rest)

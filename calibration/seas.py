@@ -21,7 +21,7 @@ from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem
-from jaxhydro.simulate import SEA_STEP, default_step
+from jaxhydro.simulate import largest_step
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular import separated_record
 from jaxhydro.waves.irregular_sea import IrregularSea
@@ -30,7 +30,6 @@ from jaxhydro.waves.second_order import KINDS, Kind
 
 MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
 INSIDE = 0.95  # of its variance, that should lie in the band
-RESOLVED = 0.075  # steps of this share of the shortest wave's period
 
 
 @dataclass(frozen=True)
@@ -117,7 +116,7 @@ def with_diffraction(model: Model, options: Options) -> Model:
 
 def sea_step(model: Model, options: Options) -> float:
     """The largest time step (s) that follows the platform and the waves."""
-    return min(SEA_STEP, default_step(model, "ab4"), RESOLVED / options.cutoff)
+    return largest_step(model, options.cutoff)
 
 
 def seas_of(campaign: Campaign, environment: Environment, options: Options) -> Seas:

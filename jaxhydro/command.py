@@ -3,7 +3,7 @@
 import dataclasses
 import math
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -23,6 +23,9 @@ from jaxhydro.simulate import default_step, free_decay
 from jaxhydro.statics import equilibrium, natural_modes
 from jaxhydro.strips import COLUMN_SLOPE
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
+
+if TYPE_CHECKING:
+    from calibration.applied import Applied
 
 GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
@@ -61,9 +64,7 @@ def model_of(platform: Platform, diffraction: str | None = None, elements: int |
 def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     """The model with the values, laws and effects of a calibration.json or diagnosis.json; what is to be known of them is
     printed. `asked` is the platform as it was asked for, `name` its own. Raises InputError."""
-    from calibration.applied import applied
-
-    used = applied(source, model, asked, everything=True)
+    used = with_calibration(model, asked, source)
     if used.platform and used.platform != name:
         complain(f"warning: {source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
     say(f"Calibrated values used: {', '.join(used.values)}")
@@ -72,11 +73,11 @@ def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     return used.model
 
 
-def with_calibration(model: Model, asked: str, source: Path) -> Model:
-    """`calibrated`, and nothing is printed."""
+def with_calibration(model: Model, asked: str, source: Path) -> "Applied":
+    """`calibrated`, with what is to be known, and nothing is printed."""
     from calibration.applied import applied
 
-    return applied(source, model, asked, everything=True).model
+    return applied(source, model, asked, everything=True)
 
 
 def calibration_file(path: str) -> Path:

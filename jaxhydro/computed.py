@@ -4,19 +4,12 @@ from functools import lru_cache
 from pathlib import Path
 
 from jaxhydro.interop.capytaine import read_capytaine
-from jaxhydro.interop.coefficients import RadiationCoefficients
 from jaxhydro.interop.wamit import read_wamit
 from jaxhydro.loads import ComputedRadiation
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.retardation import Realisation, realise
 
 POOR = 0.25  # misfit from which on a state space is none of the coefficients
-
-
-def read_radiation(file: Path, kind: str, density: float, length: float = 1.0) -> RadiationCoefficients:
-    """The coefficients in a file of `kind` wamit or capytaine; water's density (kg/m3) and ULEN (m) are for the former. Raises
-    InputError."""
-    return read_wamit(file, density, length) if kind == "wamit" else read_capytaine(file)
 
 
 def computed_radiation(
@@ -31,8 +24,9 @@ def computed_radiation(
 
 @lru_cache(maxsize=8)
 def _realised(file: Path, stamp: int, kind: str, density: float, length: float, order: int, tolerance: float) -> Realisation:
+    coefficients = read_wamit(file, density, length) if kind == "wamit" else read_capytaine(file)
     try:
-        space = realise(read_radiation(file, kind, density, length), tolerance, order)
+        space = realise(coefficients, tolerance, order)
     except ValueError as error:
         expected = "radiation damping that takes energy, and that a state space can follow"
         raise InputError(str(file), [Problem("", expected, str(error))]) from None

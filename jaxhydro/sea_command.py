@@ -17,7 +17,7 @@ from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sea_options import LEAST, Asked, Record
 from jaxhydro.sea_results import in_order, summary, tables
-from jaxhydro.simulate import SEA_STEP, default_step, free_decay
+from jaxhydro.simulate import free_decay, largest_step
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.irregular import separated_record, spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
@@ -26,7 +26,6 @@ from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz,
 MISSED = 0.01  # of a record in the band, that first and second order may miss by root mean square
 CUT = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
 NEARLY_NONE = 0.05  # share, below which it is a mistake
-RESOLVED = 0.075  # of the shortest waves' period: the longest step
 
 
 class Built(NamedTuple):
@@ -84,11 +83,6 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
     say(f"Significant wave height, 4 standard deviations, {span}: {height:.3g} m")
     say(f"Results are in {job.out}")
     return True
-
-
-def largest_step(model: Model, cutoff: float) -> float:
-    """s, where none is asked for: what follows the platform's motions, and waves of up to `cutoff` (Hz)."""
-    return min(SEA_STEP, default_step(model, "ab4"), RESOLVED / cutoff)
 
 
 def build_sea(model: Model, asked: Asked, duration: float) -> Built:

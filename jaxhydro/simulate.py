@@ -24,8 +24,9 @@ from jaxhydro.waves.sea_state import state_of
 
 SEA_STEP = 0.25  # s, in irregular seas where no step is asked for
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
-RESOLVED = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
-RESOLVED_ELSE = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
+RESOLVED = 0.075  # of the shortest waves' period: the longest step
+STABLE = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
+STABLE_ELSE = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
 
 
 def default_step(model: Model, method: Method = "tsit5") -> float:
@@ -39,10 +40,15 @@ def default_step(model: Model, method: Method = "tsit5") -> float:
     return min(step, memory_step(model, method))
 
 
-def memory_step(model: Model, method: Method) -> float:
+def memory_step(model: Model, method: Method = "tsit5") -> float:
     """The longest step (s) with which a method follows what loads remember (`AbstractLoad.fastest`); infinite for most."""
     fastest = max(load.fastest() for load in model.loads)
-    return RESOLVED.get(method, RESOLVED_ELSE) / fastest if fastest else math.inf
+    return STABLE.get(method, STABLE_ELSE) / fastest if fastest else math.inf
+
+
+def largest_step(model: Model, cutoff: float) -> float:
+    """s, in irregular seas: what follows the platform's motions, and waves of up to `cutoff` (Hz)."""
+    return min(SEA_STEP, default_step(model, "ab4"), RESOLVED / cutoff)
 
 
 @eqx.filter_jit

@@ -27,8 +27,8 @@ from jaxhydro.retardation import Damping, Realisation, realise
 from jaxhydro.simulate import default_step, memory_step
 from jaxhydro.sweep.run import _platform_text
 
-WAMIT = Path("/work/shared/reference/iea15-umaine/HydroData/IEA-15-240-RWT-UMaineSemi.1")
-SHARED = Path(__file__).resolve().parents[2] / "shared/reference/iea15-umaine/HydroData" / WAMIT.name
+REFERENCE = Path(__file__).resolve().parents[2] / "shared" / "reference"
+WAMIT = REFERENCE / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.1"
 
 # the kernel exp(-p t) (1 + p t), even at t = 0, of transfer 1/(s + p) + p/(s + p)^2; less 2 p/(s + p)^3 p^2: nothing at s = 0
 P = 0.5
@@ -109,11 +109,11 @@ def test_what_has_no_state_space_is_refused() -> None:
         realise(given._replace(damping=-given.damping))
 
 
-@pytest.mark.skipif(not (WAMIT.is_file() or SHARED.is_file()), reason="the reference folder is not here")
+@pytest.mark.skipif(not WAMIT.is_file(), reason="../shared/reference has no iea15-umaine")
 def test_volturnus_by_ogilvies_relation() -> None:
     """The published file's own added mass, which the state space never saw, below 1.2 rad/s: to 6 % of its largest
     departure from that at infinite frequency with 40 states, to 3 % with 60."""
-    given = read_wamit(WAMIT if WAMIT.is_file() else SHARED, 1025.0)
+    given = read_wamit(WAMIT, 1025.0)
     assert given.infinite is not None and given.zero is not None
     assert_allclose([given.infinite[0, 0], given.infinite[2, 2], given.infinite[4, 4]], [9.642e6, 2.482e7, 1.164e10], rtol=1e-3)
     assert_allclose([given.zero[0, 0], given.zero[0, 4]], [1.264e7, -1.202e8], rtol=1e-3)

@@ -62,13 +62,6 @@ def known_of(law: dict[str, dict[str, float]], fits: dict[str, dict[str, Any]]) 
     }  # fmt: skip
 
 
-def slow(x: np.ndarray, step: float) -> np.ndarray:
-    """What of a motion is slower than `SLOW`, its mean with it."""
-    lines = np.fft.rfft(x)
-    lines[np.fft.rfftfreq(len(x), step) > SLOW] = 0
-    return np.fft.irfft(lines, len(x))
-
-
 def draw(found: dict[str, Any], path: Path) -> None:
     """Surge of the sea that was held out: measured, of the fitted declared model and with what was found; its slow part."""
     from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style
@@ -82,7 +75,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
         artists = {}
         for (name, x), (colour, width) in zip(series.items(), looks):
             artists[name] = axes[0].plot(time, x, color=colour, lw=width)[0]
-            axes[1].plot(time, slow(x, float(time[1] - time[0])), color=colour, lw=width)
+            axes[1].plot(time, truth.within(x, 0.0, SLOW, float(time[1] - time[0])), color=colour, lw=width)
         axes[0].set_ylabel("Surge (m)")
         axes[1].set_ylabel(f"slower than\n{SLOW:g} Hz (m)")
         axes[1].set_xlabel("Time (s)")

@@ -10,6 +10,7 @@ from scipy.signal import hilbert, savgol_filter
 from benchmarks.evidence.common import SHARED
 from benchmarks.evidence.numerical_tank_runs import DECAYS, END, FOLDER, PERIOD, REST, SEA, TRANSIENT, columns, platform, setup
 from jaxhydro.analysis import BANDS
+from jaxhydro.interop.wamit import read_wamit
 
 HYDRO = SHARED / "reference" / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.1"
 DENSITY, GRAVITY = 1025.0, 9.81
@@ -69,24 +70,19 @@ def mooring() -> dict[str, Any]:
 
 
 def radiation() -> dict[str, Any]:
-    """Added mass and radiation damping (SI) of WAMIT by motion, at infinite frequency, the natural one and the waves' peak.
-
-    The file has A / density and B / (density omega), by period; 0 s is infinite frequency.
-    """
-    rows = [[float(cell) for cell in text.split()] for text in HYDRO.read_text().splitlines()]
+    """Added mass and radiation damping (SI) of WAMIT by motion, at infinite frequency, the natural one and the waves' peak."""
+    file = read_wamit(HYDRO, DENSITY)
+    assert file.infinite is not None
     found: dict[str, Any] = {}
     for motion, dof in DOF.items():
-        mine = sorted((row for row in rows if row[1:3] == [dof, dof] and row[0] > 0), key=lambda row: 1 / row[0])
-        omega = 2 * np.pi / np.array([row[0] for row in mine])
-        added = DENSITY * np.array([row[3] for row in mine])
-        damping = DENSITY * omega * np.array([row[4] for row in mine])
+        added, damping = file.added_mass[:, dof - 1, dof - 1], file.damping[:, dof - 1, dof - 1]
         at = {"natural": 2 * np.pi / NATURAL[motion], "waves": 2 * np.pi / PERIOD}
-        peak = int(np.argmax(np.where(omega < 1.9, damping, 0.0)))
+        peak = int(np.argmax(np.where(file.omega < 1.9, damping, 0.0)))
         found[motion] = {
-            "infinite": DENSITY * next(row[3] for row in rows if row[0] == 0 and row[1:3] == [dof, dof]),
-            "added": {k: float(np.interp(w, omega, added)) for k, w in at.items()},
-            "damping": {k: float(np.interp(w, omega, damping)) for k, w in at.items()},
-            "largest": [float(damping[peak]), float(omega[peak])],
+            "infinite": float(file.infinite[dof - 1, dof - 1]),
+            "added": {k: float(np.interp(w, file.omega, added)) for k, w in at.items()},
+            "damping": {k: float(np.interp(w, file.omega, damping)) for k, w in at.items()},
+            "largest": [float(damping[peak]), float(file.omega[peak])],
         }
     return found
 
@@ -112,7 +108,7 @@ def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
         force = table[channel][::5][some[::5]]
         mine = {k: float(v) for k, v in law.get(motion, {}).items()}
         made = sum((value * ways[way] for way, value in mine.items()), np.zeros(len(envelope)))[some[::5]]
-        slow, of_law = (_within(x, *BANDS[motion]) for x in (force, made))
+        slow, of_law = (within(x, *BANDS[motion]) for x in (force, made))
         found[motion] = {
             "mean": float(force.mean()), "slow": float(slow.std()),
             "law": [float(made.mean()), float(of_law.std())] if mine else None,
@@ -121,7 +117,7 @@ def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
     return found
 
 
-def _within(x: np.ndarray, low: float, high: float, step: float = 0.5) -> np.ndarray:
+def within(x: np.ndarray, low: float, high: float, step: float = 0.5) -> np.ndarray:
     """What of a series is in a band (Hz)."""
     lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
     lines[(frequency < low) | (frequency > high)] = 0

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -125,9 +125,25 @@ WHOLE: dict[str, Callable[[], AbstractLoad]] = {
 DRAG = ("amplitude_dependent_drag", "sea_state_dependent_drag")
 
 
+class Computed(NamedTuple):
+    """What a platform file may declare as a candidate: its load, whether it acts in waves only, and what would tell it."""
+
+    load: type[AbstractLoad]
+    in_waves: bool
+    telling: str
+
+
+COMPUTED = {
+    "drift_transfer": Computed(DriftTransfer, True, "the same irregular sea at another height: drift goes as Hs^2"),
+    "computed_radiation": Computed(
+        ComputedRadiation, False, "forced oscillation at three periods, or a decay in each motion from a small amplitude"
+    ),
+}
+
+
 def sought(model: Model) -> set[str]:
     """Labels of what the platform declares to be looked for: its load is there, at its null."""
-    labels = ("computed_radiation.share", "drift_transfer.share")
+    labels = (f"{effect}.share" for effect in COMPUTED)
     return {label for label in labels if label in model.values and float(model.values[label]) == 0}
 
 
@@ -307,24 +323,10 @@ def catalogue(
                 source=WaveDriftDamping.source,
             )
     looked_for = sought(model)
-    if waves and "drift_transfer.share" in looked_for:
-        add(
-            "drift_transfer",
-            None,
-            [linear("drift_transfer.share", SHARE)],
-            passive=True,
-            telling="the same irregular sea at another height: drift goes as Hs^2",
-            source=DriftTransfer.source,
-        )
-    if "computed_radiation.share" in looked_for:
-        add(
-            "computed_radiation",
-            None,
-            [linear("computed_radiation.share", SHARE)],
-            passive=True,
-            telling="forced oscillation at three periods, or a decay in each motion from a small amplitude",
-            source=ComputedRadiation.source,
-        )
+    for effect, one in COMPUTED.items():
+        if f"{effect}.share" in looked_for and (waves or not one.in_waves):
+            share = [linear(f"{effect}.share", SHARE)]
+            add(effect, None, share, passive=True, telling=one.telling, source=one.load.source)
     if "surge" in scales:
         s = scales["surge"]
         stiff = s.force / s.amplitude

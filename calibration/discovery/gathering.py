@@ -53,7 +53,7 @@ def study_of(
     decays, own_width = None, np.zeros((0, 0))
     if decaying:
         shortest = min([HIGHEST / highest, *(dominant_period(r) for r in decaying)])
-        step = min(shortest / STEPS_PER_PERIOD, memory_step(model, "tsit5"))
+        step = min(shortest / STEPS_PER_PERIOD, memory_step(model))
         decays, found, own_width, rows = of_decays(decaying, model, space, from_rest, step, highest)
         series += found
         cuts.append(rows)

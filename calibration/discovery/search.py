@@ -230,7 +230,7 @@ class Search:
         ranked = self.score(state, number, done)
         some = [item for item in ranked if item.predicted.fitted > enough]
         for item in ranked:
-            weak = not any(item is one for one in some)
+            weak = item.predicted.fitted <= enough
             self.refuse(item.candidate, f"{'explains too little' if weak else 'others explain more'} at first order")
         after = self.best(state, some[:SHORTLIST], number, done)
         if after is None and (others := self.by_motion(some[SHORTLIST:], enough)):

@@ -21,9 +21,9 @@ from jaxhydro.platform_schema import load_platform
 from jaxhydro.plot import for_people
 from jaxhydro.problems import InputError
 from jaxhydro.rotations import rotation
-from jaxhydro.sea_command import build_sea, largest_step
+from jaxhydro.sea_command import build_sea
 from jaxhydro.sea_options import Asked
-from jaxhydro.simulate import farthest, simulate, steps_in
+from jaxhydro.simulate import farthest, largest_step, simulate, steps_in
 from jaxhydro.statics import EquilibriumError, equilibrium
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.statistics import Kept, kept_of
@@ -53,7 +53,7 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     declared = load_platform(platform)
     model = model_of(declared, plan.diffraction)
     if calibration is not None:
-        model = with_calibration(model, str(platform), calibration)
+        model = with_calibration(model, str(platform), calibration).model
     times = plan.time_step * np.arange(math.floor(plan.duration / plan.time_step * (1 + 1e-12)) + 1)
     limit = largest_step(model, plan.cutoff) if plan.step is None else plan.step
     return Setup(plan, model, times, limit)
