@@ -216,7 +216,7 @@ class Model(eqx.Module):
             past, past_end = StripFlow(own, None), EndFlow(own_end, None, None, end_wet)
         else:
             axes = matrix if flow.axes is None else flow.axes.T @ matrix
-            toward = (axes @ strips.directions.reshape(3, -1)).reshape(-1, 2, n)
+            toward = (axes @ strips.directions.reshape(3, 2 * n)).reshape(len(axes), 2, n)
             toward_end = axes @ ends.axis
 
             def across(field: Float[Array, "a n+m"]) -> Float[Array, "2 n"]:

@@ -32,7 +32,9 @@ def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0,
 
 def study_of(*found: Series) -> SimpleNamespace:
     dof = np.stack([one.dof for one in found])
-    return SimpleNamespace(dof=dof, series=found, main=np.array([one.channel == "surge" for one in found]))
+    told = np.zeros_like(dof)
+    told[:, 0] = dof.sum(axis=1)  # of decays
+    return SimpleNamespace(dof=dof, told=told, series=found, main=np.array([one.channel == "surge" for one in found]))
 
 
 def test_a_quiet_sensor_does_not_make_a_motion_count_more():
@@ -50,6 +52,8 @@ def test_what_is_left_is_a_root_mean_square():
     study = SimpleNamespace(
         dof=one.dof[None], series=(one,), floor=one.floor[None],
         mean_squares=lambda values: powers(CUT, values)[None] / one.floor**2,
+        levels=lambda values: powers(CUT, values)[None] / one.floor**2,
+        pooled=one.dof[None], in_cells=lambda values: values,
     )  # fmt: skip
     found = Left.of(study, 0.2 * np.sin(2 * np.pi * 0.2 * TIME))
     assert_allclose(found.error, 0.2 / np.sqrt(2), rtol=1e-4)
@@ -59,8 +63,8 @@ def test_what_is_left_is_a_root_mean_square():
 def test_gain_is_of_what_is_asked():
     """The held-out motion's error halves, the other's is as it was: a gain of three quarters of its square."""
     study = study_of(series("surge", 0.01), series("surge", 0.01, use="fit"))
-    dof = study.dof.sum(axis=1)
-    before, after = Left(400 * dof, np.array([0.2, 0.2])), Left(np.array([100, 400]) * dof, np.array([0.1, 0.2]))
+    dof = study.told
+    before, after = Left(400 * dof, np.array([0.2, 0.2])), Left(np.array([[100], [400]]) * dof, np.array([0.1, 0.2]))
     gain, told = Grounds(study, np.array([True, False]), before, after, True).gain()
     assert told
     assert gain == pytest.approx(0.75, abs=1e-3)

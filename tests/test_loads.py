@@ -53,6 +53,7 @@ from jaxhydro.loads import (
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
+    WaveExcitation,
     WaveGaugePosition,
     WaveReflection,
     Weight,
@@ -135,6 +136,7 @@ FOUND = {  # what no platform file declares: effects that were found to be missi
     "sea_state_dependent_drag": {"low_share": 1.4, "cutoff": 0.04},
     "coupled_damping": {"B15": 3e5},
     "covered_ends": {"share": 0.6},
+    "wave_excitation": {"Cp_t": 0.8, "Cp_z": 1.3},
 }
 
 
@@ -167,7 +169,8 @@ def in_water(model: jh.Model) -> jh.Model:
     drag = [law.null({label: model.values[label]}) for label, law in taken.items()]
     others = (CoupledDamping, CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
     drift = (WaveDrift.null(DOFS), WaveDriftDamping.null(), DriftTransfer.of(TRANSFER, 0.0))
-    return model_of(model, *plain, *drag, *(kind.null() for kind in others), *drift)
+    pressed = WaveExcitation.null([label.replace(".Ca_", ".Cp_") for label in model.values if ".Ca_" in label])
+    return model_of(model, *plain, *drag, *(kind.null() for kind in others), *drift, pressed)
 
 
 @cache

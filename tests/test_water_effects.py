@@ -11,6 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import hilbert
 from scipy.spatial.transform import Rotation
+from scipy.special import h1vp
 from test_loads import COEFFICIENTS, COLUMN, PONTOON, RHO, SEA, G, build, force, model_of, only
 
 import jaxhydro as jh
@@ -26,6 +27,7 @@ from jaxhydro.loads import (
     StripDrag,
     WaveDrift,
     WaveDriftDamping,
+    WaveExcitation,
     WaveGaugePosition,
     WaveReflection,
 )
@@ -354,6 +356,27 @@ def test_a_prepared_sea_comes_back() -> None:
 
 
 # all of them
+
+
+def test_pressure_on_a_column_in_deep_water() -> None:
+    """By integrals over a column: across it rho pi r^2 g a (1 - exp(-k d)), times what diffraction makes of it, 2 / (pi (k r)^2
+    |H1'(k r)|) (MacCamy and Fuchs 1954), and on its end rho g a pi r^2 exp(-k d)."""
+    deep, amplitude, draught, radius = jh.Environment(RHO, 2000.0, G), 0.01, 20.0, 5.0
+    wave = jh.regular_wave(2 * amplitude, 9.0, deep, phase=0.7)
+    k = (2 * np.pi / 9.0) ** 2 / G
+    bare = only(build(COLUMN, water={"density": RHO, "depth": 2000.0, "gravity": G}))
+    excited = model_of(bare, with_values(WaveExcitation.null(["column.Cp_t", "column.Cp_z"]), Cp_t=1.4, Cp_z=0.7))
+    found = np.stack([acts(excited, np.zeros(6), np.zeros(6), (None,), wave, time)[0] for time in (0.0, 9.0 / 4)])
+    area = np.pi * radius**2
+    diffracted = 2 / (np.pi * (k * radius) ** 2 * abs(h1vp(1, k * radius)))
+    across = 0.4 * RHO * area * G * amplitude * (1 - np.exp(-k * draught)) * diffracted
+    upwards = -0.3 * RHO * G * amplitude * area * np.exp(-k * draught)
+    size = np.linalg.norm(found, axis=0)
+    assert_allclose(size[[0, 2]], [across, abs(upwards)], rtol=1e-3)
+    # pressure is in phase with the elevation
+    crest = np.array([float(wave.elevation(jnp.asarray(t), jnp.zeros((2, 1)))[0]) for t in (0.0, 9.0 / 4)])
+    assert_allclose(found[:, 2] / upwards, crest / amplitude, atol=5e-3)
+
 
 
 def test_every_parameter_has_a_slope_at_its_null() -> None:

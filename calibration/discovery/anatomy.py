@@ -54,7 +54,7 @@ def signature(search: Search, before: State, after: State) -> tuple[float, str]:
     spread = np.array([one.spread for one in study.series])
     total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = left / total if total > 0 else 0.0
-    if not (after.left.squares > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
+    if not (after.left.squares.sum(axis=1) > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
         return share, "white at the declared noise level"
     by_motion: dict[tuple[str, str], float] = {}
     for one, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):

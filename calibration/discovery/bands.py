@@ -5,6 +5,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from scipy.signal.windows import tukey
 
 GROWTH = 1.4  # of the edge of one band to the next
 LINES = 4  # Fourier lines in a band at least
@@ -53,7 +54,8 @@ class Rows(NamedTuple):
     so that sums of squares over rows are those over samples (Parseval).
 
     `members` is how many series there are, some perhaps without rows; `take` (l,) are lines among those of all series, one
-    series after the other; `scale` (l,) their factor; `series` (2l,) and `band` (2l,) where a row belongs.
+    series after the other; `scale` (l,) their factor; `series` (2l,) and `band` (2l,) where a row belongs. Series are
+    multiplied by `taper` (t,), of mean square 1.
     """
 
     members: int
@@ -62,27 +64,32 @@ class Rows(NamedTuple):
     series: np.ndarray
     band: np.ndarray
     lines: int
+    taper: np.ndarray
 
     @classmethod
-    def of(cls, cuts: Sequence[Bands], samples: int) -> "Rows":
-        """From the bands of every series, all of one length."""
+    def of(cls, cuts: Sequence[Bands], samples: int, tapered: float = 0.0) -> "Rows":
+        """From the bands of every series, all of one length, of which the share `tapered` rises and falls at the ends: what
+        goes on beyond them leaks from where a spectrum has a peak into all that is beside it."""
         lines = max(one.member.shape[1] for one in cuts)
         member = np.stack([np.pad(one.member, ((0, 0), (0, lines - one.member.shape[1]))) for one in cuts])
         series, line = np.nonzero(member.any(axis=1))
         scale = np.sqrt(np.where(line == 0, 1.0, 2.0) / samples)
         band = member.argmax(axis=1)[series, line]
-        return cls(len(cuts), series * lines + line, scale, np.repeat(series, 2), np.repeat(band, 2), lines)
+        taper = tukey(samples, tapered)
+        taper /= np.sqrt(np.mean(taper**2))
+        return cls(len(cuts), series * lines + line, scale, np.repeat(series, 2), np.repeat(band, 2), lines, taper)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Rows (2l, ...) of time series (s, t, ...)."""
-        lines = np.fft.rfft(values, axis=1)[:, : self.lines]
+        taper = self.taper.reshape(1, -1, *[1] * (values.ndim - 2))
+        lines = np.fft.rfft(taper * values, axis=1)[:, : self.lines]
         kept = lines.reshape(lines.shape[0] * lines.shape[1], *values.shape[2:])[self.take]
         kept = kept * self.scale.reshape(-1, *[1] * (values.ndim - 2))
         return np.stack([kept.real, kept.imag], axis=1).reshape(2 * len(kept), *values.shape[2:])
 
 
-def powers(cut: Bands, values: np.ndarray) -> np.ndarray:
+def powers(cut: Bands, values: np.ndarray, tapered: float = 0.0) -> np.ndarray:
     """Mean square of a time series (t,) in every band (b,), by degree of freedom: of white noise its variance in each."""
-    rows = Rows.of([cut], len(values))
+    rows = Rows.of([cut], len(values), tapered)
     found = np.bincount(rows.band, rows(values[None]) ** 2, len(cut.lines))
     return np.where(cut.lines > 0, found / np.where(cut.lines > 0, 2 * cut.lines, 1.0), 0.0)

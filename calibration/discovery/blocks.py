@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.discovery.descent import fit
+from calibration.discovery.expected import expected
 from calibration.discovery.gathering import highest_of, of_decays, series_of_sea
 from calibration.discovery.judgement import Left, State
 from calibration.discovery.study import Place, Prior, Study
@@ -45,15 +46,17 @@ class Blocks:
         every = np.ones(len(study.series), bool)
         if study.decays is not None:
             place = fit(study, study.look(place, ()), every, prior, iterations=ITERATIONS, looks=1).look.place
+        if study.seas and study.expected is None:
+            self.study = study = replace(study, expected=expected(study, place))
         look = study.look(place, state.look.active)
-        squares, error = np.zeros(len(study.series)), np.zeros(len(study.series))
+        squares, error = np.zeros_like(study.told), np.zeros(len(study.series))
         for number in range(COUNT):
             out = self.block == number
             there = fit(study, look, ~out, prior, iterations=ITERATIONS).look
             if study.decays is not None:
                 there = fit(study, there.along(()), out, prior, iterations=ITERATIONS).look
             found = Left.of(study, study.residual(there.place))
-            squares, error = np.where(out, found.squares, squares), np.where(out, found.error, error)
+            squares, error = np.where(out[:, None], found.squares, squares), np.where(out, found.error, error)
         return Left(squares, error)
 
 
@@ -99,7 +102,7 @@ def in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarra
         raise ValueError("no test is long enough to be cut into blocks")
     return replace(
         study, decays=decays, seas=tuple(seas), linear_seas=(), series=tuple(series), decay_records=tuple(cut),
-        own_width=own_width, cuts=tuple(cuts),
+        own_width=own_width, cuts=tuple(cuts), expected=None,
     ), np.array(numbers)  # fmt: skip
 
 

@@ -36,6 +36,7 @@ from jaxhydro.loads import (
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
+    WaveExcitation,
     WaveGaugePosition,
 )
 from jaxhydro.model import Model
@@ -163,6 +164,8 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
             model = model.with_load(CoupledDamping.null([label.split(".")[1] for label in mine]))
         elif effect == "quadratic_damping":
             model = model.with_load(QuadraticDamping({label: jnp.zeros(()) for label in mine}))
+        elif effect == "wave_excitation":
+            model = model.with_load(WaveExcitation.null([label.split(".", 1)[1] for label in mine]))
         elif effect in DRAG:
             model = with_drag(model)
         else:
@@ -392,6 +395,15 @@ def catalogue(
             [linear("sea_state_dependent_drag.low_share", 0.1, 1.0)],
             telling="a decay in surge in still water against one in waves",
             source="OpenFAST HydroDyn, pull request 2895",
+        )
+    pressed = sorted(label.replace(".Ca_", ".Cp_") for label in model.values if ".Ca_" in label)
+    if waves and pressed:
+        add(
+            "wave_excitation",
+            None,
+            [linear(f"wave_excitation.{one}", 0.05, 1.0) for one in pressed],
+            telling="the platform held in regular waves of three periods, its forces measured",
+            source=WaveExcitation.source,
         )
     if waves:
         add(

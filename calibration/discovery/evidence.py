@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 from calibration.parameters import ParameterSpace
 from calibration.residuals import Data, Problem
-from jaxhydro.integrate import integrate
+from jaxhydro.integrate import Grid, integrate
 from jaxhydro.model import Model, State
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular_sea import SupportSea
@@ -57,7 +57,7 @@ def decay_slopes(
 
 class SeaRecord(eqx.Module):
     """One run in waves: its sea, and the tests in it, each from sample `begins` on for as many samples of the run's clock as
-    are measured."""
+    are measured. Slower than `slow` (Hz) the sea has no first order."""
 
     model: Model
     sea: SupportSea
@@ -70,13 +70,18 @@ class SeaRecord(eqx.Module):
     begins: tuple[int, ...] = eqx.field(static=True)
     dofs: tuple[int, ...] = eqx.field(static=True)
     tests: tuple[str, ...] = eqx.field(static=True)
+    slow: float = eqx.field(static=True)
 
-    def residual(self, x: Float[Array, " p"]) -> Float[Array, "w c n"]:
-        """Simulated less measured, test by test."""
+    def simulated(self, x: Float[Array, " p"]) -> tuple[Model, Float[Array, "6"], Grid]:
+        """The model with these parameters, where it rests, and its motion from there on."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model)
         start = State(rest, jnp.zeros(6), model.rest().memory)
-        grid = integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4")
+        return model, rest, integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4")
+
+    def residual(self, x: Float[Array, " p"]) -> Float[Array, "w c n"]:
+        """Simulated less measured, test by test."""
+        model, rest, grid = self.simulated(x)
         late = model.clock_lag()
         position = grid.at(self.times if late is None else self.times - late)[0]
         motion = model.seen(position) - (model.seen(rest) if self.from_rest else jnp.zeros(6))

@@ -30,6 +30,8 @@ OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between
 # of the motion that a test is about, in every band: what strips with constant coefficients, and a measured wave, are not asked
 # to follow, however quiet the sensors are
 FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
+TAPERED = 0.1  # of a test in waves, at its two ends together
+FIRST = 0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
 HIGHEST = 6.0  # times the highest natural frequency: what is looked at
 
 
@@ -100,16 +102,26 @@ def series_of_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> 
     n = measured.shape[-1]
     cut = bands_of(n * step, step, n, BANDS, highest)
     names = [DOFS[dof] for dof in sea.dofs]
-    found = [_series(r, name, v, cut, powers(cut, v)) for r, rows in zip(records, measured) for name, v in zip(names, rows)]
-    return found, Rows.of([cut] * len(found), n)
+    turns = np.array(sea.dofs) >= 3
+    found = []
+    for record, rows in zip(records, measured):
+        motions = np.stack([powers(cut, values, TAPERED) for values in rows])
+        # sway in head waves is no more to be followed than to what surge is
+        found += [
+            _series(record, name, values, cut, motions[turns == turn].max(axis=0), sea.slow)
+            for name, values, turn in zip(names, rows, turns)
+        ]
+    return found, Rows.of([cut] * len(found), n, TAPERED)
 
 
-def _series(record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray) -> Series:
+def _series(
+    record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0
+) -> Series:
     """`motion` (b,) is the mean square of what the test is about, in the channel's unit."""
     noise, spread = record.noise[channel], float(np.std(values))
     floor = np.sqrt(noise**2 + FLOOR[record.kind] ** 2 * motion)
     return Series(
-        record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values), floor
+        record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values), floor, slow
     )  # fmt: skip
 
 
@@ -156,8 +168,13 @@ def _sea_record(
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
     n = min(len(w) for w in windows)
+    power = np.asarray(made.components.amplitude) ** 2
+    order = np.argsort(np.asarray(made.components.omega))
+    first = order[np.searchsorted(np.cumsum(power[order]), FIRST * power.sum())]
+    slow = float(np.asarray(made.components.omega)[first]) / (2 * np.pi)
     measured = [[np.interp(w[:n], run.samples(r), r.values[c]) for c in channels] for r, w in zip(tests, windows)]
     return SeaRecord(
         model, sea, jnp.asarray(times), jnp.asarray(dt), jnp.asarray(np.array(measured)), space, from_rest, count,
         tuple(int(w[0]) for w in windows), tuple(DOFS.index(c) for c in channels), tuple(r.id for r in tests),
+        slow,
     )  # fmt: skip

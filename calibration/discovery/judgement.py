@@ -21,8 +21,8 @@ LOST, TIMES = 0.1, 3.0  # of a decay's motion, and of what is left alone: what a
 
 
 class Left(NamedTuple):
-    """What is above the floor, by series (s,): sums over degrees of freedom of squares over the floor's, and root mean squares
-    (m, rad)."""
+    """What is above the floor: sums over degrees of freedom of squares over the floor's by what is told apart (s, b; see
+    `Study.told`), and root mean squares by series (s,; m, rad)."""
 
     squares: np.ndarray
     error: np.ndarray
@@ -32,7 +32,8 @@ class Left(NamedTuple):
         """From rows of a residual."""
         above = study.dof * np.maximum(study.mean_squares(residual) - 1, 0.0)
         samples = np.array([one.samples for one in study.series])
-        return cls(above.sum(axis=1), np.sqrt((above * study.floor**2).sum(axis=1) / samples))
+        squares = study.in_cells(study.pooled * np.maximum(study.levels(residual) - 1, 0.0))
+        return cls(squares, np.sqrt((above * study.floor**2).sum(axis=1) / samples))
 
 
 @dataclass(frozen=True)
@@ -60,15 +61,17 @@ class Grounds(NamedTuple):
     unseen: bool
 
     def gain(self) -> tuple[float, bool]:
-        """Mean share of the squared error above the floor that is gone, over the motions that have any. And whether there is
+        """Mean share (geometric) of the squared error above the floor that is gone, over the motions that have any, and in
+        waves over frequencies: a resonance that goes on as before does not hide what is mended elsewhere. And whether there is
         anything to tell."""
-        dof = self.study.dof.sum(axis=1)
+        dof = self.study.told
         before, after = self.before.squares, self.after.squares
-        some = self.asked & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
+        some = self.asked[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
         if not some.any():
             return 0.0, self.unseen
         ratio = np.log((after[some] + 0.1 * dof[some]) / (before[some] + 0.1 * dof[some]))
-        weight = np.array([one.weight for one, s in zip(self.study.series, some) if s])
+        share = dof / np.maximum((dof * some).sum(axis=1, keepdims=True), 1e-300)
+        weight = (np.array([[one.weight] for one in self.study.series]) * share)[some]
         return float(1 - math.exp(float((weight * ratio).sum() / weight.sum()))), True
 
     def matters(self) -> float:

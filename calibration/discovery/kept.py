@@ -23,6 +23,7 @@ def keep(path: Path, search: "Search", states: list[State]) -> None:
     content = {
         "of": fingerprint(search),
         "linear": search.linear,
+        "expected": search.study.expected,
         "states": [named(state) for state in states],
         "found": {
             name: one._replace(before=named(one.before), after=named(one.after)) for name, one in search.found.items()
@@ -31,6 +32,7 @@ def keep(path: Path, search: "Search", states: list[State]) -> None:
         "rejected": search.rejected,
         "notes": search.notes,
         "alone": search.alone,
+        "begun": search.begun,
     }  # fmt: skip
     with staged(path.parent) as temporary:
         (temporary / path.name).write_bytes(pickle.dumps(content))
@@ -49,11 +51,12 @@ def resumed(path: Path, search: "Search") -> list[State]:
     def whole(state: State) -> State:
         return replace(state, chosen=tuple(by_name[str(name)] for name in state.chosen))
 
+    search.study = replace(search.study, expected=content["expected"])
     if content["linear"]:
         search.take_linear_seas()
     found = {name: one._replace(before=whole(one.before), after=whole(one.after)) for name, one in content["found"].items()}
     search.found, search.scores, search.rejected = found, content["scores"], content["rejected"]
-    search.notes, search.alone = content["notes"], content["alone"]
+    search.notes, search.alone, search.begun = content["notes"], content["alone"], content["begun"]
     return [whole(state) for state in content["states"]]
 
 

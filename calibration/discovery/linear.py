@@ -1,10 +1,10 @@
 """Least squares with the decays' own unknowns eliminated: weights, equations, steps, and what a step would gain.
 
--2 ln L = sum over motions and bands of n ln m, n the band's degrees of freedom and m the mean square over the floor's (Whittle
-1953, Arkiv for Matematik 2, 423-434, with a spectrum that is constant over a band and estimated), and the priors' squares. The
-spectrum is the floor's at least: where m < 1 the term is n (m - 1). A fit minimises n (m^p - 1) / p in place of n ln m (Box and
-Cox 1964, Journal of the Royal Statistical Society B 26, 211-252): near the floor the same, but a record that is not followed is
-not given up for others.
+-2 ln L = sum over motions and pools of bands of n ln m, n the pool's degrees of freedom and m the mean square over the floor's
+(Whittle 1953, Arkiv for Matematik 2, 423-434, with a spectrum that is known up to a factor by pool, which is estimated: see
+`calibration.discovery.expected`), and the priors' squares. The spectrum is the floor's at least: where m < 1 the term is
+n (m - 1). A fit minimises n (m^p - 1) / p in place of n ln m (Box and Cox 1964, Journal of the Royal Statistical Society B 26,
+211-252): near the floor the same, but a record that is not followed is not given up for others.
 """
 
 from collections.abc import Sequence
@@ -16,20 +16,32 @@ from scipy.special import boxcox
 from calibration.discovery.study import Look, Place, Prior, Study
 
 POWER = 0.2  # p: 0 is the logarithm
+FAR = 3.0  # standard deviations of a prior: beyond them it is steep
 ROUNDS = 6  # of weights
 
 
 def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
-    """n (m^p - 1) / p of every series and band (s, b), n ln m for p = 0; n (m - 1) below the floor."""
-    mean_square = study.mean_squares(residual)
-    return study.dof * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
+    """n (m^p - 1) / p of every series and pool (s, b), n ln m for p = 0; n (m - 1) below the floor."""
+    mean_square = study.levels(residual)
+    return study.pooled * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
 
 
 def cost_of(study: Study, look: Look, residual: np.ndarray, place: Place, used: np.ndarray, prior: Prior) -> float:
     """What is minimised, of the `used` series (s,) and the priors, with this residual at this place."""
     value = float(deviances(study, residual, POWER)[used].sum())
-    value += float((((study.steps(place.x) - prior.mean) / prior.width)[list(look.active)] ** 2).sum())
+    value += float((away(study, place, prior)[0][list(look.active)] ** 2).sum())
     return value + float(((place.own / study.own_width) ** 2).sum())
+
+
+def away(study: Study, place: Place, prior: Prior) -> tuple[np.ndarray, np.ndarray]:
+    """What priors are the squares of (p,), and its slopes along the directions: z (1 + (z / FAR)^2), z how far from what is
+    expected in standard deviations.
+
+    A Gaussian prior is no match for thousands of samples of what the model lacks: a mass that was weighed would be moved by
+    twenty of its deviations.
+    """
+    z = (study.steps(place.x) - prior.mean) / prior.width
+    return z * (1 + (z / FAR) ** 2), (1 + 3 * (z / FAR) ** 2) / prior.width
 
 
 def likelihoods(study: Study, residual: np.ndarray) -> np.ndarray:
@@ -39,8 +51,8 @@ def likelihoods(study: Study, residual: np.ndarray) -> np.ndarray:
 
 def weights(study: Study, residual: np.ndarray) -> np.ndarray:
     """By which rows' squares count where `cost_of` is taken as quadratic."""
-    each = np.maximum(study.mean_squares(residual), 1.0) ** (POWER - 1) / study.floor**2 * (study.dof > 0)
-    return each.ravel()[study.cell]
+    each = study.pooled * np.maximum(study.levels(residual), 1.0) ** (POWER - 1)
+    return each.ravel()[study.pool] * study.share
 
 
 class Block(NamedTuple):
@@ -77,10 +89,10 @@ class Equations(NamedTuple):
 def equations(study: Study, look: Look, weight: np.ndarray, used: np.ndarray, prior: Prior) -> Equations:
     """Of the `used` series (s,) for the parameters; of all decays for their own unknowns. `weight` (n,) by row."""
     active = list(look.active)
-    width = prior.width[active]
+    far, steep = (one[active] for one in away(study, look.place, prior))
     mine = weight * used[study.row_series]
-    matrix = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(1 / width**2)
-    slope = look.slopes.T @ (mine * look.residual) + (study.steps(look.place.x) - prior.mean)[active] / width**2
+    matrix = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(steep**2)
+    slope = look.slopes.T @ (mine * look.residual) + steep * far
     blocks = []
     for i, span in enumerate(study.spans):
         own, slopes, w = look.own[span], look.slopes[span], weight[span]

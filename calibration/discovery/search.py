@@ -15,6 +15,7 @@ from calibration.discovery.blocks import Blocks
 from calibration.discovery.catalogue import Candidate
 from calibration.discovery.conclusion import conclude
 from calibration.discovery.descent import Reached, fit
+from calibration.discovery.expected import expected
 from calibration.discovery.judgement import LEAST_BIC, Grounds, Left, State, Verdict, given_up, judge
 from calibration.discovery.kept import keep, resumed
 from calibration.discovery.linear import Predicted, likelihoods, predict
@@ -27,12 +28,12 @@ from calibration.residuals import first_guess
 from calibration.seas import Options
 from jaxhydro.model import Model
 
-ROUNDS = 4  # effects at most
+ROUNDS = 6  # effects at most
 SHORTLIST = 5
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
 ITERATIONS = 8  # of a refit
-LAST = 25  # ... of what is let in
-LOOKS = 4  # slopes taken anew in that
+LAST = 50  # ... of what is let in
+LOOKS = 8  # slopes taken anew in that
 ALIKE = 0.1  # of the winner's gain: what comes as near cannot be told from it
 
 
@@ -72,6 +73,8 @@ class Search:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
         self.notes: list[str] = []
         self.alone: Left | None = None  # of a calibration to the decays, where there are seas, too
+        self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
+        self.linear = False  # whether seas are those without the second order that their records have
         self.base = self.study.index([*posed.base, *posed.nuisances])
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
@@ -114,19 +117,23 @@ class Search:
         """The declared model, fitted."""
         self.say("calibrating the declared model", 0.03)
         place = self.start()
+        self.begun = place.x
         if self.study.decays is not None and self.study.seas:
             self.alone = Left.of(self.study, self.study.residual(place))
+        if self.study.seas:
+            self.expect(place)
         self.say("declared model: slopes", 0.08)
         state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
         if not self.study.linear_seas:
             return state
+        study = self.study
         self.take_linear_seas()
         name = "declared model in waves of first order"
         reached = self.fit(self.study.look(state.look.place, self.base), (), ITERATIONS, 0, name, 0.12)
         first = self.state((), reached)
         better = float((state.likelihood - first.likelihood)[self.study.used].sum())
         if better < LEAST_BIC:
-            self.study = self.posed.study
+            self.study, self.linear = study, False
             return state
         self.notes.append(
             "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions "
@@ -134,14 +141,13 @@ class Search:
         )
         return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
 
-    @property
-    def linear(self) -> bool:
-        """Whether seas are those without the second order that their records have."""
-        return self.study is not self.posed.study
+    def expect(self, place: Place) -> None:
+        """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
+        self.study = replace(self.study, expected=expected(self.study, place))
 
     def take_linear_seas(self) -> None:
         """Seas without the second order that their records have, from now on."""
-        self.study = replace(self.study, seas=self.study.linear_seas)
+        self.study, self.linear = replace(self.study, seas=self.study.linear_seas), True
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""
@@ -266,7 +272,10 @@ class Search:
             # what is only nearly known was bent by what the model lacked
             effects = {label for one in chosen for label in one.labels}
             bent = [nuisance for nuisance in self.posed.nuisances if nuisance not in effects]
-            places = (best.state.look.place, self.renewed(best.state.look.place, bent))
+            places = [best.state.look.place, self.renewed(best.state.look.place, bent)]
+            if self.alone is not None:  # ... and so were coefficients that decays tell
+                coefficients = [name for name in self.posed.base if name not in effects]
+                places.append(self.renewed(places[-1], coefficients))
             every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
             after = min(every, key=lambda state: float(state.likelihood[self.study.used].sum()))
             self.say(f"{name}: blocks left out in turn" if self.study.used.all() else name, done + 0.17)
@@ -284,9 +293,9 @@ class Search:
         return None
 
     def renewed(self, place: Place, names: Sequence[str]) -> Place:
-        """A place where some directions are as the study starts."""
+        """A place where some directions are as they were where the search began."""
         at = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
-        return replace(place, x=np.where(at, np.asarray(self.study.space.start), place.x))
+        return replace(place, x=np.where(at, self.begun, place.x))
 
     def pruned(self, state: State) -> State:
         """The model without what later effects have made needless: every effect but the last is tried to be taken out."""

@@ -32,7 +32,7 @@ Seen = Literal["all", "fit"]
 class Series:
     """One motion of one test: what the residual of it is compared with. `noise` is the sensor's; `floor` (b,), by band, has
     beside it what no model of strips is asked to follow. `dof` (b,) are degrees of freedom by band, `samples` how many there
-    are."""
+    are. Bands slower than `slow` (Hz) are one pool: see `calibration.discovery.expected`."""
 
     test: str
     kind: str
@@ -45,6 +45,13 @@ class Series:
     high: np.ndarray
     samples: int
     floor: np.ndarray
+    slow: float = 0.0
+
+    @property
+    def pool(self) -> np.ndarray:
+        """Number of every band's pool (b,): that of its first band. The mean is one of its own."""
+        bands = np.arange(len(self.low))
+        return np.where((bands > 0) & (self.high <= self.slow), 1, bands)
 
     @property
     def least(self) -> float:
@@ -102,7 +109,8 @@ class Prior:
 class Study:
     """All records of a campaign that take part, against one model. Directions (d, p), orthogonal, are what is free: most are
     one parameter each, some move several together. `width` is how many are looked along at a time; `cuts` are the rows of the
-    decays and of every sea; `linear_seas` the seas without the second order that their records have."""
+    decays and of every sea; `linear_seas` the seas without the second order that their records have. `expected` (n,) is how
+    large rows are expected beside their floor (`calibration.discovery.expected`), None where that is not known."""
 
     space: ParameterSpace
     model: Model
@@ -116,6 +124,7 @@ class Study:
     decay_records: tuple[Record, ...]
     own_width: np.ndarray
     cuts: tuple[Rows, ...]
+    expected: np.ndarray | None = None
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -158,6 +167,42 @@ class Study:
     def cell(self) -> np.ndarray:
         """Where a row is in an array of series by band, flattened."""
         return self.row_series * self.dof.shape[1] + np.concatenate([one.band for one in self.cuts])
+
+    @cached_property
+    def pooled(self) -> np.ndarray:
+        """Degrees of freedom by pool (s, b), zeros where a band is no pool's first."""
+        found = np.zeros_like(self.dof)
+        for into, dof, one in zip(found, self.dof, self.series):
+            np.add.at(into, one.pool, dof)
+        return found
+
+    @cached_property
+    def told(self) -> np.ndarray:
+        """Degrees of freedom (s, b) of what is told apart of errors: in waves pools, a decay as one."""
+        return self.in_cells(self.pooled)
+
+    def in_cells(self, pooled: np.ndarray) -> np.ndarray:
+        """What is given by pool (s, b), summed over what is not told apart."""
+        decay = np.array([[one.kind == "decay"] for one in self.series])
+        whole = np.zeros_like(pooled)
+        whole[:, 0] = pooled.sum(axis=1)
+        return np.where(decay, whole, pooled)
+
+    @cached_property
+    def pool(self) -> np.ndarray:
+        """Where a row's pool is in an array of series by band, flattened."""
+        width = self.dof.shape[1]
+        return self.row_series * width + np.stack([one.pool for one in self.series]).ravel()[self.cell]
+
+    @cached_property
+    def share(self) -> np.ndarray:
+        """What a row's square counts (n,) in the mean square of its pool over the floor's: in proportion to 1 / expected^2."""
+        rows = np.bincount(self.cell, minlength=self.dof.size)[self.cell]
+        trust = 1.0 if self.expected is None else 1 / self.expected**2
+        each = self.dof.ravel()[self.cell] / rows * trust
+        whole = np.bincount(self.pool, each, self.dof.size)[self.pool]
+        floor = self.floor.ravel()[self.cell]
+        return np.where(each > 0, trust / np.where(whole > 0, whole, 1.0), 0.0) / floor**2
 
     @cached_property
     def spans(self) -> tuple[slice, ...]:
@@ -254,6 +299,10 @@ class Study:
             if i == 0 and self.decays is not None:
                 own = cut(part[1][..., self.width :])
         return Look(place, tuple(active), np.concatenate(residual), np.concatenate(slopes), own)
+
+    def levels(self, residual: np.ndarray) -> np.ndarray:
+        """Mean square over the floor's by series and pool (s, b), rows by their `share`."""
+        return np.bincount(self.pool, self.share * residual**2, self.dof.size).reshape(self.dof.shape)
 
     def mean_squares(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by series and band (s, b)."""

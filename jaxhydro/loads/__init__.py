@@ -36,6 +36,7 @@ from jaxhydro.loads.suction_side_drag import SuctionSideDrag
 from jaxhydro.loads.umbilical import Umbilical
 from jaxhydro.loads.wave_drift import WaveDrift
 from jaxhydro.loads.wave_drift_damping import WaveDriftDamping
+from jaxhydro.loads.wave_excitation import WaveExcitation
 from jaxhydro.loads.wave_gauge_position import WaveGaugePosition
 from jaxhydro.loads.wave_reflection import WaveReflection
 from jaxhydro.loads.weight import Weight
@@ -79,6 +80,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "changing_drag": ChangingDrag,
     "coupled_damping": CoupledDamping,
     "covered_ends": CoveredEnds,
+    "wave_excitation": WaveExcitation,
 }
 
 __all__ = ["LOADS", "AbstractLoad", "Action", "Instant", "Parameter", *(load.__name__ for load in LOADS.values())]

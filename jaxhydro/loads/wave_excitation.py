@@ -1,0 +1,52 @@
+"""Pressure of the waves on members, apart from what added mass says of it."""
+
+from collections.abc import Iterable
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.end_inertia import spread_ends
+from jaxhydro.loads.strip_inertia import spread
+
+PREFIX = "wave_excitation."
+
+
+class WaveExcitation(AbstractLoad):
+    """f = (Cp - 1) rho V a_water on strips, across the member, and (Cp - 1) p A on the ends of columns, along it.
+
+    Strips are excited by rho V (Ca + 1) a_water: the 1 is the Froude-Krylov force, and Cp where that is not what the waves'
+    pressure does, as near columns and pontoons that shade each other, or in waves that are not long. Without it one
+    Ca has to be right for the mass and for the excitation. OpenFAST HydroDyn has it by member (MemberCp, AxCp). On members that
+    diffract the waves it is (Cp - 1) / 2 of the force of MacCamy and Fuchs, half of which is pressure in long waves. The ends
+    of pontoons are left as they are (`CoveredEnds`).
+
+    Labels are `wave_excitation.GROUP.Cp_t` across the members of a group, `.Cp_z` upwards on pontoons and on columns' ends.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, pressure coefficients Cp and AxCp of members and joints"
+
+    @classmethod
+    def null(cls, coefficients: Iterable[str] = ("column.Cp_t",)) -> "WaveExcitation":
+        """Pressure as in undisturbed waves, of coefficients "GROUP.Cp_t" or "GROUP.Cp_z"."""
+        return cls({f"{PREFIX}{one}": jnp.ones(()) for one in coefficients})
+
+    def about(self, label: str) -> Parameter:
+        group, symbol = label.removeprefix(PREFIX).rsplit(".", 1)
+        way = "across" if symbol == "Cp_t" else "upwards on"
+        return Parameter("-", f"coefficient of the waves' pressure {way} {group}", -1.0, 4.0, 1.0)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        flow, ends, density = now.strip_flow, now.hull.ends, now.environment.density
+        if flow.acceleration is None or now.end_flow.pressure is None:
+            return Action()
+        values = {label.removeprefix(PREFIX): value - 1 for label, value in self.values.items()}
+        water = flow.acceleration
+        if flow.diffracted is not None:
+            water = jnp.where(now.diffracting(), 0.5 * flow.diffracted, water)
+        strips = now.over_strips(density * spread(now.hull.elements, values, "Cp", 0.0)) * now.strip_shape.volume * water
+        area = jnp.where(ends.radius > 0, ends.area, 0.0)
+        pressure = -density * now.end_flow.pressure * area * ends.outward * now.end_flow.wet
+        return Action(strip_force=strips, end_force=spread_ends(ends, values, "Cp", 0.0) * pressure)

@@ -1,0 +1,119 @@
+"""What a residual is expected to be where a force is missing: a model's tangents, and the spectrum of a force that is known."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from test_water_effects import irregular
+
+import jaxhydro as jh
+from calibration.discovery.bands import Rows, bands_of
+from calibration.discovery.evidence import SeaRecord
+from calibration.discovery.expected import beside, impedance, spectrum
+from calibration.discovery.linear import deviances, weights
+from calibration.discovery.study import Series, Study
+from calibration.parameters import ParameterSpace
+from jaxhydro.waves.irregular_sea import Clock
+
+MASS, STIFFNESS, B11 = 8e6, 2e5, 3e5
+AFLOAT = {
+    "name": "two springs",
+    "water": {"density": 1025.0, "depth": 200.0, "gravity": 9.81},
+    "rigid_body": {"mass": MASS, "centre_of_mass": [0, 0, 0], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}},
+    "members": [],
+    "linear_damping": {"B11": B11, "B55": 1e8},
+    "stiffness": {"C11": STIFFNESS, "C22": STIFFNESS, "C33": 8e4, "C44": 1e8, "C55": 1e8, "C66": 1e8},
+    "mooring": {"kind": "none"},
+}
+
+
+def test_the_impedance_of_springs() -> None:
+    """Of a body in springs, per unit of mass: K/m - omega^2 + i omega B/m, and nothing of one motion in the other."""
+    model = jh.build(jh.Platform.model_validate(AFLOAT))
+    step, steps = 0.25, 40
+    prepared = irregular().prepared(np.array([[-1.0, 0, 0], [1.0, 0, 0]]).T, None, Clock(0.0, step, steps, (0.0,)))
+    record = SeaRecord(
+        model, prepared, jnp.arange(10.0), jnp.asarray(step), jnp.zeros((1, 2, 10)), ParameterSpace(()), True, steps, (0,),
+        (0, 4), ("sea",), 0.04,
+    )  # fmt: skip
+    frequency = np.array([0.0, 0.02, 0.1])
+    omega = 2 * np.pi * frequency
+    found = impedance(record, np.zeros(0), frequency)
+    assert_allclose(found[:, 0, 0], STIFFNESS / MASS - omega**2 + 1j * omega * B11 / MASS, rtol=1e-9)
+    assert_allclose(found[:, 1, 1], 1e8 / 5e9 - omega**2 + 1j * omega * 1e8 / 5e9, rtol=1e-9)
+    assert_allclose(found[:, 0, 1], 0, atol=1e-12)
+
+
+def coupled(frequency: np.ndarray) -> np.ndarray:
+    """Of two coupled motions, lightly damped at 0.011 and 0.036 Hz."""
+    omega = 2 * np.pi * frequency
+    own = [w**2 - omega**2 + 0.1j * w * omega for w in (2 * np.pi * 0.011, 2 * np.pi * 0.036)]
+    return np.stack([[own[0], 3e-3 + 0j * omega], [1e-3 + 0j * omega, own[1]]]).transpose(2, 0, 1)
+
+
+def test_what_a_white_force_leaves() -> None:
+    """Averaged over many records, squares are what was expected of each: at resonances, between them and at the floor."""
+    frequency, floor = np.arange(1, 180) / 3600, np.full((2, 179), 2e-2)
+    stiffness, pool = coupled(frequency), np.zeros(179, int)
+    random, squares, expected = np.random.default_rng(0), 0.0, 0.0
+    deviation = np.array([[4e-4], [1e-3]])
+    for _ in range(300):
+        force, noise = (random.normal(size=(2, 179, 2)) @ [1, 1j] for _ in "ab")
+        lines = np.einsum("fij,jf->if", np.linalg.inv(stiffness), deviation * force) + floor * noise
+        squares = squares + np.abs(lines) ** 2 / 2 / 300
+        expected = expected + (beside(lines, floor, pool, stiffness) * floor) ** 2 / 300
+    assert expected.max() > 1e3 * expected.min()
+    assert_allclose(expected / squares, 1, atol=0.35)
+    assert_allclose(np.log(expected / squares).mean(axis=1), 0, atol=0.02)
+
+
+def test_noise_alone_is_no_force() -> None:
+    """Where all is floor, nothing is missing."""
+    random, floor = np.random.default_rng(1), np.full((2, 179), 2e-2)
+    lines = floor * (random.normal(size=(2, 179, 2)) @ [1, 1j])
+    found = beside(lines, floor, np.zeros(179, int), coupled(np.arange(1, 180) / 3600))
+    assert found.max() < 1.8 and np.median(found) < 1.1
+    assert spectrum(np.zeros(9), np.ones(9), np.zeros(9, int)).max() == 0
+
+
+@pytest.fixture
+def study() -> Study:
+    """One motion in a sea of an hour, slow to 0.05 Hz."""
+    n = 3600
+    cut = bands_of(n, 1.0, n, 14, 0.2)
+    series = Series("sea", "irregular", "fit", "surge", 0.01, 1.0, 2 * cut.lines, cut.low, cut.high, n, np.full(14, 0.02), 0.05)
+    space = SimpleNamespace(labels=(), start=jnp.zeros(0), free=())
+    return Study(
+        space, None, (), np.zeros((0, 0)), 8, None, (), (), (series,), (), np.zeros((0, 0)), (Rows.of([cut], n, 0.1),)
+    )  # type: ignore[arg-type]
+
+
+def test_pools(study: Study) -> None:
+    """Slow bands are one, the mean and every band among the waves are their own; degrees of freedom stay."""
+    (one,) = study.series
+    slow = (one.low > 0) & (one.high <= 0.05)
+    assert slow.sum() > 5 and set(one.pool[slow]) == {1} and one.pool[0] == 0
+    assert_allclose(one.pool[~slow], np.arange(14)[~slow])
+    assert study.pooled[0, 1] == pytest.approx(one.dof[slow].sum()) and study.pooled.sum() == pytest.approx(study.dof.sum())
+
+
+def test_a_resonance_counts_as_what_it_is(study: Study) -> None:
+    """Weighed by what is expected, levels of such a residual are 1, and a resonance damped away gains what its lines are worth,
+    not the logarithm of what was there."""
+    rows = study.row_series.size
+    frequency = study.cuts[0].take / 3600
+    beyond = np.repeat(1 + 300 / (1 + ((frequency - 0.011) / 0.001) ** 2), 2)
+    residual = 0.02 * beyond * np.random.default_rng(2).normal(size=rows)
+    told = replace(study, expected=beyond)
+    many = told.pooled > 20
+    assert_allclose(told.levels(residual)[many] / told.levels(0.02 * beyond)[many], 1, atol=0.3)
+    damped = np.where(np.repeat(np.abs(frequency - 0.011) < 0.003, 2), residual / 10, residual)
+    blind, seen = (float((deviances(s, residual, 0.0) - deviances(s, damped, 0.0)).sum()) for s in (study, told))
+    assert 0 < seen < 0.3 * blind
+    # weights are the slopes of what is minimised
+    step = 1e-6 * residual
+    change = float((deviances(told, residual + step, 0.2) - deviances(told, residual, 0.2)).sum())
+    assert change == pytest.approx(2 * float((weights(told, residual) * residual * step).sum()), rel=1e-4)
