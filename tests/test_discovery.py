@@ -218,7 +218,9 @@ def test_a_decay_that_the_seas_take_away_is_said():
     ]
     used, main = np.array([True, True, True, True, False, True]), np.array([True, True, True, True, True, False])
     study = SimpleNamespace(series=series, used=used, main=main)
-    alone = Left(np.zeros(6), np.array([0.1, 0.1, 0.6, 0.1, 0.1, 0.1]))
-    now = Left(np.zeros(6), np.array([1.5, 0.19, 1.5, 1.5, 1.5, 1.5]))
+    alone, now = (
+        Left(np.zeros((6, 1)), np.array(error)[:, None], np.zeros(6))
+        for error in ([0.1, 0.1, 0.6, 0.1, 0.1, 0.1], [1.5, 0.19, 1.5, 1.5, 1.5, 1.5])
+    )
     (said,) = given_up(study, alone, now)
     assert "the decay a is given up: 75 % of its motion is left, 5 % where decays are fitted alone" in said

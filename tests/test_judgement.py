@@ -1,15 +1,16 @@
 """By what an effect is believed: what counts in every band, and gains in what was not fitted."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from calibration.discovery.bands import bands_of, powers
+from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.judgement import LEAST_MATTER, Grounds, Left
-from calibration.discovery.study import Series
+from calibration.discovery.study import Series, Study
 from calibration.records import Record
 
 CUT = bands_of(400.0, 0.1, 4000, 14, 1.0)
@@ -30,11 +31,17 @@ def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0,
     return Series("t", "decay", use, channel, noise, spread, 2 * CUT.lines, CUT.low, CUT.high, 4000, np.full(14, floor))
 
 
-def study_of(*found: Series) -> SimpleNamespace:
-    dof = np.stack([one.dof for one in found])
-    told = np.zeros_like(dof)
-    told[:, 0] = dof.sum(axis=1)  # of decays
-    return SimpleNamespace(dof=dof, told=told, series=found, main=np.array([one.channel == "surge" for one in found]))
+def study_of(*found: Series) -> Study:
+    """Of decays in surge."""
+    records = (SimpleNamespace(id="t", degree_of_freedom="surge"),)
+    cuts = (Rows.of([CUT] * len(found), 4000),)
+    return Study(None, None, (), np.zeros((0, 0)), 8, None, (), (), found, records, np.zeros((0, 0)), cuts)  # type: ignore[arg-type]
+
+
+def left(squares, error) -> Left:
+    """All in the first region; squares by degree of freedom."""
+    one = 2 * CUT.lines.sum() * np.array(squares, float)[:, None] * [1, 0, 0]
+    return Left(one, np.array(error)[:, None] * [1, 0, 0], one.sum(axis=1))
 
 
 def test_a_quiet_sensor_does_not_make_a_motion_count_more():
@@ -48,30 +55,40 @@ def test_a_quiet_sensor_does_not_make_a_motion_count_more():
 
 def test_what_is_left_is_a_root_mean_square():
     """Of a residual that is a sine of 0.2 m: 0.2 / sqrt(2), less what the floor hides."""
-    one = series("surge", 1e-4)
-    study = SimpleNamespace(
-        dof=one.dof[None], series=(one,), floor=one.floor[None],
-        mean_squares=lambda values: powers(CUT, values)[None] / one.floor**2,
-        levels=lambda values: powers(CUT, values)[None] / one.floor**2,
-        pooled=one.dof[None], in_cells=lambda values: values,
-    )  # fmt: skip
-    found = Left.of(study, 0.2 * np.sin(2 * np.pi * 0.2 * TIME))
+    study = study_of(series("surge", 1e-4))
+    (rows,) = study.cuts
+    found = Left.of(study, rows(0.2 * np.sin(2 * np.pi * 0.2 * TIME)[None]))
     assert_allclose(found.error, 0.2 / np.sqrt(2), rtol=1e-4)
-    assert Left.of(study, 0.5e-4 * np.ones(4000) / np.sqrt(4000)).squares.max() == 0.0
+    assert Left.of(study, rows(0.5e-4 * np.ones((1, 4000)) / np.sqrt(4000))).squares.max() == 0.0
 
 
 def test_gain_is_of_what_is_asked():
     """The held-out motion's error halves, the other's is as it was: a gain of three quarters of its square."""
     study = study_of(series("surge", 0.01), series("surge", 0.01, use="fit"))
-    dof = study.told
-    before, after = Left(400 * dof, np.array([0.2, 0.2])), Left(np.array([[100], [400]]) * dof, np.array([0.1, 0.2]))
-    gain, told = Grounds(study, np.array([True, False]), before, after, True).gain()
+    before, after = left([400, 400], [0.2, 0.2]), left([100, 400], [0.1, 0.2])
+    grounds = Grounds(study, np.array([True, False]), before, after, True)
+    gain, told = grounds.gain()
     assert told
     assert gain == pytest.approx(0.75, abs=1e-3)
+    assert grounds.net == pytest.approx(300 * 2 * CUT.lines.sum())
     assert Grounds(study, np.array([False, True]), before, after, True).gain()[0] == pytest.approx(0.0)
-    nothing = Left(0 * dof, np.zeros(2))
+    nothing = left([0, 0], [0, 0])
     assert Grounds(study, np.array([True, True]), nothing, nothing, True).gain() == (0.0, True)
     assert Grounds(study, np.array([True, True]), nothing, nothing, False).gain() == (0.0, False)
+
+
+def test_gain_in_waves_is_where_an_effect_acts():
+    """Slow motion of one test halves, waves are as before: a gain of three quarters, of what is slow; none where another test
+    becomes worse by as much."""
+    one = replace(series("surge", 0.01), kind="irregular", slow=0.3)
+    study = study_of(one, one)
+    dof = study.by_region(study.pooled)
+    assert (dof[0, 1:] > 4).all()
+    before = 400 * dof
+    for other, expected in ((0.25, 0.75), (4.0, 0.0)):
+        after = before * [[1, 0.25, 1], [1, other, 1]]
+        two = (Left(squares, np.sqrt(squares), squares.sum(axis=1)) for squares in (before, after))
+        assert Grounds(study, np.array([True, True]), *two, True).gain()[0] == pytest.approx(expected, abs=2e-3)
 
 
 @pytest.mark.parametrize(("channel", "least"), [("surge", LEAST_MATTER), ("pitch", 0.3)])
@@ -80,7 +97,7 @@ def test_what_matters_of_a_decay(channel, least):
     study = study_of(series(channel, 0.1, noise=0.1))
     for share, matters in ((0.99, False), (1.01, True)):
         after = 0.5 - share * least
-        grounds = Grounds(study, np.array([True]), Left(np.ones(1), np.array([0.5])), Left(np.ones(1), np.array([after])), True)
+        grounds = Grounds(study, np.array([True]), left([1], [0.5]), left([1], [after]), True)
         assert (grounds.matters() >= 1) == matters
 
 

@@ -49,15 +49,15 @@ class Blocks:
         if study.seas and study.expected is None:
             self.study = study = replace(study, expected=expected(study, place))
         look = study.look(place, state.look.active)
-        squares, error = np.zeros_like(study.told), np.zeros(len(study.series))
+        found = Left.of(study, look.residual)
         for number in range(COUNT):
             out = self.block == number
             there = fit(study, look, ~out, prior, iterations=ITERATIONS).look
             if study.decays is not None:
                 there = fit(study, there.along(()), out, prior, iterations=ITERATIONS).look
-            found = Left.of(study, study.residual(there.place))
-            squares, error = np.where(out[:, None], found.squares, squares), np.where(out, found.error, error)
-        return Left(squares, error)
+            left = Left.of(study, study.residual(there.place))
+            found = Left(*(np.where(out if one.ndim == 1 else out[:, None], one, old) for one, old in zip(left, found)))
+        return found
 
 
 def in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarray]:

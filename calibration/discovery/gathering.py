@@ -8,7 +8,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.bands import Bands, Rows, bands_of, powers
 from calibration.discovery.evidence import SeaRecord
-from calibration.discovery.study import Series, Study
+from calibration.discovery.study import FLOOR, Series, Study
 from calibration.fit import STEPS_PER_PERIOD
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
@@ -27,9 +27,6 @@ from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
 BANDS = 14
 EXCURSIONS = 1.5  # of EXCURSION: how far a sea is prepared for
 OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
-# of the motion that a test is about, in every band: what strips with constant coefficients, and a measured wave, are not asked
-# to follow, however quiet the sensors are
-FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 TAPERED = 0.1  # of a test in waves, at its two ends together
 FIRST = 0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
 HIGHEST = 6.0  # times the highest natural frequency: what is looked at

@@ -7,13 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.discovery.catalogue import Candidate
-from calibration.discovery.linear import predict
-from calibration.discovery.study import Look, Prior, Study
+from calibration.discovery.linear import likelihoods, predict
+from calibration.discovery.study import FLOOR, Look, Prior, Study
 from calibration.formatting import percent
 
 # thresholds, set by what they do on campaigns with nothing missing
 LEAST_BIC = 30.0
 LEAST_GAIN = 0.15  # share of the held-out error above the floor, squared
+LEAST_NET = 10.0  # by which -2 ln L of what was not fitted falls: very strong, by Kass and Raftery 1995
 LEAST_CLEAR = 3.0  # standard deviations
 LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
 LEAST_SEEN = 3.0  # ... and less than that many times the floor, is no business of engineers, nor sure of its name
@@ -21,19 +22,26 @@ LOST, TIMES = 0.1, 3.0  # of a decay's motion, and of what is left alone: what a
 
 
 class Left(NamedTuple):
-    """What is above the floor: sums over degrees of freedom of squares over the floor's by what is told apart (s, b; see
-    `Study.told`), and root mean squares by series (s,; m, rad)."""
+    """What is above the floor, by series and region (s, 3; see `Study.by_region`): sums over degrees of freedom of squares over
+    the floor's, and root mean squares (m, rad); -2 ln L by series (s,)."""
 
     squares: np.ndarray
-    error: np.ndarray
+    parts: np.ndarray
+    likelihood: np.ndarray
 
     @classmethod
     def of(cls, study: Study, residual: np.ndarray) -> "Left":
         """From rows of a residual."""
         above = study.dof * np.maximum(study.mean_squares(residual) - 1, 0.0)
         samples = np.array([one.samples for one in study.series])
-        squares = study.in_cells(study.pooled * np.maximum(study.levels(residual) - 1, 0.0))
-        return cls(squares, np.sqrt((above * study.floor**2).sum(axis=1) / samples))
+        squares = study.by_region(study.pooled * np.maximum(study.levels(residual) - 1, 0.0))
+        parts = np.sqrt(study.by_region(above * study.floor**2) / samples[:, None])
+        return cls(squares, parts, likelihoods(study, residual))
+
+    @property
+    def error(self) -> np.ndarray:
+        """Root mean squares by series (s,; m, rad)."""
+        return np.sqrt((self.parts**2).sum(axis=1))
 
 
 @dataclass(frozen=True)
@@ -61,25 +69,42 @@ class Grounds(NamedTuple):
     unseen: bool
 
     def gain(self) -> tuple[float, bool]:
-        """Mean share (geometric) of the squared error above the floor that is gone, over the motions that have any, and in
-        waves over frequencies: a resonance that goes on as before does not hide what is mended elsewhere. And whether there is
-        anything to tell."""
-        dof = self.study.told
+        """Share of the squared error above the floor that is gone in the motion and region where it is most (a geometric mean
+        over tests), and whether there is anything to tell. An effect acts in a motion and in some frequencies: what goes on as
+        before elsewhere does not speak against it, and what becomes worse is in `net`."""
+        dof = self.study.by_region(self.study.pooled)
         before, after = self.before.squares, self.after.squares
         some = self.asked[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
         if not some.any():
             return 0.0, self.unseen
-        ratio = np.log((after[some] + 0.1 * dof[some]) / (before[some] + 0.1 * dof[some]))
-        share = dof / np.maximum((dof * some).sum(axis=1, keepdims=True), 1e-300)
-        weight = (np.array([[one.weight] for one in self.study.series]) * share)[some]
-        return float(1 - math.exp(float((weight * ratio).sum() / weight.sum()))), True
+        ratio = np.log(np.where(some, after + 0.1 * dof, 1.0) / np.where(some, before + 0.1 * dof, 1.0))
+        weight = np.array([one.weight for one in self.study.series])
+        found = []
+        for channel in dict.fromkeys(one.channel for one in self.study.series):
+            mine = some & np.array([[one.channel == channel] for one in self.study.series])
+            found += [float(weight[m] @ r[m] / weight[m].sum()) for m, r in zip(mine.T, ratio.T) if m.any()]
+        return 1 - math.exp(min(found)), True
+
+    @property
+    def net(self) -> float:
+        """By how much -2 ln L of all that is asked falls."""
+        return float((self.before.likelihood - self.after.likelihood)[self.asked].sum())
 
     def matters(self) -> float:
-        """By how much a motion's error falls at most, over what matters. Of what a decay is not about the floor alone is a
-        measure."""
-        share = np.where(self.study.main, LEAST_MATTER, math.inf)
-        least = np.array([min(m * one.spread, LEAST_SEEN * one.least) for m, one in zip(share, self.study.series)])
-        return float(((self.before.error - self.after.error) / least)[self.asked].max(initial=0.0))
+        """By how much the error of a motion in a region falls at most, over what matters. Of what a decay is not about, the
+        floor alone is a measure."""
+        study = self.study
+        samples = np.array([[one.samples] for one in study.series])
+        squares = study.by_region(study.dof * study.floor**2) / samples
+        noise = study.by_region(study.dof) * np.array([[one.noise**2] for one in study.series]) / samples
+        of_floor = np.array([[FLOOR[one.kind]] for one in study.series])
+        decay = np.array([[one.kind == "decay"] for one in study.series])
+        spread, seen = np.array([[(one.spread, one.least)] for one in study.series]).transpose(2, 0, 1)
+        motion = np.where(decay, spread, np.sqrt(np.maximum(squares - noise, 0.0)) / of_floor)
+        asked = np.where(study.main[:, None], LEAST_MATTER * motion, math.inf)
+        least = np.minimum(asked, LEAST_SEEN * np.where(decay, seen, np.sqrt(squares)))
+        fallen = (self.before.parts - self.after.parts)[self.asked]
+        return float((fallen / np.maximum(least[self.asked], 1e-300)).max(initial=0.0))
 
 
 class Verdict(NamedTuple):
@@ -110,6 +135,8 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
         if grounds.unseen:
             where = "held-out tests" if grounds.study is study else "blocks left out in turn"
         refused = f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
+    elif told and grounds.net < LEAST_NET:
+        refused = "elsewhere the model becomes worse by it"
     elif clear < LEAST_CLEAR:
         refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
     elif grounds.matters() < 1:

@@ -26,6 +26,9 @@ from calibration.transforms import LogInterval
 from jaxhydro.model import Model
 
 Seen = Literal["all", "fit"]
+# of the motion that a test is about, in every band: what strips with constant coefficients, and a measured wave, are not asked
+# to follow, however quiet the sensors are
+FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,11 @@ class Series:
         """Number of every band's pool (b,): that of its first band. The mean is one of its own."""
         bands = np.arange(len(self.low))
         return np.where((bands > 0) & (self.high <= self.slow), 1, bands)
+
+    @property
+    def region(self) -> np.ndarray:
+        """Number of every band's region (b,): see `Study.by_region`."""
+        return 0 * self.pool if self.kind == "decay" else np.minimum(self.pool, 2)
 
     @property
     def least(self) -> float:
@@ -176,17 +184,10 @@ class Study:
             np.add.at(into, one.pool, dof)
         return found
 
-    @cached_property
-    def told(self) -> np.ndarray:
-        """Degrees of freedom (s, b) of what is told apart of errors: in waves pools, a decay as one."""
-        return self.in_cells(self.pooled)
-
-    def in_cells(self, pooled: np.ndarray) -> np.ndarray:
-        """What is given by pool (s, b), summed over what is not told apart."""
-        decay = np.array([[one.kind == "decay"] for one in self.series])
-        whole = np.zeros_like(pooled)
-        whole[:, 0] = pooled.sum(axis=1)
-        return np.where(decay, whole, pooled)
+    def by_region(self, values: np.ndarray) -> np.ndarray:
+        """What is given by band (s, b), summed over regions (s, 3): in waves the mean, what is slower than they are, and the
+        rest; a decay as one."""
+        return np.stack([np.bincount(one.region, mine, 3) for one, mine in zip(self.series, values)])
 
     @cached_property
     def pool(self) -> np.ndarray:

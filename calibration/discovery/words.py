@@ -20,7 +20,7 @@ NAMES = {
     "wave_gauge_position": "a wrong wave gauge position",
     "wave_excitation": "another wave excitation",
 }
-MEAN = "(mean over motions and, in waves, frequencies)"
+WHERE = "in the motion, and the frequencies, where it acts most"
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 STRENGTHS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "positive"), (0.0, "weak"))  # Kass and Raftery 1995, table in 3.2
 
@@ -129,9 +129,9 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     if gain is None:
         said.append("No test was held out to check it.")
     elif not held:
-        said.append(f"Of blocks of the tests, left out in turn, it takes away {percent(gain)} of the squared error {MEAN}.")
+        said.append(f"Of blocks of the tests, left out in turn, it takes away {percent(gain)} of the squared error {WHERE}.")
     elif gain >= 0:
-        said.append(f"It takes away {percent(gain)} of the squared error of tests that were not fitted {MEAN}.")
+        said.append(f"It takes away {percent(gain)} of the squared error of tests that were not fitted {WHERE}.")
     else:
         said.append(f"The squared error of tests that were not fitted grows by {percent(-gain)}.")
     said.append(f"It explains {percent(one.share_of_residual_explained)} of what the fitted tests left unexplained.")
