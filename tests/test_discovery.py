@@ -9,18 +9,21 @@ from numpy.testing import assert_allclose
 from ruamel.yaml import YAML
 from scipy.integrate import solve_ivp
 
+import jaxhydro as jh
 from calibration import calibrate
 from calibration.campaign import load_campaign
 from calibration.discovery import kept
 from calibration.discovery.bands import Rows, bands_of
-from calibration.discovery.catalogue import Candidate
+from calibration.discovery.catalogue import Candidate, catalogue, scales_of, with_effects
 from calibration.discovery.judgement import Left, given_up
 from calibration.discovery.linear import Predicted
 from calibration.discovery.pose import pose
 from calibration.discovery.search import Scored, Search, diagnose
 from calibration.seas import Options
+from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 from jaxhydro.problems import InputError
+from jaxhydro.statics import equilibrium, linearised
 
 PLATFORM = {
     "name": "a rolling body",
@@ -224,3 +227,17 @@ def test_a_decay_that_the_seas_take_away_is_said():
     )
     (said,) = given_up(study, alone, now)
     assert "the decay a is given up: 75 % of its motion is left, 5 % where decays are fitted alone" in said
+
+
+def test_every_candidate_can_be_put_into_a_model_of_the_platform():
+    """By its labels alone, as a file of a diagnosis has them; amplitudes silent."""
+    model = jh.load_model("volturnus-s")
+    mass, stiffness = (np.asarray(m) for m in linearised(model, equilibrium(model)))
+    scales = scales_of(mass, stiffness, dict.fromkeys(DOFS, 0.1))
+    candidates, free, units = catalogue(model, scales, True, 1.0)
+    assert {"wave_excitation", "wave_drift", "umbilical", "amplitude_dependent_drag"} <= {one.effect for one in candidates}
+    for one in candidates:
+        changed = with_effects(model, one.labels)
+        assert set(one.labels) <= set(changed.values), one.name
+        assert [float(changed.values[label]) for label in one.amplitudes] == [free[label].start for label in one.amplitudes]
+        assert all(units[label] > 0 for label in one.amplitudes)

@@ -11,8 +11,8 @@ from calibration.result import Calibration, Estimate
 class Evidence:
     """Why an effect is believed: `score`, by how much -2 ln L of the fitted tests falls at first order when it is let in, what
     the fitted parameters can do instead projected out; `delta_bic` after the refit (above 0 speaks for it); `holdout_gain`, the
-    share of the held-out tests' squared error that it takes away (1: all of it); `clear`, the parameter over its standard
-    deviation."""
+    share of the held-out tests' squared error that it takes away where it acts most (1: all of it); `clear`, the parameter over
+    its standard deviation."""
 
     score: float
     delta_bic: float

@@ -229,8 +229,8 @@ class Search:
         except ValueError:
             return None
 
-    def grow(self, state: State, number: int) -> State | None:
-        """The best effect let in; None where none survives."""
+    def grow(self, state: State, number: int) -> tuple[State, State | None]:
+        """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
         done = 0.15 + 0.8 * (number - 1) / ROUNDS
         enough = 2 * math.log(self.count)
         ranked = self.score(state, number, done)
@@ -238,10 +238,10 @@ class Search:
         for item in ranked:
             weak = item.predicted.fitted <= enough
             self.refuse(item.candidate, f"{'explains too little' if weak else 'others explain more'} at first order")
-        after = self.best(state, some[:SHORTLIST], number, done)
+        state, after = self.best(state, some[:SHORTLIST], number, done)
         if after is None and (others := self.by_motion(some[SHORTLIST:], enough)):
-            after = self.best(state, others, number, done + 0.1)
-        return after
+            state, after = self.best(state, others, number, done + 0.1)
+        return state, after
 
     def by_motion(self, rest: Sequence[Scored], enough: float) -> list[Scored]:
         """What explains the most of one motion, among those that do not explain the most of all."""
@@ -254,8 +254,8 @@ class Search:
                 found[best.candidate.name] = best
         return list(found.values())
 
-    def best(self, state: State, short: Sequence[Scored], number: int, done: float) -> State | None:
-        """The best effect of a shortlist let in; None where none survives."""
+    def best(self, state: State, short: Sequence[Scored], number: int, done: float) -> tuple[State, State | None]:
+        """The same of a shortlist."""
         tried: list[Tried] = []
         for item in short:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
@@ -278,6 +278,7 @@ class Search:
                 places.append(self.renewed(places[-1], coefficients))
             every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
             after = min(every, key=lambda state: float(state.likelihood[self.study.used].sum()))
+            state = self.challenged(state, after, new, done + 0.16)
             self.say(f"{name}: blocks left out in turn" if self.study.used.all() else name, done + 0.17)
             verdict = self.judge(state, after, new, last=True)
             self.refuse(new, verdict.refused)
@@ -289,8 +290,16 @@ class Search:
             for one in rest:
                 self.refuse(one.candidate, f"{new.name} explains more")
             self.rejected.pop(new.name, None)
-            return after
-        return None
+            return state, after
+        return state, None
+
+    def challenged(self, without: State, after: State, one: Candidate, fraction: float) -> State:
+        """A model without an effect; where that is better by far, fitted from where it is with it: any effect may help a fit
+        over what held it up, and is not to be believed for that."""
+        place = self.renewed(after.look.place, one.labels)
+        other = self.refit(self.study.look(place, without.look.active), without.chosen, f"without {one.name}", fraction)
+        gain = float((without.likelihood - other.likelihood)[self.study.used].sum())
+        return other if gain > LEAST_BIC else without
 
     def renewed(self, place: Place, names: Sequence[str]) -> Place:
         """A place where some directions are as they were where the search began."""
@@ -378,8 +387,12 @@ def diagnose(
         return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes, *lost), clock.monotonic() - begun)
 
     try:
-        while len(states) <= ROUNDS and (after := search.grow(states[-1], len(states))) is not None:
-            reach(after)
+        for again in range(2 * ROUNDS):
+            states[-1], after = search.grow(fitted := states[-1], len(states))
+            if after is not None:
+                reach(after)
+            if len(states) > ROUNDS or (after is None and (states[-1] is fitted or again >= ROUNDS)):
+                break
         states.append(search.pruned(states[-1]))
     except KeyboardInterrupt as stopped:
         stopped.partial = concluded()  # type: ignore[attr-defined]
