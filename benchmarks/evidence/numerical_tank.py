@@ -37,28 +37,16 @@ def run(figures: Path, processes: int) -> Section:
     for x in results["all"]["effects"]:
         if x["effect"] == "wave_drift":
             law[x["motion"]] = {label.split(".")[-1]: value for label, (value, _, _) in x["parameters"].items()}
-    fits = {
-        "declared": {}, "calibrated": results["calibrated"]["parameters"],
-        **{k: results["all"][k]["parameters"] for k in ("before", "after")},
-    }  # fmt: skip
-    known = cached(runs.NAME, fingerprint(key, Path(truth.__file__), repr(law)), "truth", partial(known_of, law, fits))
+    known = cached(runs.NAME, fingerprint(key, Path(truth.__file__), repr(law)), "truth", partial(known_of, law))
     path = figures / "numerical-tank-surge.png"
     draw(results["all"], path)
     return Section(TITLE, words(results, known), (path,), shortcomings(results))
 
 
-def known_of(law: dict[str, dict[str, float]], fits: dict[str, dict[str, Any]]) -> dict[str, Any]:
-    """What is known of the tank; `law`, of wave drift, as it was found, and surge's natural period (s) by the `fits`."""
-    import jaxhydro as jh
-
-    model = jh.load_model(runs.CAMPAIGN / "platform.yaml")
-    periods = {}
-    for name, fit in fits.items():
-        values = {label: one[0] for label, one in fit.items() if label in model.values}
-        periods[name] = float(jh.natural_modes(model.with_values(values)).of("surge"))
+def known_of(law: dict[str, dict[str, float]]) -> dict[str, Any]:
+    """What is known of the tank; `law`, of wave drift, as it was found."""
     return {
-        "mooring": truth.mooring(), "radiation": truth.radiation(), "drift": truth.drift(law),
-        "excitation": truth.excitation(), "surge": periods,
+        "mooring": truth.mooring(), "radiation": truth.radiation(), "drift": truth.drift(law), "excitation": truth.excitation()
     }  # fmt: skip
 
 

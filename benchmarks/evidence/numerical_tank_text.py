@@ -11,7 +11,12 @@ from calibration.formatting import number, percent
 
 HALVES = {FITTED: "fitted", HELD: "held out"}
 BANDS = {"low_frequency": "low", "wave_frequency": "wave"}
-MISSING = ("radiation_memory", "mooring_nonlinearity", "wave_drift")
+ONCE = {"wave_excitation": (None,), "mooring_nonlinearity": ("surge",)}
+MISSING = [
+    (effect, motion)
+    for effect in ("wave_excitation", "wave_drift", "mooring_nonlinearity", "radiation_memory")
+    for motion in ONCE.get(effect, DECAYS)
+]
 MENDED = 0.3  # of a band's energy: what is further off with what was found is said to fall short
 FOLLOWED = 0.05  # of a decay's motion
 
@@ -62,7 +67,7 @@ def effects_table(found: dict[str, Any]) -> str:
     return table(("Effect", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "sd from none"), rows)
 
 
-def said_of(found: dict[str, Any], effect: str, motion: str) -> str:
+def said_of(found: dict[str, Any], effect: str, motion: str | None) -> str:
     """What became of an effect in a motion."""
     for one in found["effects"]:
         if (one["effect"], one["motion"]) == (effect, motion):
@@ -76,16 +81,25 @@ def said_of(found: dict[str, Any], effect: str, motion: str) -> str:
 def missing_table(results: dict[str, Any], known: dict[str, Any]) -> str:
     """What the tank has and strips do not, its size, and what the diagnoses say of it."""
     rows = []
-    for effect in MISSING:
-        for motion in ("surge",) if effect == "mooring_nonlinearity" else DECAYS:
-            alone = "–" if effect == "wave_drift" else said_of(results["decays"], effect, motion)
-            said = said_of(results["all"], effect, motion)
-            rows.append((called(effect, motion), size_of(effect, motion, known), said, alone))
+    for effect, motion in MISSING:
+        alone = "–" if effect.startswith("wave") else said_of(results["decays"], effect, motion)
+        said = said_of(results["all"], effect, motion)
+        rows.append((called(effect, motion), size_of(effect, motion, known), said, alone))
     return table(("In the tank", "Its size", "Decays and sea", "Decays alone"), rows)
 
 
-def size_of(effect: str, motion: str, known: dict[str, Any]) -> str:
+def excitation(known: dict[str, Any]) -> str:
+    """The strips' first-order excitation at the waves' peak beside WAMIT's."""
+    loads = known["excitation"]
+    shares = several([f"{100 * a / b:.0f} % in {motion}" for motion, (a, b, _) in loads.items()])
+    ahead = sorted(-math.degrees(angle) for _, _, angle in loads.values())
+    return f"strips have {shares} of WAMIT's, {ahead[0]:.0f} to {ahead[-1]:.0f} deg ahead of it"
+
+
+def size_of(effect: str, motion: str | None, known: dict[str, Any]) -> str:
     """How large an effect is in the tank."""
+    if effect == "wave_excitation":
+        return excitation(known)
     if effect == "mooring_nonlinearity":
         moving, even, cubic = known["mooring"]["static"]
         return f"{quantity(moving, None, 'N/m')}, even {number(even, 3)} N/m², cubic {number(cubic, 3)} N/m³"
@@ -148,8 +162,8 @@ Errors of energies in the paper's bands, (simulated - measured) / measured; the 
 deviation, offset included:
 
 {sea_table(results)}
-**Decays and sea**: {verdict_of(found)} J of the held-out half goes from {held[0]:.2f} to {held[1]:.2f}, by heave and pitch:
-RMSE of surge there is {surge[1]} with what was found and {surge[0]} with the coefficients of the decays.
+**Decays and sea**: {verdict_of(found)} J of the held-out half goes from {held[0]:.2f} to {held[1]:.2f}; RMSE of surge there is
+{surge[1]} with what was found and {surge[0]} with the coefficients of the decays.
 
 {effects_table(found) if found["effects"] else ""}
 **The decays alone**, blocks left out in turn: {verdict_of(alone)}
@@ -168,37 +182,31 @@ Coefficients, in brackets those that the records do not determine:
 
 def reasons(results: dict[str, Any], known: dict[str, Any]) -> str:
     """Why the diagnosis says what it says."""
-    found, loads = results["all"], known["excitation"]
-    shares = several([f"{100 * a / b:.0f} % in {motion}" for motion, (a, b, _) in loads.items()])
-    ahead = sorted(-math.degrees(angle) for _, _, angle in loads.values())
+    found = results["all"]
     fits = [results["calibrated"], found["before"], found["after"]]
-    labels = ("column.Ca_t", "pontoon.Ca_t", "linear_damping.B11")
-    mass, other, damping = ([fit["parameters"][label][0] for fit in fits] for label in labels)
+    damping = [quantity(fit["parameters"]["linear_damping.B11"][0], None, "N s/m") for fit in fits]
     waves = [100 * fit["errors"][FITTED]["bands"]["surge"]["wave_frequency"] for fit in fits]
     decay = [percent(fit["errors"]["surge"]["relative"]["surge"]) for fit in fits]
-    periods, lines = known["surge"], known["mooring"]
-    settled = "" if found["converged"][0] else " That fit had not settled when it was stopped."
+    lines = known["mooring"]
+    settled = "" if all(found["converged"]) else " One of these fits had not settled when it was stopped."
     static, moving = lines["static"], lines["moving"]
     drifted, drifts = results["declared"]["errors"][FITTED]["mean"]["surge"]
     secants = [f"{quantity(lines['secant'][f'{x:+g}'], None, 'N/m')} ({x:+g} m)" for x in (-REACH, REACH)]
+    gauge = said_of(found, "wave_gauge_position", None)
     return f"""
-**What else is missing.** At the waves' peak the strips' first-order excitation is {shares} of WAMIT's, and ahead of it by
-{ahead[0]:.0f} to {ahead[-1]:.0f} deg. No effect that is tried is an excitation. Coefficients seem to stand in for it where the
-sea is fitted: `column.Ca_t` goes from {mass[0]:.2f} (decays) to {mass[1]:.2f} and `pontoon.Ca_t` from {other[0]:.2f} to
-{other[1]:.2f}, which takes the error of wave-frequency surge from {waves[0]:+.0f} to {waves[1]:+.0f} % and leaves the surge
-period ({periods["calibrated"]:.1f} and {periods["before"]:.1f} s; the tank's is 131.5 to 134.3 s). Slow surge in waves is by
-the decays' coefficients about as large as the tank's, but out of step with it. The fit damps it: `linear_damping.B11` goes from
-{quantity(damping[0], None, "N s/m")} to {quantity(damping[1], None, "N s/m")}, and the surge decay, which the coefficients
-can follow to {decay[0]}, is given up ({decay[1]}, and {decay[2]} with what was found).{settled} From there nothing in surge
-survives: a nonlinear mooring and drift gain in the fitted half and not in the other.
+**First-order excitation.** At the waves' peak {excitation(known)}. `wave_excitation` is a coefficient of pressure by group of
+members and has no phase of its own; what would shift phases is a wave gauge elsewhere (here: {gauge}). The error of
+wave-frequency surge is {waves[0]:+.0f} % with the decays' coefficients, {waves[1]:+.0f} % where these are fitted to the sea as
+well, and {waves[2]:+.0f} % with what was found.
 
-**The three.** Drift is found in heave and pitch, where slow motion is not damped away. Beside strips that drift
-themselves (their mean surge as declared is {drifts:.2f} m, the tank's {drifted:.2f} m) and whose excitation is wrong, the
-laws found are no estimate of the tank's forces, as the table of their sizes shows. Radiation damps motions at the waves'
-frequencies only, where excitation is wrong, too, and is next to nothing at the natural periods: decays cannot tell it. The
-lines' stiffness in surge goes from {" to ".join(secants)}, secants of static catenaries; in the decay, where lines drag, its
-linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0], None, "N/m")}. The decays alone gain by a
-nonlinear mooring, but less than what counts.
+**Slow motion.** `linear_damping.B11` is {damping[0]} by the decays, {damping[1]} fitted to decays and sea, {damping[2]} with
+what was found; of the surge decay {decay[0]}, {decay[1]} and {decay[2]} are left.{settled} Strips drift themselves (their mean
+surge as declared is {drifts:.2f} m, the tank's {drifted:.2f} m), so a law of drift that is found beside them is no estimate of
+the tank's force, as the table of their sizes shows.
+
+**Radiation** damps motions at the waves' frequencies and is next to nothing at the natural periods: decays cannot tell it.
+**The lines'** stiffness in surge goes from {" to ".join(secants)}, secants of static catenaries; in the decay, where lines drag,
+its linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0], None, "N/m")}.
 """
 
 
@@ -220,8 +228,7 @@ def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
         for band, error in errors[HELD]["bands"][dof].items()
         if abs(error) > MENDED
     ]  # fmt: skip
-    which = [(effect, motion) for effect in MISSING for motion in (("surge",) if "mooring" in effect else DECAYS)]
-    lost = [pair for pair in which if "**found**" not in (said_of(results[k], *pair) for k in ("all", "decays"))]
+    lost = [pair for pair in MISSING if "**found**" not in (said_of(results[k], *pair) for k in ("all", "decays"))]
     decay = [one["surge"]["relative"]["surge"] for one in (results["calibrated"]["errors"], errors)]
     short = []
     if left:
