@@ -205,7 +205,7 @@ surge as declared is {drifts:.2f} m, the tank's {drifted:.2f} m), so a law of dr
 the tank's force, as the table of their sizes shows.
 
 **Radiation** damps motions at the waves' frequencies and is next to nothing at the natural periods: decays cannot tell it.
-**The lines'** stiffness in surge goes from {" to ".join(secants)}, secants of static catenaries; in the decay, where lines drag,
+**The lines'** stiffness in surge goes from {" to ".join(secants)}, secants of static catenaries; where lines drag in the decay
 its linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0], None, "N/m")}.
 """
 
