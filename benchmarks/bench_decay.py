@@ -22,7 +22,7 @@ RELEASED = [0, 2, 4]
 NOT_RUN = "not run"
 CACHE = {
     "JAX_ENABLE_X64": "1",
-    "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.1",  # as the command line has it
+    "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",  # as the command line has it
     "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
 }
 

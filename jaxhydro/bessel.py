@@ -48,6 +48,7 @@ def bessel_primes(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Ar
     return j, y / x**2
 
 
+@jax.jit
 def scaled_bessel_primes(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
     """J1'(x) and x^2 Y1'(x) for x >= 0: both, and their first derivatives, are finite at x = 0, where they are 1/2 and 2/pi."""
     x = jnp.asarray(x, float)

@@ -15,6 +15,7 @@ from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripSh
 from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew, turned
 from jaxhydro.solve6 import accelerate
 from jaxhydro.strips import end_wetted
+from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
@@ -141,10 +142,18 @@ class Model(eqx.Module):
             raise ValueError("two loads have a difference-frequency transfer function: expected one")
         return found[0] if found else None
 
+    @property
+    def excitation(self) -> Excitation | None:
+        """What of first order irregular seas are to be prepared with. Raises ValueError for two of it."""
+        found = [one for load in self.loads if (one := load.excites()) is not None]
+        if len(found) > 1:
+            raise ValueError("two loads have a computed excitation: expected one")
+        return found[0] if found else None
+
     def through(self, sea: AbstractSea) -> AbstractSea:
         """The sea as the platform meets it."""
         # what belongs to the waves themselves before what becomes of them
-        for load in sorted(self.loads, key=lambda load: load.drifts() is None):
+        for load in sorted(self.loads, key=lambda load: load.drifts() is None and load.excites() is None):
             sea = load.through(sea)
         return sea
 
@@ -211,7 +220,9 @@ class Model(eqx.Module):
         points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
         where = place[:, None] + turned(matrix, points)
         where = where if self.wetting == "instantaneous" else jnp.concatenate([where[:2], points[2:]])
-        flow = sea.flow(time, where, self.cylinders)
+        flow, replaced = sea.flow(time, where, self.cylinders), _sum([load.replaces() for load in self.loads])
+        if flow is not None and replaced is not None:
+            flow = flow.weakened(1 - replaced)
         if flow is None:
             past, past_end = StripFlow(own, None), EndFlow(own_end, None, None, end_wet)
         else:
@@ -239,6 +250,7 @@ class Model(eqx.Module):
             past_end,
             lines,
             sea.drift(time),
+            None if replaced is None else sea.excitation(time, place[:2]),
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":

@@ -9,17 +9,20 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
 from jaxhydro import platform_schema as schema
 from jaxhydro.computed import computed_radiation
 from jaxhydro.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
+from jaxhydro.interop.excitation import read_excitation
 from jaxhydro.interop.quadratic_transfer import read_transfer
 from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
+    ComputedExcitation,
     DriftTransfer,
     EndDrag,
     EndInertia,
@@ -70,6 +73,9 @@ def build(platform: schema.Platform) -> Model:
     if (declared := platform.radiation) is not None:
         how = (str(declared.kind), water.density, declared.length or 1.0, declared.order, declared.tolerance)
         loads.append(computed_radiation(Path(declared.file), *how, share=float(declared.use == "load")))
+    if (excited := platform.excitation) is not None:
+        table = read_excitation(excited.file, water.density, water.gravity, length=excited.length, heading=excited.heading)
+        loads.append(ComputedExcitation.of(table, share=float(excited.use == "load")))
     if (drift := platform.drift) is not None:
         file, newman = Path(drift.file), drift.approximation == "newman"
         transfer = read_transfer(file, water.density, water.gravity, length=drift.length, heading=drift.heading, newman=newman)
@@ -175,8 +181,8 @@ def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
         stiffness, unstretched = line.spring()
         values[f"mooring.line{i + 1}.stiffness"] = jnp.asarray(stiffness)
         values[f"mooring.line{i + 1}.unstretched_length"] = jnp.asarray(unstretched)
-    anchor = jnp.asarray([line.anchor for line in mooring.lines]).T
-    fairlead = jnp.asarray([line.fairlead for line in mooring.lines]).T
+    anchor = jnp.asarray(np.array([line.anchor for line in mooring.lines], float).T)
+    fairlead = jnp.asarray(np.array([line.fairlead for line in mooring.lines], float).T)
     return [MooringLines(values, anchor, fairlead)]
 
 
@@ -212,5 +218,10 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
 def _line_pull(load: AbstractLoad) -> float:
     """Vertical force (N) of lines at the reference position."""
     assert isinstance(load, MooringLines)
-    tension, towards = load.tension(jnp.zeros(6), jnp.eye(3))
+    tension, towards = (np.asarray(x) for x in _pull(load))
     return float((tension * towards[2]).sum())
+
+
+@eqx.filter_jit
+def _pull(load: MooringLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
+    return load.tension(jnp.zeros(6), jnp.eye(3))

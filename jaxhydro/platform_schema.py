@@ -220,7 +220,18 @@ class Drift(Schema):
     use: Literal["load", "candidate"] = "load"
 
 
-BESIDE = ("radiation", "drift")  # keys that name a file
+class Excitation(Schema):
+    """First-order wave forces computed by another program, in place of the strips': `file`, beside the platform file, as
+    WAMIT's `.3` of ULEN `length` (m), for waves of a `heading` (deg). `use`: part of the model, or a candidate that `diagnose`
+    may find to be missing."""
+
+    file: Text
+    length: Positive = 1.0
+    heading: Number = 0.0
+    use: Literal["load", "candidate"] = "load"
+
+
+BESIDE = ("radiation", "excitation", "drift")  # keys that name a file
 
 
 class ReferenceSea(Schema):
@@ -264,6 +275,7 @@ class Platform(Consistent):
     )
     hydrostatics: Hydrostatics = Hydrostatics()
     radiation: Radiation | None = None
+    excitation: Excitation | None = None
     drift: Drift | None = None
     wetting: Literal["mean", "instantaneous"] = "instantaneous"
     diffraction: Literal["maccamy_fuchs", "ramp", "none"] = "maccamy_fuchs"

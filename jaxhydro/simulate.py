@@ -98,7 +98,7 @@ def simulate(
     Raises ValueError for times that do not increase, EquilibriumError where the platform does not rest.
     """
     times = jnp.asarray(times, float)
-    if times.ndim != 1 or times.shape[0] < 2 or not bool((jnp.diff(times) > 0).all()):
+    if times.ndim != 1 or times.shape[0] < 2 or not (np.diff(np.asarray(times)) > 0).all():
         raise ValueError("times must be at least two increasing numbers")
     sea = StillWater() if sea is None else sea
     irregular = isinstance(sea, IrregularSea)
@@ -108,13 +108,19 @@ def simulate(
     named = position is None or isinstance(position, Mapping)
     memory = model.settled(by_name(position)) if named else model.rest().memory
     rest = equilibrium(model) if named else jnp.zeros(6)
-    q = rest + by_name(position)
-    start = State(q, model.body_velocity(q, by_name(rate)), memory)
+    q, velocity = _begun(rest, by_name(position), by_name(rate))
+    start = State(q, velocity, memory)
     if isinstance(sea, IrregularSea):
         return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / step - 1e-9))
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
+
+
+@jax.jit
+def _begun(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Array, "6"]) -> tuple[Array, Array]:
+    """Position, and velocity in body axes."""
+    return rest + position, Model.body_velocity(rest + position, rate)
 
 
 class InIrregular(NamedTuple):
@@ -143,9 +149,10 @@ def in_irregular(
     """
     begin = float(times[0])
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
-    points, excursion, transfer = model.hull.extremities(), EXCURSION, model.transfer
+    points, excursion = model.hull.extremities(), EXCURSION
+    computed: Any = {"transfer": model.transfer, "exciting": model.excitation}
     while True:
-        prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, transfer=transfer)
+        prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
         found = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
         met: Any = model.through(prepared)  # with the box moved where the sea is
         reached = float(_farthest(found.position, jnp.asarray(points), met))

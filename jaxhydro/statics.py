@@ -5,14 +5,16 @@ from typing import NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import lineax as lx
 import numpy as np
-import optimistix as optx
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model, State
 from jaxhydro.waves.sea import StillWater
+
+CLOSE = 1e-12  # of the position: the last step
+ITERATIONS = 64
+FREE = 1e-12  # of the stiffest motion's restoring: what is below is none
 
 
 class EquilibriumError(RuntimeError):
@@ -27,20 +29,33 @@ def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
 
 @eqx.filter_custom_jvp
 def _root(model: Model) -> Float[Array, "6"]:
-    # The least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is.
-    solver: optx.Newton = optx.Newton(rtol=1e-12, atol=1e-12, linear_solver=lx.AutoLinearSolver(well_posed=False))
-    solution: optx.Solution = optx.root_find(_balance, solver, jnp.zeros(6), model, max_steps=64, throw=False)
-    return solution.value
+    # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start
+
+    def balance(q: Float[Array, "6"]) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
+        found = _balance(q, model)
+        return found, found
+
+    def going(at: tuple[Array, Array, Array]) -> Array:
+        root, step, count = at
+        return (jnp.abs(step).max() > CLOSE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
+
+    def newton(at: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        root, _, count = at
+        slopes, found = jax.jacfwd(balance, has_aux=True)(root)
+        # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
+        step = jnp.linalg.pinv(slopes, rtol=FREE) @ found
+        return root - step, step, count + 1
+
+    return jax.lax.while_loop(going, newton, (jnp.zeros(6), jnp.full(6, jnp.inf), jnp.asarray(0)))[0]
 
 
 @_root.def_jvp
 def _root_jvp(primals, tangents):
-    """By the implicit function theorem; optimistix's own adjoint checks by a host callback, and programs that call back are not
-    kept in JAX's compilation cache."""
+    """By the implicit function theorem."""
     (model,), (moved,) = primals, tangents
     root = _root(model)
     _, balance = eqx.filter_jvp(lambda m: _balance(root, m), (model,), (moved,))
-    return root, -jnp.linalg.pinv(jax.jacfwd(_balance)(root, model), rtol=1e-12) @ balance
+    return root, -jnp.linalg.pinv(jax.jacfwd(_balance)(root, model), rtol=FREE) @ balance
 
 
 @eqx.filter_jit
@@ -52,13 +67,14 @@ def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
 def equilibrium(model: Model) -> Float[Array, "6"]:
     """Where the platform rests in still water: surge, sway, heave (m), roll, pitch, yaw (rad), from its reference position.
 
-    Found by optimistix's Newton iteration; differentiable in the model. Motions without restoring stay at zero. Raises
+    Found by Newton's iteration; differentiable in the model. Motions without restoring stay at zero. Raises
     EquilibriumError where no balance to 1e-8 of the weight is found, or one that no platform rests in: it sank or rose out of
     the water, or lies on its side.
     """
     position, residual = _solve(model)
     if isinstance(residual, jax.core.Tracer):
         return position
+    at = np.asarray(position)
     worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
     if not np.abs(np.asarray(residual)).max() < 1e-8:
         off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else 10)
@@ -66,11 +82,10 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
             f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
         )
-    draught = float(jnp.max(jnp.abs(model.hull.elements.start[2]), initial=0.0))
-    far = [abs(float(position[2])) > max(draught, 20.0), *(abs(float(a)) > 1.0 for a in position[3:5])]
-    if any(far):
-        at = ", ".join(f"{dof} {float(x):.3g} {u}" for dof, x, u in zip(DOFS[2:5], position[2:5], ("m", "rad", "rad")))
-        raise EquilibriumError(f"the platform only balances at {at}: check mass, centre of mass, volume and mooring")
+    draught = np.abs(np.asarray(model.hull.elements.start)[2]).max(initial=0.0)
+    if abs(at[2]) > max(draught, 20.0) or (np.abs(at[3:5]) > 1.0).any():
+        where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], at[2:5], ("m", "rad", "rad")))
+        raise EquilibriumError(f"the platform only balances at {where}: check mass, centre of mass, volume and mooring")
     return position
 
 

@@ -13,7 +13,7 @@ from jaxhydro.loads import LOADS
 ROOT = Path(__file__).resolve().parents[1]
 
 LAYERS = (  # a module imports from layers below its own
-    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.transfer"),
+    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.transfer", "jaxhydro.waves.excitation"),
     ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta"),
     ("jaxhydro.adams_bashforth", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
     ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
@@ -29,8 +29,9 @@ LAYERS = (  # a module imports from layers below its own
     # files in, files out: the edge
     ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start"),
     ("jaxhydro.problems",),
-    ("jaxhydro.body_schema", "jaxhydro.files", "jaxhydro.interop.coefficients"),
-    ("jaxhydro.interop.wamit", "jaxhydro.interop.capytaine", "jaxhydro.interop.quadratic_transfer", "jaxhydro.retardation"),
+    ("jaxhydro.body_schema", "jaxhydro.files", "jaxhydro.interop.coefficients", "jaxhydro.interop.tables"),
+    ("jaxhydro.interop.wamit", "jaxhydro.interop.capytaine", "jaxhydro.retardation"),
+    ("jaxhydro.interop.quadratic_transfer", "jaxhydro.interop.excitation"),
     ("jaxhydro.interop", "jaxhydro.computed"),
     ("jaxhydro.platform_schema", "jaxhydro.drag_laws"),
     ("jaxhydro.platform", "jaxhydro.plot"),

@@ -14,7 +14,7 @@ from test_water_effects import HULL, WATER, acts, irregular
 
 import jaxhydro as jh
 from calibration.discovery.catalogue import Scales, catalogue, sought
-from jaxhydro.interop.quadratic_transfer import read_transfer
+from jaxhydro.interop.quadratic_transfer import COLUMNS, read_transfer
 from jaxhydro.loads import DriftTransfer
 from jaxhydro.problems import InputError
 from jaxhydro.statics import linearised
@@ -141,7 +141,7 @@ def test_broken_files_are_told(tmp_path: Path) -> None:
     rows = rows_of(table())
     for path, words in (
         (tmp_path / "none.12d", "expected a .12d file, found no such file"),
-        (written(tmp_path, [row[:8] for row in rows], "b"), "expected rows of 9 numbers, found 8"),
+        (written(tmp_path, [row[:8] for row in rows], "b"), f"expected rows of 9 numbers {COLUMNS}, found 8"),
         (written(tmp_path, [[-1.0, *rows[0][1:]], *rows[1:]], "c"), "row 1: expected periods above 0"),
         (written(tmp_path, [*rows, [*rows[0][:4], 7, *rows[0][5:]]], "d"), "row 271: expected a mode from 1 to 6"),
         (written(tmp_path, rows[:-6], "e"), "surge: expected all pairs of 9 periods, found none at 2.856 s and 2.856 s"),
@@ -153,8 +153,11 @@ def test_broken_files_are_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="expected waves of heading 45 deg, found 0 deg"):
         read_transfer(written(tmp_path, rows), 1025.0, 9.81, heading=45.0)
     (tmp_path / "g").write_text("PER1 PER2\n1 2\n")
-    with pytest.raises(InputError, match="expected rows of 9 numbers"):
+    with pytest.raises(InputError, match=r"expected rows of 9 numbers .*, found 2"):
         read_transfer(tmp_path / "g", 1025.0, 9.81)
+    text = written(tmp_path, rows).read_text()
+    (tmp_path / "h").write_text("WAMIT Numeric Output -- Filename a.12d\n" + text)
+    assert_allclose(read_transfer(tmp_path / "h", 1025.0, 9.81).omega, GRID, rtol=1e-8)
 
 
 def test_a_platform_file_names_one(tmp_path: Path) -> None:

@@ -9,7 +9,9 @@ from numpy.testing import assert_allclose
 
 from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
+from calibration.discovery.catalogue import Candidate
 from calibration.discovery.judgement import LEAST_MATTER, Grounds, Left
+from calibration.discovery.search import Tried, in_order
 from calibration.discovery.study import Series, Study
 from calibration.records import Record
 
@@ -109,3 +111,22 @@ def test_blocks_are_consecutive_and_whole():
     assert len({one.id for one in cut}) == COUNT
     assert_allclose(np.concatenate([one.time for one in cut]), TIME)
     assert_allclose(np.concatenate([one.values["surge"] for one in cut]), np.sin(TIME))
+
+
+def test_of_what_cannot_be_told_apart_the_simplest_is_believed_first():
+    """Sensors before others within a tenth of the best one's worth, few parameters before many; else by worth."""
+
+    def tried(effect: str, count: int, worth: float) -> Tried:
+        return Tried(Candidate(effect, None, tuple(map(str, range(count)))), 0.0, None, None, worth)  # type: ignore[arg-type]
+
+    some = [
+        tried("umbilical", 4, 2380.0),
+        tried("static_offset", 1, 2200.0),
+        tried("wave_gauge_position", 1, 2170.0),
+        tried("sensor_lag", 1, 1400.0),
+        tried("hysteresis", 2, 2000.0),
+    ]
+    names = [one.candidate.effect for one in in_order(some)]
+    assert names == ["wave_gauge_position", "static_offset", "umbilical", "hysteresis", "sensor_lag"]
+    assert [one.worth for one in in_order(some[:1] + some[3:])] == [2380.0, 2000.0, 1400.0]
+    assert in_order([]) == []

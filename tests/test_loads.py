@@ -21,6 +21,7 @@ from jaxhydro.loads import (
     AddedMass,
     Buoyancy,
     ChangingDrag,
+    ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
     CoupledDamping,
@@ -58,6 +59,7 @@ from jaxhydro.loads import (
     WaveReflection,
     Weight,
 )
+from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.transfer import Transfer
 
 RHO, G = 1025.0, 9.81
@@ -98,6 +100,7 @@ EVERYTHING = {
 }
 
 
+EXCITATION = Excitation.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(4).normal(0, 1e6, (6, 5)) + 4e5j)
 TRANSFER = Transfer.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(3).normal(0, 2e4, (6, 5, 5)) + 3e4j * np.tri(5))
 
 
@@ -168,7 +171,8 @@ def in_water(model: jh.Model) -> jh.Model:
     ]
     drag = [law.null({label: model.values[label]}) for label, law in taken.items()]
     others = (CoupledDamping, CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
-    drift = (WaveDrift.null(DOFS), WaveDriftDamping.null(), DriftTransfer.of(TRANSFER, 0.0))
+    computed = (DriftTransfer.of(TRANSFER, 0.0), ComputedExcitation.of(EXCITATION, 0.0))
+    drift = (WaveDrift.null(DOFS), WaveDriftDamping.null(), *computed)
     pressed = WaveExcitation.null([label.replace(".Ca_", ".Cp_") for label in model.values if ".Ca_" in label])
     return model_of(model, *plain, *drag, *(kind.null() for kind in others), *drift, pressed)
 

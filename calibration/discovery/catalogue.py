@@ -14,6 +14,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
     ChangingDrag,
+    ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
     CoupledDamping,
@@ -135,6 +136,9 @@ class Computed(NamedTuple):
 
 
 COMPUTED = {
+    "computed_excitation": Computed(
+        ComputedExcitation, True, "the platform held in regular waves of three periods, its forces measured"
+    ),
     "drift_transfer": Computed(DriftTransfer, True, "the same irregular sea at another height: drift goes as Hs^2"),
     "computed_radiation": Computed(
         ComputedRadiation, False, "forced oscillation at three periods, or a decay in each motion from a small amplitude"

@@ -13,6 +13,7 @@ from calibration.discovery.linear import cost_of, linearly, solve, weights
 from calibration.discovery.study import Look, Place, Prior, Study
 
 LONGEST = 0.7  # largest step of a coordinate that is a logarithm
+LEAST = 1e-4  # of what is minimised: a step that gains less is one too many, however many samples there are
 POOR = 0.25  # of what was predicted: slopes that give no more are stale
 
 
@@ -69,6 +70,7 @@ def fit(
         cost = cost_of(study, look, residual, there, used, prior)
         expected = now - cost_of(study, look, linearly(study, look, step, own), there, used, prior)
         gain = now - cost if np.isfinite(cost) else -np.inf
+        tolerance = max(tolerance, LEAST * abs(now))
         known, little = fresh or not left, 0 <= gain < tolerance or expected < tolerance
         if gain > 0:
             look, now, fresh = mended(study, look, there, residual, step, own), cost, False

@@ -161,7 +161,8 @@ def _sea_record(
     dt = period / fourier_length(period / step)
     count = int(np.ceil((times[-1] - times[0]) / dt - 1e-9))
     instants = clock("ab4", float(times[0]), dt, count)
-    sea = made.prepared(model.hull.extremities(), model.cylinders, instants, EXCURSIONS * EXCURSION, linear, model.transfer)
+    hull, computed = (model.hull.extremities(), model.cylinders), (model.transfer, model.excitation)
+    sea = made.prepared(*hull, instants, EXCURSIONS * EXCURSION, linear, *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
     n = min(len(w) for w in windows)

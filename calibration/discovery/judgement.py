@@ -123,8 +123,8 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
     bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(one.labels) * math.log(count)
     held, told = grounds.gain()
     clear = clearness(study, one, after, prior)
-    values = {label: study.value(label, after.look.place.x) for label in one.positive if len(one.amplitudes) == 1}
-    wrong = [label for label, value in values.items() if value < 0]
+    values = {label: study.value(label, after.look.place.x) for label in one.positive}
+    wrong = [label for label, value in values.items() if value < 0 and clearly(study, label, one, after, prior)]
     refused = ""
     if wrong:
         refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow"
@@ -157,6 +157,13 @@ def given_up(study: Study, alone: Left, now: Left) -> list[str]:
                     f"{one.channel} is in doubt"
                 )
     return said
+
+
+def clearly(study: Study, label: str, one: Candidate, state: State, prior: Prior) -> bool:
+    """Whether a parameter is what it is beyond doubt: the only one of an effect always, of several by two deviations."""
+    i = study.names.index(label)
+    variance = predict(study, state.look, prior).covariance[state.look.active.index(i), state.look.active.index(i)]
+    return len(one.amplitudes) == 1 or abs(float(study.steps(state.look.place.x)[i])) > 2 * math.sqrt(variance)
 
 
 def clearness(study: Study, one: Candidate, state: State, prior: Prior) -> float:

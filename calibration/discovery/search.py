@@ -34,7 +34,8 @@ FAR = 0.3  # of what a refitted effect gains: what gains less at first order is 
 ITERATIONS = 8  # of a refit
 LAST = 50  # ... of what is let in
 LOOKS = 8  # slopes taken anew in that
-ALIKE = 0.1  # of the winner's gain: what comes as near cannot be told from it
+ALIKE = 0.1  # of the best one's gain: what comes as near cannot be told from it
+SENSORS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
 
 
 class Scored(NamedTuple):
@@ -53,6 +54,23 @@ class Tried(NamedTuple):
     state: State
     verdict: Verdict
     worth: float
+
+    def like(self, best: "Tried") -> bool:
+        """Whether it cannot be told from another."""
+        return best.worth - self.worth < ALIKE * abs(best.worth)
+
+
+def in_order(good: Sequence[Tried]) -> list[Tried]:
+    """As they are to be believed: among those that cannot be told from the best one first what sensors make of a motion, then
+    what has the fewest parameters; the others by what they are worth."""
+    best = max(good, key=lambda one: one.worth, default=None)
+
+    def rank(one: Tried) -> tuple[float, ...]:
+        if best is None or not one.like(best):
+            return 1, -one.worth
+        return 0, one.candidate.effect not in SENSORS, len(one.candidate.labels), -one.worth
+
+    return sorted(good, key=rank)
 
 
 class Found(NamedTuple):
@@ -265,7 +283,7 @@ class Search:
                 tried.append(self.attempt(state, item, number, done + 0.02 * (len(tried) + 1)))
         for one in tried:
             self.refuse(one.candidate, one.verdict.refused)
-        good = sorted((one for one in tried if not one.verdict.refused), key=lambda one: -one.worth)
+        good = in_order([one for one in tried if not one.verdict.refused])
         for best in good:
             new, chosen = best.candidate, best.state.chosen
             name = f"round {number}: {new.name} it is"
@@ -285,7 +303,7 @@ class Search:
             if verdict.refused:
                 continue
             rest = [one for one in good if one is not best]
-            near = tuple(one.candidate.name for one in rest if best.worth - one.worth < ALIKE * abs(best.worth))
+            near = tuple(one.candidate.name for one in rest if one.like(best))
             self.found[new.name] = Found(best.score, state, after, verdict, near)
             for one in rest:
                 self.refuse(one.candidate, f"{new.name} explains more")

@@ -6,11 +6,12 @@ from os import PathLike
 import numpy as np
 
 from jaxhydro.environment import DOFS
+from jaxhydro.interop.tables import of_heading, table_of
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.waves.transfer import Transfer
 
-COLUMNS = 9  # PER1 PER2 BETA1 BETA2 I MOD PHASE RE IM
-SAME = 1e-6  # of a period or a degree
+COLUMNS = "PER1 PER2 BETA1 BETA2 I MOD PHASE RE IM"
+SAME = 1e-6  # of a period
 
 
 def read_transfer(
@@ -28,34 +29,12 @@ def read_transfer(
     amplitudes A_i conj(A_j) at the periods PER1 and PER2. The file may have either half of the Hermitian table or both.
     `newman`: its diagonal alone is used (`Transfer.of`). Raises InputError with file and row.
     """
-    source = str(path)
+    rows = table_of(path, ".12d", COLUMNS, periods=slice(0, 2), mode=4)
+    mine = of_heading(path, rows, slice(2, 4), heading)
 
-    def wrong(expected: str, found: str, where: str = "") -> InputError:
-        return InputError(source, [Problem(where, expected, found)])
+    def wrong(expected: str, found: str, where: str) -> InputError:
+        return InputError(str(path), [Problem(where, expected, found)])
 
-    try:
-        rows = np.loadtxt(path, ndmin=2)
-    except FileNotFoundError:
-        raise wrong("a .12d file", "no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise wrong("a .12d file that can be read", str(getattr(error, "strerror", None) or error)) from None
-    except ValueError as error:
-        raise wrong(f"rows of {COLUMNS} numbers", str(error)) from None
-    if not rows.size or rows.shape[1] != COLUMNS:
-        raise wrong(f"rows of {COLUMNS} numbers", f"{rows.shape[1] if rows.size else 0}")
-    for bad, expected in (
-        (~np.isfinite(rows).all(axis=1), "finite numbers"),
-        ((rows[:, :2] <= 0).any(axis=1), "periods above 0"),
-        (~np.isin(rows[:, 4], range(1, 7)), "a mode from 1 to 6"),
-    ):
-        if bad.any():
-            row = int(np.argmax(bad))
-            raise wrong(expected, " ".join(f"{x:g}" for x in rows[row]), f"row {row + 1}")
-    turned = np.abs((rows[:, 2:4] - heading + 180) % 360 - 180)
-    mine = rows[(turned < SAME).all(axis=1)]
-    if not len(mine):
-        known = sorted({float(beta) for beta in rows[(rows[:, 2] == rows[:, 3]), 2]})
-        raise wrong(f"waves of heading {heading:g} deg", f"{', '.join(f'{x:g}' for x in known)} deg", "BETA1, BETA2")
     periods = np.unique(mine[:, :2])[::-1]
     periods = periods[np.r_[True, np.abs(np.diff(periods)) > SAME * periods[:-1]]]
     if len(periods) < 2:

@@ -3,6 +3,7 @@
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.changing_drag import ChangingDrag
+from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
 from jaxhydro.loads.coulomb_friction import CoulombFriction
 from jaxhydro.loads.coupled_damping import CoupledDamping
@@ -72,6 +73,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "sensor_lag": SensorLag,
     "wave_gauge_position": WaveGaugePosition,
     "wave_reflection": WaveReflection,
+    "computed_excitation": ComputedExcitation,
     "wave_drift": WaveDrift,
     "drift_transfer": DriftTransfer,
     "wave_drift_damping": WaveDriftDamping,

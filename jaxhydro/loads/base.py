@@ -10,6 +10,7 @@ from jaxtyping import Array, Bool, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull, Wetted
+from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.sea_state import SeaState
@@ -46,7 +47,8 @@ class Instant(eqx.Module):
     `position` is surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point; `rotation` takes body to earth axes;
     `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
     same along earth axes. `wetted` and `strip_shape` say what of elements and strips is under water, `strip_flow` and
-    `end_flow` how the water moves past strips and ends. `drift` (m2) is that of the sea: see `AbstractSea.drift`.
+    `end_flow` how the water moves past strips and ends. `drift` (m2) and `excitation` (N, N m) are those of the sea: see
+    `AbstractSea.drift`, `AbstractSea.excitation`.
     """
 
     time: Float[Array, ""]
@@ -61,6 +63,7 @@ class Instant(eqx.Module):
     end_flow: EndFlow
     lines: Lines
     drift: Float[Array, " d"] | None = None
+    excitation: Float[Array, "6"] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""
@@ -132,6 +135,14 @@ class AbstractLoad(eqx.Module):
 
     def drifts(self) -> Transfer | None:
         """What of second order an irregular sea has to be prepared with for it; None: nothing."""
+        return None
+
+    def excites(self) -> Excitation | None:
+        """What of first order an irregular sea has to be prepared with for it; None: nothing."""
+        return None
+
+    def replaces(self) -> Float[Array, ""] | None:
+        """Share of what accelerations and pressures of the water do to strips and ends that it stands for; None: none."""
         return None
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:

@@ -88,7 +88,7 @@ class Buoyancy(AbstractLoad):
     def upright(self, weight_density: float) -> dict[str, float]:
         """Displaced volume (m3), its centroid's z (m), C33 (N/m), C44 and C55 (N m/rad, without the weight's share) of the
         members alone, about the upright platform at its reference position."""
-        volume, moment, slope = _upright(self, jnp.asarray(weight_density))
+        volume, moment, slope = (np.asarray(x) for x in _upright(self, jnp.asarray(weight_density)))
         total = float(volume.sum())
         return {
             "displaced_volume": total,
@@ -139,4 +139,4 @@ def buoyancy(members: Sequence[Member]) -> Buoyancy:
         arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
     names = ("lower", "axis", "length", "area", "second_moment", "directions", "thickness")
     pieces: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
-    return Buoyancy(**pieces, extra_force=jnp.zeros(()), extra_stiffness=jnp.zeros(3), values={})
+    return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)), values={})

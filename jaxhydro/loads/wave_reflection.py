@@ -59,6 +59,9 @@ class ReflectedSea(AbstractSea):
     def drift(self, time: Float[Array, ""]) -> Float[Array, " d"] | None:
         return self.sea.drift(time)
 
+    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
+        return self.sea.excitation(time, place)
+
     def direction(self) -> Float[Array, "2"]:
         return self.along
 

@@ -163,7 +163,8 @@ def prepared_for(
     """The sea for the model's hull, and the steps taken: size (s) and number, those of `simulate`."""
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     instants = clock("ab4", float(times[0]), step, steps)
-    return sea.prepared(model.hull.extremities(), model.cylinders, instants, transfer=model.transfer), step, steps
+    hull, computed = (model.hull.extremities(), model.cylinders), {"transfer": model.transfer, "exciting": model.excitation}
+    return sea.prepared(*hull, instants, **computed), step, steps  # type: ignore[arg-type]
 
 
 @eqx.filter_jit

@@ -14,6 +14,11 @@ def wavenumber(
     Newton's iteration from the explicit formula of Guo (2002), Coastal Engineering 45, 71-74. Derivatives are implicit.
     omega = 0 gives k = 0.
     """
+    return _newton(omega, depth, gravity)
+
+
+@jax.jit
+def _newton(omega, depth, gravity):
     safe = jnp.where(omega > 0, omega, 1.0)
     deep = safe**2 * depth / gravity  # k0 h
     kh = deep * (1 - jnp.exp(-(deep ** (2.4901 / 2)))) ** (-1 / 2.4901)

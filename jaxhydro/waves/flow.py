@@ -36,6 +36,11 @@ class Flow(eqx.Module):
     tuned: Float[Array, "a n"] | None = None
     axes: Float[Array, "3 a"] | None = None
 
+    def weakened(self, share: Float[Array, ""]) -> "Flow":
+        """The same velocities, a share (-) of accelerations and pressures."""
+        diffracted, tuned = (None if field is None else share * field for field in (self.diffracted, self.tuned))
+        return Flow(self.velocity, share * self.acceleration, share * self.pressure, diffracted, tuned, self.axes)
+
     def earth(self) -> "Flow":
         """The same along earth axes."""
         if (axes := self.axes) is None:

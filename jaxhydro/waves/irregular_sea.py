@@ -13,6 +13,7 @@ from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.envelope import Envelope, envelope
+from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth, stretched
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum, fold
@@ -102,9 +103,11 @@ class IrregularSea(AbstractSea):
         excursion: float = EXCURSION,
         linear: bool = False,
         transfer: Transfer | None = None,
+        exciting: Excitation | None = None,
     ) -> "SupportSea":
         """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock; of its
-        first order alone where `linear`, in arrays of the same shapes. `drift` has the forces of a `transfer`, too.
+        first order alone where `linear`, in arrays of the same shapes. `drift` has the forces of a `transfer`, too, and
+        `excitation` those of first order.
 
         Raises ValueError for components of several headings, that are no harmonics, or where the clock's steps do not divide
         the period or are too long for the highest frequency.
@@ -132,7 +135,7 @@ class IrregularSea(AbstractSea):
         radius = jnp.zeros(0) if cylinders is None else cylinders.radius
         options = (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp)
         arrays = (jnp.asarray(found.table), found.spacing, jnp.asarray(middle), jnp.asarray(along), radius)
-        spectrum = _spectrum(waves, self.environment, 1 if linear else self.order, self.kinds, options, *arrays)
+        spectrum = _spectrum(waves, self.environment, 1 if linear else self.order, self.kinds, options, *arrays, exciting)
         series, fine = _series(spectrum, 2 * math.pi / float(waves.period), size, clock, self.ramp)
         wavenumber = jnp.asarray(found.wavenumber)
         return SupportSea(
@@ -140,7 +143,7 @@ class IrregularSea(AbstractSea):
             series,
             fine,
             wavenumber,
-            jnp.exp(-2 * wavenumber * depth),
+            jnp.asarray(np.exp(-2 * found.wavenumber * depth)),
             jnp.asarray(middle),
             jnp.asarray(along),
             jnp.asarray(clock.start),
@@ -148,14 +151,16 @@ class IrregularSea(AbstractSea):
             clock.nodes,
             self.stretching,
             box.half,
+            0 if exciting is None else 6,
             self._envelope(clock, size, transfer),
         )
 
     def _envelope(self, clock: Clock, size: int, transfer: Transfer | None) -> Envelope:
         """Of the first-order waves on a clock of which `size` steps are a period."""
-        share = growth(clock.start + clock.step * jnp.arange(clock.steps + 1), self.ramp) ** 2
-        weight = (self.components.omega / MIDDLE) ** 2
-        return envelope(self.components, self.environment, weight, share, size, jnp.asarray(clock.start), transfer)
+        share = np.asarray(growth(clock.start + clock.step * np.arange(clock.steps + 1), self.ramp)) ** 2
+        weight = (np.asarray(self.components.omega) / MIDDLE) ** 2
+        arrays = jnp.asarray(weight), jnp.asarray(share)
+        return envelope(self.components, self.environment, *arrays, size, jnp.asarray(clock.start), transfer)
 
 
 _elevation = eqx.filter_jit(elevation_spectrum)
@@ -173,6 +178,7 @@ def _spectrum(
     middle: Float[Array, ""],
     along: Float[Array, "2"],
     radius: Float[Array, " c"],
+    exciting: Excitation | None,
 ) -> Complex[Array, "b f r"]:
     """Fourier amplitudes of the supports' quantities, by harmonic: see `SupportSea.series`."""
     lag, diffract_bound, ramp = options
@@ -201,11 +207,16 @@ def _spectrum(
     first, last = waves.harmonics
     free = PlaneWaves.free(waves, environment)
     rows, k = families(free.omega, free.vector, free.elevation, free.potential, True)
+    if exciting is not None:
+        rows = jnp.concatenate([exciting.at(free.omega) * free.elevation, rows])
     found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
     if order == 1:
         return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
     real, imaginary = jnp.split(fold(waves, environment, sums, kinds), 2, axis=1)
-    return (real + 1j * imaginary).at[first : last + 1].add(found)
+    bound = real + 1j * imaginary
+    if exciting is not None:
+        bound = jnp.pad(bound, ((0, 0), (6, 0), (0, 0)))
+    return bound.at[first : last + 1].add(found)
 
 
 @eqx.filter_jit
@@ -239,7 +250,8 @@ def _series(
 class SupportSea(AbstractSea):
     """An irregular sea of one heading for one hull and one clock: see `supports` for how it works.
 
-    `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: horizontal velocity and
+    `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: `forces` (0 or 6) of the
+    first order on a platform; horizontal velocity and
     acceleration, pressure over density, what cylinders of each radius are excited by horizontally (and `Flow.tuned` for
     each); vertical velocity and acceleration, and what excites the cylinders vertically; elevation. Only times of the clock
     may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with the
@@ -258,6 +270,7 @@ class SupportSea(AbstractSea):
     nodes: tuple[float, ...] = eqx.field(static=True)
     stretching: Stretching = eqx.field(static=True)
     half: float = eqx.field(static=True)  # m, of the box
+    forces: int = eqx.field(static=True, default=0)
     envelope: Envelope | None = None
 
     def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
@@ -299,7 +312,7 @@ class SupportSea(AbstractSea):
         return found
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
-        rows, k, fade = self.rows(time), self.wavenumber, self.fade
+        rows, k, fade = self.rows(time)[self.forces :], self.wavenumber, self.fade
         families = (rows.shape[0] - 6) // 2
         even, odd = rows[: 3 + families], rows[3 + families : -1]
         place = self.along @ points[:2] - self.middle
@@ -336,6 +349,12 @@ class SupportSea(AbstractSea):
         if self.envelope is None:
             return None
         return self.envelope.at((time + self.envelope.lead - self.start) / self.step)
+
+    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
+        if not self.forces:
+            return None
+        along = (self.along @ place - self.middle)[None]
+        return jax.vmap(surface, (0, None, None))(self.rows(time)[: self.forces], self.wavenumber, along)[:, 0]
 
     def direction(self) -> Float[Array, "2"]:
         return self.along

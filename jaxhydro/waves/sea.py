@@ -1,6 +1,7 @@
 """Seas: what gives the flow at any time and place. `AbstractSea.flow` and `surface` are all that the simulator asks for."""
 
 import abc
+import dataclasses
 import math
 from typing import Literal
 
@@ -12,6 +13,7 @@ from jaxtyping import Array, Float
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
+from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.transfer import Transfer
 
@@ -47,6 +49,11 @@ class AbstractSea(eqx.Module):
         """
         return None
 
+    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
+        """First-order force (N, N m, earth axes) on a platform at a horizontal `place` (m), of waves where it is, where the sea
+        was made with its excitation; None: it was not."""
+        return None
+
     def direction(self) -> Float[Array, "2"]:
         """Unit vector along which the waves travel, by energy (earth axes)."""
         raise NotImplementedError(f"{type(self).__name__} does not tell where its waves travel to")
@@ -77,7 +84,7 @@ class WaveSea(AbstractSea):
     moved with the surface, that of z' = h (z - eta) / (h + eta) (Wheeler 1970, Journal of Petroleum Technology 22, 359-367);
     "none": as vertical, and the platform is wetted to still water level. Waves grow from rest over the first `ramp` seconds
     by a half cosine (0: at full height from the start). `bound` is what the waves bind at second order, `transfer` a platform's
-    difference-frequency forces.
+    difference-frequency forces, `exciting` those of first order.
     """
 
     waves: PlaneWaves
@@ -86,6 +93,7 @@ class WaveSea(AbstractSea):
     stretching: Stretching = eqx.field(static=True, default="vertical")
     bound: PlaneWaves | None = None
     transfer: Transfer | None = None
+    exciting: Excitation | None = None
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
         level, above = stretched(self, self.stretching, time, points, self.environment.depth)
@@ -144,6 +152,12 @@ class WaveSea(AbstractSea):
             return plain
         return jnp.concatenate([plain, self.transfer.force(self.transfer.at(omega) @ one)])
 
+    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
+        if self.exciting is None:
+            return None
+        angle = self.waves.omega * time - place @ self.waves.vector
+        return self.growth(time) * (self.exciting.at(self.waves.omega) @ (self.waves.elevation * jnp.exp(1j * angle))).real
+
     def direction(self) -> Float[Array, "2"]:
         return direction(self.waves.vector, jnp.abs(self.waves.elevation) ** 2)
 
@@ -155,7 +169,7 @@ class WaveSea(AbstractSea):
             return PlaneWaves(waves.omega, waves.vector, waves.elevation * turn, waves.potential * turn)
 
         bound = None if self.bound is None else on(self.bound)
-        return WaveSea(on(self.waves), self.environment, self.ramp, self.stretching, bound, self.transfer)
+        return dataclasses.replace(self, waves=on(self.waves), bound=bound)
 
     def growth(self, time: Float[Array, "..."]) -> Float[Array, "..."]:
         """Share of their full height (-) that the waves have at a time (s)."""
@@ -169,6 +183,7 @@ def direction(vector: Float[Array, "2 w"], energy: Float[Array, " w"]) -> Float[
     return jnp.where(square > 0, mean / jnp.sqrt(jnp.where(square > 0, square, 1.0)), 0.0)
 
 
+@jax.jit
 def growth(time: Float[Array, "..."], ramp: Float[Array, ""] | float) -> Float[Array, "..."]:
     """A half cosine from 0 to 1 over `ramp` (s)."""
     duration = jnp.asarray(ramp)

@@ -23,6 +23,11 @@ def peak_enhancement(significant_height: Scalar, peak_period: Scalar) -> Float[A
     """
     _positive("significant_height", significant_height, "m")
     _positive("peak_period", peak_period, "s")
+    return _enhancement(jnp.asarray(significant_height), jnp.asarray(peak_period))
+
+
+@jax.jit
+def _enhancement(significant_height, peak_period):
     return jnp.exp(jnp.clip(5.75 - 1.15 * peak_period / jnp.sqrt(significant_height), 0.0, math.log(5.0)))
 
 
@@ -33,7 +38,12 @@ def pierson_moskowitz(omega: Float[Array, "..."], significant_height: Scalar, pe
     """
     _positive("significant_height", significant_height, "m")
     _positive("peak_period", peak_period, "s")
-    peak = 2 * math.pi / jnp.asarray(peak_period)
+    return _smooth(jnp.asarray(omega), jnp.asarray(significant_height), jnp.asarray(peak_period))
+
+
+@jax.jit
+def _smooth(omega, significant_height, peak_period):
+    peak = 2 * math.pi / peak_period
     there = omega > 0.1 * peak  # below, S underflows to 0, and its factors overflow
     ratio = peak / jnp.where(there, omega, peak)
     shape = ratio**5 * jnp.exp(-1.25 * ratio**4) / peak
@@ -54,10 +64,15 @@ def jonswap(
     gamma = _default_enhancement(significant_height, peak_period) if peak_enhancement is None else peak_enhancement
     if _concrete(gamma) and not np.all((np.asarray(gamma) >= 1) & (np.asarray(gamma) <= SHARPEST)):
         raise ValueError(f"peak_enhancement lies from 1 to {SHARPEST:g}, found {gamma}")
-    peak = 2 * math.pi / jnp.asarray(peak_period)
+    return smooth * _peaked(jnp.asarray(omega), jnp.asarray(peak_period), jnp.asarray(gamma))
+
+
+@jax.jit
+def _peaked(omega, peak_period, gamma):
+    peak = 2 * math.pi / peak_period
     width = jnp.where(omega <= peak, 0.07, 0.09)
     log = jnp.log(gamma)
-    return (1 - 0.287 * log) * jnp.exp(log * jnp.exp(-0.5 * ((omega / peak - 1) / width) ** 2)) * smooth
+    return (1 - 0.287 * log) * jnp.exp(log * jnp.exp(-0.5 * ((omega / peak - 1) / width) ** 2))
 
 
 _default_enhancement = peak_enhancement  # the argument of `jonswap` has the function's name

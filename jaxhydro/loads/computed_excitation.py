@@ -1,0 +1,56 @@
+"""First-order wave forces computed by a radiation-diffraction program, in place of those of strips."""
+
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.sea import AbstractSea, WaveSea
+
+LABEL = "computed_excitation.share"
+
+
+class ComputedExcitation(AbstractLoad):
+    """F_i(t) = s Re sum_k X_i(w_k) A_k exp(i (w_k t - k x)), of the undisturbed first-order waves where the platform is
+    horizontally, along earth axes (`Excitation`; Newman 1977, Marine Hydrodynamics, section 6.15); what accelerations and
+    pressures of the water do to strips and ends counts 1 - s.
+
+    s is a share: 1 for the program's own excitation, with drag alone left to the strips, as OpenFAST HydroDyn has a
+    potential-flow body (which takes the waves at the platform's mean position, unless ExctnDisp is 1); 0 for that of the
+    strips. What the program leaves out the strips then leave out with it: wetting, stretching and bound waves act by drag only.
+    Added mass stays that of the members. Of waves that are sent back (`WaveReflection`) the strips alone know. An irregular sea
+    has to be prepared with `Model.excitation`.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    excitation: Excitation
+    source: ClassVar[str] = "Newman 1977, Marine Hydrodynamics, section 6.15; OpenFAST HydroDyn, WAMIT module (ExctnMod 1)"
+
+    @classmethod
+    def of(cls, excitation: Excitation, share: float = 1.0) -> "ComputedExcitation":
+        """All of a program's excitation, or a share (-) of it."""
+        return cls({LABEL: jnp.asarray(float(share))}, excitation)
+
+    def about(self, label: str) -> Parameter:
+        return Parameter("-", "share of the computed excitation, in place of the strips'", -0.5, 2.0)
+
+    def excites(self) -> Excitation:
+        return self.excitation
+
+    def replaces(self) -> Float[Array, ""]:
+        return self.values[LABEL]
+
+    def through(self, sea: AbstractSea) -> AbstractSea:
+        sea = sea.direct() if isinstance(sea, IrregularSea) else sea
+        return replace(sea, exciting=self.excitation) if isinstance(sea, WaveSea) else sea
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        if now.end_flow.pressure is None:
+            return Action()
+        if now.excitation is None:
+            raise ValueError("the sea was made without the platform's excitation: prepare it with `Model.excitation`")
+        return Action(force=self.values[LABEL] * now.excitation)
