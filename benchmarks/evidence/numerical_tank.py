@@ -21,14 +21,15 @@ def one(part: str) -> dict[str, Any]:
 
 
 def run(figures: Path, processes: int) -> Section:
-    """The declared model, calibrated, and two diagnoses: of decays and sea, and of the decays alone."""
-    if not runs.FOLDER.exists() or not truth.HYDRO.exists():
+    """The declared model, calibrated; diagnoses of decays and sea, of the decays alone, with tables among candidates."""
+    if not runs.FOLDER.exists() or not runs.HYDRO.exists():
         raise Absent("OpenFAST's runs and WAMIT's files (../shared/reference) are not on this machine")
     begin()
     folder = runs.written()
+    runs.written_with_tables()
     key = fingerprint(Path(runs.__file__), *sorted(folder.glob("*.csv")), *sorted(folder.glob("*.yaml")))
     results: dict[str, Any] = {}
-    for name, found in parallel(runs.NAME, key, ("declared", "calibrated", "all", "decays"), one, processes):
+    for name, found in parallel(runs.NAME, key, ("declared", "calibrated", "all", "decays", "tables"), one, processes):
         results[name] = found
         if "verdict" in found:
             named = [" ".join(filter(None, (x["effect"], x["motion"]))) for x in found["effects"]]

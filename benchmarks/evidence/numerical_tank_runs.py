@@ -1,6 +1,7 @@
 """OpenFAST's potential-flow runs as a campaign of measurements, its calibration and its diagnoses."""
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -8,11 +9,14 @@ from typing import Any
 import numpy as np
 import yaml
 
-from benchmarks.evidence.common import CACHE
+from benchmarks.evidence.common import CACHE, SHARED
 from benchmarks.evidence.openfast import FOLDER, platform
 
 NAME = "numerical_tank"
 CAMPAIGN = CACHE / "numerical-tank-campaign"
+WITH_TABLES = CACHE / "numerical-tank-with-tables"  # the same campaign, the tank's own tables among the candidates
+HYDRO = SHARED / "reference" / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.1"
+TABLES = {"radiation": ".1", "excitation": ".3", "drift": ".12d"}
 DECAYS = ("surge", "heave", "pitch")
 SEA, REST = "ss1_nwt", "nwt_static"
 RUNS = (*(f"decay_{dof}_nwt" for dof in DECAYS), SEA, REST)
@@ -70,6 +74,20 @@ def written() -> Path:
     declared = {**platform(setup()), "name": "VolturnUS-S by strips"}
     (CAMPAIGN / "platform.yaml").write_text(yaml.safe_dump(declared, sort_keys=False))
     return CAMPAIGN
+
+
+def written_with_tables() -> Path:
+    """The campaign's folder again, WAMIT's tables that the tank's forces are made of beside the platform, as candidates."""
+    WITH_TABLES.mkdir(parents=True, exist_ok=True)
+    for path in (*sorted(CAMPAIGN.glob("*.csv")), CAMPAIGN / "campaign.yaml"):
+        shutil.copy(path, WITH_TABLES)
+    tables = {}
+    for key, ending in TABLES.items():
+        shutil.copy(HYDRO.with_suffix(ending), WITH_TABLES / f"hull{ending}")
+        tables[key] = {"file": f"hull{ending}", "use": "candidate"}
+    declared = yaml.safe_load((CAMPAIGN / "platform.yaml").read_text())
+    (WITH_TABLES / "platform.yaml").write_text(yaml.safe_dump(declared | tables, sort_keys=False))
+    return WITH_TABLES
 
 
 def errors_of(found: Any) -> dict[str, Any]:
@@ -146,11 +164,12 @@ def values_of(parameters: Any) -> dict[str, Any]:
 
 
 def diagnosed(which: str) -> dict[str, Any]:
-    """What `diagnose` says: of `all`, or of the `decays` alone, of which blocks are left out in turn. Killed, it goes on."""
+    """What `diagnose` says: of `all`, of the `decays` alone, of which blocks are left out in turn, or of all with `tables`
+    among the candidates. Killed, it goes on."""
     from calibration.campaign import load_campaign
     from calibration.discovery.search import diagnose
 
-    campaign = load_campaign(CAMPAIGN)
+    campaign = load_campaign(WITH_TABLES if which == "tables" else CAMPAIGN)
     if which == "decays":
         campaign = replace(campaign, records=tuple(one for one in campaign.records if one.id in DECAYS))
 

@@ -28,6 +28,7 @@ def stages(results: dict[str, Any]) -> dict[str, dict[str, Any]]:
         "calibrated to decays": results["calibrated"]["errors"],
         "fitted to decays and sea": results["all"]["before"]["errors"],
         "with what was found": results["all"]["after"]["errors"],
+        "with what was found, tables among candidates": results["tables"]["after"]["errors"],
     }  # fmt: skip
 
 
@@ -169,6 +170,11 @@ deviation, offset included:
 **The decays alone**, blocks left out in turn: {verdict_of(alone)}
 
 {effects_table(alone) if alone["effects"] else ""}
+**The tank's own tables among the candidates** (`radiation`, `excitation` and `drift` of the platform file, `use: candidate`:
+the WAMIT files that OpenFAST's forces are made of; a share of 1 is the truth): {verdict_of(results["tables"])} J of the
+held-out half becomes {results["tables"]["objective"]["holdout"][1]:.2f}.
+
+{effects_table(results["tables"]) if results["tables"]["effects"] else ""}
 What the tank has and the strips do not, and what becomes of it (*slow*: in the motion's low-frequency band):
 
 {missing_table(results, known)}

@@ -7,12 +7,22 @@ import numpy as np
 from scipy.optimize import fsolve
 from scipy.signal import hilbert, savgol_filter
 
-from benchmarks.evidence.common import SHARED
-from benchmarks.evidence.numerical_tank_runs import DECAYS, END, FOLDER, PERIOD, REST, SEA, TRANSIENT, columns, platform, setup
+from benchmarks.evidence.numerical_tank_runs import (
+    DECAYS,
+    END,
+    FOLDER,
+    HYDRO,
+    PERIOD,
+    REST,
+    SEA,
+    TRANSIENT,
+    columns,
+    platform,
+    setup,
+)
 from jaxhydro.analysis import BANDS
 from jaxhydro.interop.wamit import read_wamit
 
-HYDRO = SHARED / "reference" / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.1"
 DENSITY, GRAVITY = 1025.0, 9.81
 # MoorDyn's md.dat: three lines at 120 deg
 ANCHOR, FAIRLEAD, DROP, LENGTH = 837.6, 58.0, 186.0, 850.0  # m
