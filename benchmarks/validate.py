@@ -23,6 +23,7 @@ from benchmarks.evidence import (
     diagnoses,
     global_search,
     identified,
+    lacking,
     measured,
     measured_waves,
     numerical_tank,
@@ -39,7 +40,7 @@ from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
     "seeds", "coverage", "identified", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas",
-    "classical_bias", "starts", "global_search", "study", "diagnoses", "numerical_tank",
+    "classical_bias", "starts", "global_search", "study", "diagnoses", "lacking", "numerical_tank",
 )  # fmt: skip
 INTRO = """\
 # Validation
@@ -69,6 +70,8 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return tuned_seas.run(figures, options.processes)
     if name == "numerical_tank":
         return numerical_tank.run(figures, options.processes)
+    if name == "lacking":
+        return lacking.run(figures, options.processes)
     if name == "diagnoses":
         return diagnoses.run(figures, options.processes, options.diagnoses)
     plain = {"periods": periods, "openfast": openfast, "openfast_waves": openfast_waves,

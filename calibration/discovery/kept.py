@@ -56,7 +56,8 @@ def resumed(path: Path, search: "Search") -> list[State]:
         search.take_linear_seas()
     found = {name: one._replace(before=whole(one.before), after=whole(one.after)) for name, one in content["found"].items()}
     search.found, search.scores, search.rejected = found, content["scores"], content["rejected"]
-    search.notes, search.alone, search.begun = content["notes"], content["alone"], content["begun"]
+    search.notes, search.alone = content["notes"], content["alone"]
+    search.anchor(content["begun"])
     return [whole(state) for state in content["states"]]
 
 

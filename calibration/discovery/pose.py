@@ -27,6 +27,9 @@ STIFFNESS, PRETENSION = 0.02, 0.02  # by which a declared mooring may be off, on
 OF_MASS = 1.0  # ... and mass properties, in noticeable units (0.5 % of mass, 1 % of inertia, 0.1 m)
 TRIM = 3.0  # of draught and trim, in noticeable units
 ENDS = 0.7
+# by which seas may move a coefficient from where decays, or the platform file, have it, in its logarithm: a standard deviation
+# of a prior that is steep beyond three. Drag changes with a sea; linear damping does not, and stands for nothing else
+ANCHORED, ANCHORED_DAMPING = 0.75, 0.5
 
 
 class Posed(NamedTuple):
@@ -129,7 +132,8 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     for one in base_space.free:
         known = math.isfinite(one.prior_deviation)
         mean = one.prior_mean - float(x0[place[one.label]]) if known else 0.0
-        direction(one.label, {one.label: 1.0}, mean, one.prior_deviation if known else VAGUE)
+        deviation = one.prior_deviation if known else width_of(one.label, declared, bool(waves))
+        direction(one.label, {one.label: 1.0}, mean, deviation)
     for name, (parts, deviation) in nuisances.items():
         direction(name, parts, 0.0, deviation)
     candidates = [one for one in candidates if not set(one.amplitudes) <= set(nuisances) or one.effect == "mass_properties"]
@@ -143,6 +147,13 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     study = study_of(model, space, names, np.array(rows), campaign, options, width)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
     return Posed(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions))
+
+
+def width_of(label: str, declared: Model, waves: bool) -> float:
+    """How well a coefficient is known before its records, one standard deviation of its logarithm."""
+    if not waves or float(declared.values[label]) == 0:
+        return VAGUE
+    return ANCHORED_DAMPING if label.startswith("linear_damping.") else ANCHORED
 
 
 def _pretension(model: Model, line: str) -> float:

@@ -135,7 +135,7 @@ class Search:
         """The declared model, fitted."""
         self.say("calibrating the declared model", 0.03)
         place = self.start()
-        self.begun = place.x
+        self.anchor(place.x)
         if self.study.decays is not None and self.study.seas:
             self.alone = Left.of(self.study, self.study.residual(place))
         if self.study.seas:
@@ -158,6 +158,18 @@ class Search:
             f"are followed worse (by {better:.0f} in -2 ln L)"
         )
         return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
+
+    def anchor(self, x: np.ndarray) -> None:
+        """The search begins at these coordinates; in waves coefficients are known from there: what the declared model lacks
+        would else move them to where they stand for it, linear damping for radiation, and slow motion is damped away."""
+        self.begun = x
+        if not self.study.seas:
+            return
+        stated = {one.label for one in self.study.space.free if math.isfinite(one.prior_deviation)}
+        mine = self.study.index([name for name in self.posed.base if name not in stated])
+        mean = self.posed.prior.mean.copy()
+        mean[mine] = self.study.steps(x)[mine]
+        self.posed = self.posed._replace(prior=Prior(mean, self.posed.prior.width))
 
     def expect(self, place: Place) -> None:
         """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
@@ -291,7 +303,7 @@ class Search:
             effects = {label for one in chosen for label in one.labels}
             bent = [nuisance for nuisance in self.posed.nuisances if nuisance not in effects]
             places = [best.state.look.place, self.renewed(best.state.look.place, bent)]
-            if self.alone is not None:  # ... and so were coefficients that decays tell
+            if self.study.seas:  # ... and so were coefficients
                 coefficients = [name for name in self.posed.base if name not in effects]
                 places.append(self.renewed(places[-1], coefficients))
             every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]

@@ -1,0 +1,206 @@
+"""Section: what `diagnose` says of measured records: what the declared models lack, errors before and after."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.evidence.common import CACHE, SHARED, Absent, Section, fingerprint, parallel, say, table
+from calibration.formatting import number, percent
+
+TITLE = "What models of measured bodies lack"
+MEASURED = SHARED / "measured"
+CASES = {
+    "kvlcc2": "KVLCC2, roll decay, linear restoring declared",
+    "focal-c4": "FOCAL campaign 4, release from a surge offset",
+    "focal-c2": "FOCAL campaign 2, three seas, the highest held out",
+    "focal-c2-tables": "the same, the hull's WAMIT tables (`radiation`, `excitation`, `drift`) among the candidates",
+}
+TABLES = {"radiation": "semi.1", "excitation": "semi.3", "drift": "semi.12d"}
+MOTIONS = ("surge", "heave", "pitch")
+BANDS = {"low_frequency": "low", "wave_frequency": "wave"}
+AIMS = {("surge", "low_frequency"): 0.15, ("heave", "low_frequency"): 0.15, ("pitch", "low_frequency"): 0.3}
+AIM, FOLLOWED = 0.1, 0.9  # of energies at wave frequency; correlation of slow surge
+PAPER = {"low_frequency": (0.21, -0.67, -0.74), "wave_frequency": (-0.32, 0.10, 0.06)}  # its best case, of surge, heave, pitch
+
+
+def campaign_of(name: str) -> Path:
+    """The campaign's folder; one with tables is made in the cache."""
+    if not name.endswith("-tables"):
+        return MEASURED / name
+    folder = CACHE / "lacking-campaigns" / name
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in (MEASURED / name.removesuffix("-tables")).iterdir():
+        shutil.copy(path, folder)
+    lines = []
+    for key, file in TABLES.items():
+        shutil.copy(MEASURED / "focal-c4" / "wamit" / file, folder)
+        lines.append(f"{key}: {{file: {file}, use: candidate}}")
+    with open(folder / "platform.yaml", "a", encoding="utf-8") as platform:
+        platform.write("\n" + "\n".join(lines) + "\n")
+    return folder
+
+
+def key() -> str:
+    return fingerprint(*(MEASURED / name for name in ("kvlcc2", "focal-c4", "focal-c2")))
+
+
+def written_to(name: str) -> Path:
+    """Where a diagnosis of these sources is written; one that was killed goes on there."""
+    return CACHE / "lacking-results" / key() / name
+
+
+def work(name: str) -> dict[str, Any]:
+    """A campaign diagnosed, as the command line does it, and what its files say."""
+    from calibration.campaign import load_campaign
+    from calibration.discovery.kept import FILE
+    from calibration.discovery.outputs import write_diagnosis
+    from calibration.discovery.search import diagnose
+    from calibration.folder import DIAGNOSIS
+
+    folder = written_to(name)
+    folder.mkdir(parents=True, exist_ok=True)
+    if not (folder / DIAGNOSIS).exists():
+        campaign = load_campaign(campaign_of(name))
+        write_diagnosis(diagnose(campaign.model, campaign, kept=folder / FILE), folder, figures=False)
+        (folder / FILE).unlink(missing_ok=True)
+    return numbers(folder, name)
+
+
+def numbers(folder: Path, name: str) -> dict[str, Any]:
+    """What a folder of results says, and how well slow motions are followed in time."""
+    import xarray as xr
+
+    from calibration.campaign import load_campaign
+    from calibration.folder import DIAGNOSIS
+    from jaxhydro.analysis import bands
+
+    found = json.loads((folder / DIAGNOSIS).read_text())
+    tests = load_campaign(campaign_of(name)).manifest.tests
+    periods = {test.id: test.peak_period for test in tests if test.kind == "irregular"}
+    correlation: dict[str, Any] = {}
+    with xr.open_dataset(folder / "simulated.nc") as motion:
+        step = float(np.diff(motion.time.values[:2])[0])
+        for test in [str(x) for x in motion.test.values if str(x) in periods]:
+            for dof in MOTIONS:
+                low, high = bands(dof, periods[test])["low_frequency"]
+                slow = {k: within(motion[k].sel(test=test, channel=dof).values, low, high, step)
+                        for k in ("measured", "before", "simulated")}  # fmt: skip
+                pair = [float(np.corrcoef(slow["measured"], slow[k])[0, 1]) for k in ("before", "simulated")]
+                correlation.setdefault(test, {})[dof] = pair
+    kept = ("missing", "baseline", "augmented", "tests", "notes", "seconds", "next_test")
+    return {k: found[k] for k in kept} | {"correlation": correlation}
+
+
+def within(x: np.ndarray, low: float, high: float, step: float) -> np.ndarray:
+    """What of a series is in a band (Hz)."""
+    x = x[np.isfinite(x)]
+    lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
+    lines[(frequency < low) | (frequency > high)] = 0
+    return np.fft.irfft(lines, len(x))
+
+
+def run(figures: Path, processes: int) -> Section:
+    """All campaigns; the longest first."""
+    if not MEASURED.exists():
+        raise Absent("the measured records (../shared/measured) are not on this machine")
+    results = {}
+    for name, result in parallel("lacking", key(), list(CASES)[::-1], work, processes):
+        results[name] = result
+        names = [one["effect"] for one in result["missing"]["effects"]]
+        say(f"  {name}: {', '.join(names) or result['missing']['verdict']} ({result['seconds']:.0f} s)")
+    results = {name: results[name] for name in CASES}
+    text = "\n".join(f"### {CASES[name]}\n\n{words(result)}" for name, result in results.items())
+    return Section(TITLE, intro() + text, (), tuple(s for name, result in results.items() for s in short_of(name, result)))
+
+
+def intro() -> str:
+    return (
+        "Errors in waves are (simulated - measured) / measured, of energies in the paper's bands. The paper's best case "
+        "(IFAC MECC 2025, Sarker et al., the same hull with its coefficients tuned to decays) leaves "
+        + "; ".join(f"{BANDS[band]} frequency " + ", ".join(f"{100 * x:+.0f} %" for x in row) for band, row in PAPER.items())
+        + " in surge, heave and pitch. *Before* is the declared model, fitted to the same records.\n\n"
+    )
+
+
+def words(found: dict[str, Any]) -> str:
+    """A campaign's part of the section."""
+    missing = found["missing"]
+    share = percent(missing["unexplained"]["share"])
+    text = f"Verdict: *{missing['verdict'].replace('_', ' ')}*, {found['seconds'] / 60:.0f} minutes. "
+    text += f"{share} of the error's energy is left: {missing['unexplained']['signature'].rstrip('.')}.\n\n"
+    if missing["effects"]:
+        head = ("Found", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "Cannot be told from")
+        text += table(head, effects(found)) + "\n"
+    if decays := decay_rows(found):
+        text += table(("Decay", "use", "RMSE over sd, before", "after"), decays) + "\n"
+    if seas := sea_rows(found):
+        text += table(("Sea", "use", "Motion", "Low, before", "after", "Wave, before", "after", "RMSE over sd, before", "after",
+                       "Slow motion's correlation, before", "after"), seas) + "\n"  # fmt: skip
+    return text
+
+
+def effects(found: dict[str, Any]) -> list[tuple[str, ...]]:
+    """A row for every parameter of what was found."""
+    rows = []
+    for one in found["missing"]["effects"]:
+        evidence = one["evidence"]
+        gain = "–" if evidence["holdout_gain"] is None else percent(evidence["holdout_gain"])
+        head = (" ".join(filter(None, (f"`{one['effect']}`", one["degree_of_freedom"]))),)
+        tail = (number(evidence["delta_bic"], 3), gain, ", ".join(one["indistinguishable_from"]) or "–")
+        for i, (name, value) in enumerate(one["parameters"].items()):
+            deviation = value["standard_deviation"]
+            about = "" if deviation is None else f" ± {number(deviation, 1)}"
+            size = f"{number(value['value'], 3)}{about} {value['unit']}"
+            rows.append((*(head if i == 0 else ("",)), name, size, *(tail if i == 0 else ("", "", ""))))
+    return rows
+
+
+def stages(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """Errors by test before and after."""
+    return [found[k]["error"] for k in ("baseline", "augmented")]
+
+
+def decay_rows(found: dict[str, Any]) -> list[tuple[str, ...]]:
+    before, after = stages(found)
+    rows = []
+    for test, errors in before.items():
+        for channel, one in errors.items():
+            if test not in found["correlation"] and isinstance(one, dict) and one.get("in_objective"):
+                both = (percent(one["relative"]), percent(after[test][channel]["relative"]))
+                rows.append((f"{test}, {channel}", errors["use"], *both))
+    return rows
+
+
+def sea_rows(found: dict[str, Any]) -> list[tuple[str, ...]]:
+    before, after = stages(found)
+    rows = []
+    for test, pairs in found["correlation"].items():
+        for dof in MOTIONS:
+            both = (before[test], after[test])
+            cells = [f"{100 * one['bands'][dof][band]:+.0f} %" for band in BANDS for one in both]
+            cells += [percent(one[dof]["relative"]) for one in both] + [f"{x:.2f}" for x in pairs[dof]]
+            rows.append((test, before[test]["use"], dof, *cells))
+    return rows
+
+
+def short_of(name: str, found: dict[str, Any]) -> list[str]:
+    """What falls short of the aims in seas that were not fitted."""
+    short = []
+    for test, pairs in found["correlation"].items():
+        after = found["augmented"]["error"][test]
+        if after["use"] != "holdout":
+            continue
+        off = [
+            f"{dof} {BANDS[band]} {100 * error:+.0f} %"
+            for dof in MOTIONS
+            for band, error in after["bands"][dof].items()
+            if abs(error) > AIMS.get((dof, band), AIM)
+        ]
+        if off:
+            short.append(f"{name}, {test}: {', '.join(off)}")
+        if pairs["surge"][1] < FOLLOWED:
+            short.append(f"{name}, {test}: correlation of slow surge {pairs['surge'][1]:.2f}, aim {FOLLOWED:g}")
+    return short
