@@ -157,11 +157,13 @@ import json, time
 import jax, numpy as np
 from benchmarks import bench_sweep as bench
 from jaxhydro.simulate import simulate
-begun = time.process_time(), time.perf_counter()
-model = bench.model_of()
-sea = bench.seas_of(model, 3600.0, 1, 2)[0]
-jax.block_until_ready(simulate(model, np.arange(0.0, 3600.0, 0.5), sea, step=bench.STEP).position)
-print(json.dumps({"cpu": time.process_time() - begun[0], "wall": time.perf_counter() - begun[1]}))
+def hour():
+    begun = time.process_time(), time.perf_counter()
+    model = bench.model_of()
+    sea = bench.seas_of(model, 3600.0, 1, 2)[0]
+    jax.block_until_ready(simulate(model, np.arange(0.0, 3600.0, 0.5), sea, step=bench.STEP).position)
+    return time.process_time() - begun[0], time.perf_counter() - begun[1]
+print(json.dumps([hour(), hour()]))
 """
 
 
@@ -170,16 +172,19 @@ def waiting() -> tuple[list[Row], list[str]]:
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | CACHE | {"JAX_COMPILATION_CACHE_DIR": folder, "JAX_ENABLE_COMPILATION_CACHE": "1"}
 
-        def run() -> str:
+        def run() -> tuple[str, str]:
             command = [sys.executable, "-c", FIRST]
             done = subprocess.run(command, cwd=ROOT, env=environment, check=True, stdout=subprocess.PIPE, text=True)
-            found = json.loads(done.stdout)
-            return f"{found['cpu']:.2g} s CPU, {found['wall']:.2g} s wall"
+            first, again = json.loads(done.stdout)
+            apart = [one - other for one, other in zip(first, again)]
+            return tuple(f"{cpu:.2g} s CPU, {wall:.2g} s wall" for cpu, wall in (first, apart))  # type: ignore[return-value]
 
         ever, cached = run(), run()
     rows = [
-        Row("First hour of sea ever, import apart", ever, "15 s"),
-        Row("First hour of sea from the cache, import apart", cached, "2 s"),
+        Row("First hour of sea ever, import apart", ever[0]),
+        Row("... what a second one in the same process does not take", ever[1], "15 s"),
+        Row("First hour of sea from the cache, import apart", cached[0]),
+        Row("... what a second one in the same process does not take", cached[1], "2 s"),
     ]
     return rows, ["First hour of sea: platform file to motion, second order, in a new process, the simulation itself included."]
 

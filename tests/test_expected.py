@@ -1,5 +1,6 @@
 """What a residual is expected to be where a force is missing: a model's tangents, and the spectrum of a force that is known."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -14,8 +15,12 @@ from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.expected import beside, impedance, spectrum
 from calibration.discovery.linear import deviances, weights
-from calibration.discovery.study import Series, Study
-from calibration.parameters import ParameterSpace
+from calibration.discovery.pose import ANCHORED, ANCHORED_DAMPING, Posed, width_of
+from calibration.discovery.search import Search
+from calibration.discovery.study import Prior, Series, Study
+from calibration.identifiability import VAGUE
+from calibration.parameters import Free, ParameterSpace
+from calibration.transforms import Scaled
 from jaxhydro.waves.irregular_sea import Clock
 
 MASS, STIFFNESS, B11 = 8e6, 2e5, 3e5
@@ -117,3 +122,27 @@ def test_a_resonance_counts_as_what_it_is(study: Study) -> None:
     step = 1e-6 * residual
     change = float((deviances(told, residual + step, 0.2) - deviances(told, residual, 0.2)).sum())
     assert change == pytest.approx(2 * float((weights(told, residual) * residual * step).sum()), rel=1e-4)
+
+
+def test_how_well_coefficients_are_known() -> None:
+    """In waves about where decays have them, linear damping best; vaguely without waves, and where declared as none."""
+    model = jh.build(jh.Platform.model_validate(AFLOAT | {"linear_damping": {"B11": B11, "B55": 1e-300}}))
+    model = model.with_values({"linear_damping.B55": 0.0})
+    assert width_of("linear_damping.B11", model, True) == ANCHORED_DAMPING < ANCHORED < VAGUE
+    assert width_of("linear_damping.B11", model, False) == width_of("linear_damping.B55", model, True) == VAGUE
+
+
+@pytest.mark.parametrize("seas", [(), ("a sea",)])
+def test_coefficients_are_anchored_where_the_search_begins(seas: tuple[str, ...]) -> None:
+    """In waves, and but for those whose priors the manifest states; effects and nuisances stay where they were."""
+    names = ("linear_damping.B11", "column.Ca_t", "mass", "effect")
+    free = [Free(name, 1.0, Scaled(0.0, 1.0), 0.3, 0.1 if name == "column.Ca_t" else math.inf) for name in names]
+    study = SimpleNamespace(
+        seas=seas, space=ParameterSpace(tuple(free)), index=lambda some: [names.index(name) for name in some], steps=lambda x: x
+    )
+    prior = Prior(np.array([0.0, 0.3, 0.0, 0.0]), np.ones(4))
+    search = Search.__new__(Search)
+    search.study, search.posed = study, Posed(study, (), None, names[:2], names[2:3], prior, ())  # type: ignore[arg-type]
+    search.anchor(np.array([1.0, 2.0, 3.0, 4.0]))
+    assert_allclose(search.begun, [1.0, 2.0, 3.0, 4.0])
+    assert_allclose(search.posed.prior.mean, [1.0 if seas else 0.0, 0.3, 0.0, 0.0])
