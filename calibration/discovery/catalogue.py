@@ -53,8 +53,9 @@ YIELDS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hyster
 class Candidate:
     """An effect that may be missing. `amplitudes` are the labels that are null where it is not; `shapes` those that mean
     nothing then, freed with it, and tried at the values of `grid` first; `positive`, amplitudes that physics wants above
-    zero. `telling`: the test that would tell it from others. One's own law comes with its `load` at null and, by label,
-    `sizes` of its amplitudes that are noticeable."""
+    zero; `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without
+    the effect may stand in its way. `telling`: the test that would tell it from others. One's own law comes with its
+    `load` at null and, by label, `sizes` of its amplitudes that are noticeable."""
 
     effect: str
     dof: str | None
@@ -62,6 +63,7 @@ class Candidate:
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
     positive: tuple[str, ...] = ()
+    begin: Mapping[str, float] = field(default_factory=dict)
     telling: str = ""
     source: str = ""
     load: AbstractLoad | None = None
@@ -330,10 +332,15 @@ def catalogue(
                 source=WaveDriftDamping.source,
             )
     looked_for = sought(model)
-    for effect, one in COMPUTED.items():
-        if f"{effect}.share" in looked_for and (waves or not one.in_waves):
-            share = [linear(f"{effect}.share", SHARE)]
-            add(effect, None, share, passive=True, telling=one.telling, source=one.load.source)
+    tables = {k: one for k, one in COMPUTED.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
+    for effect, one in tables.items():
+        share, alone = linear(f"{effect}.share", SHARE), len(tables) == 1
+        begin = {share: 1.0} if alone else {}
+        add(effect, None, [share], passive=True, begin=begin, telling=one.telling, source=one.load.source)
+    if len(tables) > 1:  # what one program has computed belongs together: one table alone may not be better than none
+        shares = {f"{effect}.share": 1.0 for effect in tables}
+        telling, sources = next(iter(tables.values())).telling, "; ".join(one.load.source for one in tables.values())
+        add("potential_flow", None, list(shares), passive=True, begin=shares, telling=telling, source=sources)
     if "surge" in scales:
         s = scales["surge"]
         stiff = s.force / s.amplitude

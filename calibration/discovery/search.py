@@ -202,7 +202,8 @@ class Search:
     def score(self, state: State, number: int, fraction: float) -> list[Scored]:
         """Every candidate that is not in the model, at its null, the fitted directions projected out; the best first."""
         self.say(f"round {number}: scoring", fraction)
-        others = [one for one in self.posed.candidates if one not in state.chosen]
+        there = {label for one in state.chosen for label in one.labels}
+        others = [one for one in self.posed.candidates if not set(one.labels) <= there]
         best: dict[str, Scored] = {}
         for g in range(max((len(one.grid) for one in others), default=0) or 1):
             todo = [one for one in others if g < max(len(one.grid), 1)]
@@ -268,7 +269,9 @@ class Search:
         for item in ranked:
             weak = item.predicted.fitted <= enough
             self.refuse(item.candidate, f"{'explains too little' if weak else 'others explain more'} at first order")
-        state, after = self.best(state, some[:SHORTLIST], number, done)
+        known = [item for item in ranked if item.candidate.begin]  # worth a trial whatever they are at first order
+        some = [item for item in some if not item.candidate.begin]
+        state, after = self.best(state, [*known, *some[:SHORTLIST]], number, done)
         if after is None and (others := self.by_motion(some[SHORTLIST:], enough)):
             state, after = self.best(state, others, number, done + 0.1)
         return state, after
@@ -289,7 +292,7 @@ class Search:
         tried: list[Tried] = []
         for item in short:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
-            if item.predicted.fitted < FAR * highest:
+            if item.predicted.fitted < FAR * highest and not item.candidate.begin:
                 self.refuse(item.candidate, "explains far less than others")
             else:
                 tried.append(self.attempt(state, item, number, done + 0.02 * (len(tried) + 1)))
@@ -304,8 +307,7 @@ class Search:
             bent = [nuisance for nuisance in self.posed.nuisances if nuisance not in effects]
             places = [best.state.look.place, self.renewed(best.state.look.place, bent)]
             if self.study.seas:  # ... and so were coefficients
-                coefficients = [name for name in self.posed.base if name not in effects]
-                places.append(self.renewed(places[-1], coefficients))
+                places.append(self.renewed(places[-1], self.posed.base))
             every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
             after = min(every, key=lambda state: float(state.likelihood[self.study.used].sum()))
             state = self.challenged(state, after, new, done + 0.16)
@@ -365,6 +367,10 @@ class Search:
             look = self.study.look(reached.look.place, self.active(chosen))
             reached = self.fit(look, chosen, ITERATIONS, 0, name, fraction)
         after = self.state(chosen, reached)
+        if one.begin:
+            place = self.shaped(self.renewed(state.look.place, self.posed.base), one.begin)
+            other = self.refit(self.study.look(place, self.active(chosen)), chosen, f"{name}, as computed", fraction)
+            after = min(after, other, key=lambda state: float(state.likelihood[self.study.used].sum()))
         verdict = self.judge(state, after, one)
         gains = state.likelihood - after.likelihood
         fitted, held = float(gains[self.study.used].sum()), float(gains[~self.study.used].sum())

@@ -19,6 +19,7 @@ NAMES = {
     "sensor_lag": "a sensor lag",
     "wave_gauge_position": "a wrong wave gauge position",
     "wave_excitation": "another wave excitation",
+    "potential_flow": "what the platform's tables of potential flow have",
 }
 WHERE = "in the motion, and the frequencies, where it acts most"
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
