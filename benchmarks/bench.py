@@ -1,6 +1,6 @@
 """Speed as ratios in one run: against plain NumPy, finite differences and population searches.
 
-    python -m benchmarks.bench [--quick] [--only decay|sea|sweep|fit] [--budget SECONDS] [--searches DE ...] [--out FILE]
+    python -m benchmarks.bench [--quick] [--only decay|sea|batch|sweep|fit] [--budget SECONDS] [--searches DE ...] [--out FILE]
 
 writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
 contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run, `--only` a part; these write only where
@@ -9,10 +9,12 @@ contestants in turns, medians; so the machine may be busy. `--quick` is a smoke 
 
 import argparse
 import datetime
+import importlib
 import importlib.metadata
 import os
 import platform
 import subprocess
+from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path
 
@@ -25,6 +27,8 @@ from jaxhydro.start import quick_compilation
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.md"
 HEADINGS = ("what", "result", "goal", "prototype")
+PARTS = ("decay", "sea", "batch", "sweep", "fit")
+SLOW = "sweep"  # is not in a smoke run
 SEARCHES = ["DE", "GA", "CMA-ES"]
 PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "pymoo")
 
@@ -71,7 +75,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="a smoke run of a minute, its numbers worth nothing")
     parser.add_argument("--budget", type=float, help="CPU seconds for each population search (300; quick: 0.3)")
     parser.add_argument("--searches", nargs="+", choices=SEARCHES, default=SEARCHES, help="population searches to compare with")
-    parser.add_argument("--only", choices=("decay", "sea", "sweep", "fit"), help="one part of the four")
+    parser.add_argument("--only", choices=tuple(PARTS), help="one part of all")
     parser.add_argument("--out", type=Path, help="file to write (benchmarks/results.md; quick or a part: none)")
     arguments = parser.parse_args()
     budget = (0.3 if arguments.quick else 300.0) if arguments.budget is None else arguments.budget
@@ -84,18 +88,22 @@ def main() -> None:
     jax.config.update("jax_enable_x64", True)
     # what compiles in this process is timed too
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
-    from benchmarks import bench_decay, bench_fit, bench_sea, bench_sweep
     from jaxhydro.files import write_whole
 
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
-    parts = {
-        "decay": lambda: bench_decay.measure(arguments.quick),
-        "sea": lambda: bench_sea.measure(arguments.quick),
-        "sweep": lambda: bench_sweep.measure(arguments.quick),
-        "fit": lambda: bench_fit.measure(budget, arguments.quick, arguments.searches),
-    }
-    for more, said in chain.from_iterable(part() for name, part in parts.items() if arguments.only in (None, name)):
+    parts = [arguments.only] if arguments.only else [name for name in PARTS if not (arguments.quick and name == SLOW)]
+    figure = out.with_suffix(".png") if out is not None and not arguments.quick else None
+
+    def of(name: str) -> Iterator[tuple[list[Row], list[str]]]:
+        part = importlib.import_module(f"benchmarks.bench_{name}")
+        if name == "fit":
+            return part.measure(budget, arguments.quick, arguments.searches)
+        return {"batch": lambda: part.measure(arguments.quick, figure), "sweep": part.measure}.get(
+            name, lambda: part.measure(arguments.quick)
+        )()
+
+    for more, said in chain.from_iterable(map(of, parts)):
         rows += more
         notes += said
         for row in more:

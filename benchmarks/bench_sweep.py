@@ -1,4 +1,4 @@
-"""Many seas: batches, cores, growth with size, and what has to be waited for before the first."""
+"""Many seas: cores, growth with size, and what has to be waited for before the first."""
 
 import json
 import os
@@ -14,68 +14,19 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from benchmarks.bench_batch import model_of, prepared, seas_of
 from benchmarks.bench_decay import CACHE
 from benchmarks.bench_sea import CUTOFF, ELEMENTS, HEIGHT, LOW, PERIOD, PLATFORM, STEP
 from benchmarks.bench_timing import Row, contest, times
-from jaxhydro import IrregularSea, State, build, equilibrium, jonswap, load_platform, spectrum_components
-from jaxhydro.convergence import with_elements
-from jaxhydro.integrate import clock, integrate
+from jaxhydro import State, equilibrium
+from jaxhydro.integrate import integrate
 from jaxhydro.model import Model
-from jaxhydro.simulate import simulate
 from jaxhydro.sweep import run_sweep
-from jaxhydro.sweep.batch import together
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.waves.irregular import repeat_period
 
 ROOT = Path(__file__).resolve().parents[1]
-SHORT = 300.0  # s, of a sea of many at once
 OPENFAST = (16, 18)  # times real time: an hour of second order, ../shared/design/performance.md, section "Against others"
-
-
-def model_of(elements: int = ELEMENTS) -> Model:
-    """The platform of `bench_sea`, its pontoons in so many elements."""
-    return build(with_elements(load_platform(PLATFORM), "pontoon", elements))
-
-
-def seas_of(model: Model, duration: float, count: int, order: int) -> list[IrregularSea]:
-    """Seas of one spectrum and of as many seeds."""
-
-    def spectrum(omega):
-        return jonswap(omega, HEIGHT, PERIOD)
-
-    return [
-        IrregularSea(
-            spectrum_components(spectrum, duration, model.environment, low=LOW, cutoff=CUTOFF, seed=seed),
-            model.environment, 2 if order == 2 else 1, "vertical",
-        )
-        for seed in range(count)
-    ]  # fmt: skip
-
-
-def batches(sizes: Sequence[int], duration: float, rounds: int) -> tuple[list[Row], list[str]]:
-    """Seas simulated at once by a vectorised program, against one after the other by a compiled one."""
-    model, at = model_of(), np.arange(0.0, duration, 0.5)
-    seas = seas_of(model, duration, max(sizes), 1)
-    runs = {"one": lambda: jax.block_until_ready(simulate(model, at, seas[0], step=STEP).position)}
-    for size in sizes:
-        runs[str(size)] = lambda size=size: together(model, seas[:size], at, STEP)  # type: ignore[misc]
-    turns = contest(runs, rounds)
-    rows = [
-        Row(
-            f"{size} sea{'s' * (size > 1)} at once, each against one alone",
-            f"{turns[str(size)].over(turns['one']) / size:.2f} of its time",
-        )
-        for size in sizes
-    ]
-    each = sum(x.nbytes for x in jax.tree.leaves(prepared(model, seas[0], duration)) if hasattr(x, "nbytes"))
-    rows.append(Row("Memory of a sea that is ready", f"{each / 1e6:.3g} MB for {duration:g} s at order 1"))
-    return rows, [f"Seas at once: {duration:g} s, first order, made ready in the time that is taken, on one core."]
-
-
-def prepared(model: Model, sea: IrregularSea, duration: float):
-    """The sea for the model's hull."""
-    steps = round(duration / STEP)
-    return jax.block_until_ready(sea.prepared(model.hull.extremities(), model.cylinders, clock("ab4", 0.0, STEP, steps)))
 
 
 def cores(count: int, duration: float) -> tuple[list[Row], list[str]]:
@@ -155,13 +106,14 @@ def marching(model: Model, duration: float):
 FIRST = """
 import json, time
 import jax, numpy as np
-from benchmarks import bench_sweep as bench
+from benchmarks import bench_batch as bench
+from benchmarks.bench_sea import STEP
 from jaxhydro.simulate import simulate
 def hour():
     begun = time.process_time(), time.perf_counter()
     model = bench.model_of()
     sea = bench.seas_of(model, 3600.0, 1, 2)[0]
-    jax.block_until_ready(simulate(model, np.arange(0.0, 3600.0, 0.5), sea, step=bench.STEP).position)
+    jax.block_until_ready(simulate(model, np.arange(0.0, 3600.0, 0.5), sea, step=STEP).position)
     return time.process_time() - begun[0], time.perf_counter() - begun[1]
 print(json.dumps([hour(), hour()]))
 """
@@ -182,19 +134,15 @@ def waiting() -> tuple[list[Row], list[str]]:
         ever, cached = run(), run()
     rows = [
         Row("First hour of sea ever, import apart", ever[0]),
-        Row("... what a second one in the same process does not take", ever[1], "15 s"),
+        Row("First hour of sea ever, less what a second one takes", ever[1], "15 s"),
         Row("First hour of sea from the cache, import apart", cached[0]),
-        Row("... what a second one in the same process does not take", cached[1], "2 s"),
+        Row("First hour of sea from the cache, less what a second one takes", cached[1], "2 s"),
     ]
     return rows, ["First hour of sea: platform file to motion, second order, in a new process, the simulation itself included."]
 
 
-def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
+def measure() -> Iterator[tuple[list[Row], list[str]]]:
     """All of this file, part by part."""
-    if quick:
-        yield batches((1, 2), 60.0, 1)
-        return
-    yield batches((1, 8, 64, 512), SHORT, 3)
     yield growth(3, (900.0, 1800.0, 3600.0), (4, ELEMENTS, 30, 80))
     yield waiting()
     yield cores(24, 3600.0)

@@ -19,7 +19,7 @@ class Row(NamedTuple):
 
 
 class Turns(NamedTuple):
-    """CPU seconds of one contestant, turn by turn."""
+    """Seconds of one contestant, turn by turn."""
 
     seconds: tuple[float, ...]
 
@@ -39,18 +39,21 @@ def pin() -> None:
         os.environ[name] = "1"
 
 
-def contest(contestants: Mapping[str, Callable[[], Any]], rounds: int) -> dict[str, Turns]:
-    """All contestants `rounds` times in turns, after one call each that is not counted; calls wait for results."""
+def contest(
+    contestants: Mapping[str, Callable[[], Any]], rounds: int, now: Callable[[], float] = time.process_time
+) -> dict[str, Turns]:
+    """All contestants `rounds` times in turns, after one call each that is not counted; calls wait for results. `now` is the
+    clock (s): a device's time is no CPU time."""
     for call in contestants.values():
         call()
     seconds: dict[str, list[float]] = {name: [] for name in contestants}
     for _ in range(rounds):
         for name, call in contestants.items():
-            count, begun = 0, time.process_time()
-            while count == 0 or time.process_time() - begun < LEAST:
+            count, begun = 0, now()
+            while count == 0 or now() - begun < LEAST:
                 call()
                 count += 1
-            seconds[name].append((time.process_time() - begun) / count)
+            seconds[name].append((now() - begun) / count)
     return {name: Turns(tuple(values)) for name, values in seconds.items()}
 
 

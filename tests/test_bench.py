@@ -19,7 +19,8 @@ KEYS = (
     "Compilation: tsit5",
     "Sea of order 2, simulated time over CPU time",
     "Sea of order 1 against NumPy, same scheme",
-    "2 seas at once, each against one alone",
+    "2 seas at once, float64, simulated time over CPU time",
+    "2 seas at once, float32, simulated time over CPU time",
     "Calibration by least squares",
     "DE over least squares, simulations",
     "DE over least squares, CPU",
@@ -48,6 +49,8 @@ def test_quick_bench(tmp_path, tmp_path_factory):
     assert errors == pytest.approx([0.0] * 3, abs=5e-3)
     kinematics = [table[f"Error of velocity / acceleration at 15 m, 5 deg, order {order}"].split(" / ") for order in (1, 2)]
     assert max(float(value) for pair in kinematics for value in pair) < 2e-5
+    off = table["Largest error of float32 over the motion's deviation"].replace(",", "").split()[1::2]
+    assert len(off) == 3 and 0 < max(float(value) for value in off) < 1e-3
     assert any("pymoo" in line and "jax" in line for line in lines)
     assert {path.name for path in tmp_path.iterdir()} == {"results.md"}
     assert (shipped.read_bytes() if shipped.exists() else None) == before

@@ -1,0 +1,106 @@
+"""Diagnosis in waves: a buoy whose heave is known in closed form, excited as a table says and strips do not."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration import load_campaign
+from calibration.discovery.search import diagnose
+
+RHO, G, DEPTH = 1000.0, 9.81, 200.0
+RADIUS, DRAUGHT = 3.0, 10.0
+AREA = np.pi * RADIUS**2
+MASS, ADDED, DAMPING, TENSION, LENGTH = RHO * AREA * DRAUGHT, 6.0e4, 4.0e4, 1.0e4, 97.0
+STEP, DURATION, NOISE = 0.5, 600.0, 5e-4
+PLATFORM = f"""
+name: a buoy
+water: {{density: {RHO}, depth: {DEPTH}, gravity: {G}}}
+rigid_body: {{mass: {MASS}, centre_of_mass: [0, 0, -7], inertia: {{Ixx: 4e6, Iyy: 4e6, Izz: 1.3e6}}}}
+members:
+  - {{name: column, group: column, shape: circ, d: {2 * RADIUS}, rA: [0, 0, {-DRAUGHT}], rB: [0, 0, 5]}}
+coefficients: {{column: {{Ca_t: 1.0, Ca_z: 0.0, Cd_t: 1.0, Cd_z: 0.0}}}}
+added_mass: {{A33: {ADDED}}}
+linear_damping: {{B33: {DAMPING}, B11: 2e4, B22: 2e4, B44: 1e6, B55: 1e6}}
+excitation: {{file: buoy.3, use: candidate}}
+mooring:
+  kind: linear_springs
+  lines:
+    - {{anchor: [-100, 0, -7], fairlead: [-3, 0, -7], stiffness: 2e4, pretension: {TENSION}}}
+    - {{anchor: [50, 86.6025, -7], fairlead: [1.5, 2.59808, -7], stiffness: 2e4, pretension: {TENSION}}}
+    - {{anchor: [50, -86.6025, -7], fairlead: [1.5, -2.59808, -7], stiffness: 2e4, pretension: {TENSION}}}
+"""
+
+
+def pressure(omega: np.ndarray) -> np.ndarray:
+    """Heave force (N) of the undisturbed pressure under the buoy, of a wave of 1 m: what strips have."""
+    return RHO * G * AREA * np.exp(-(omega**2) / G * DRAUGHT) + 0j
+
+
+def excited(omega: np.ndarray) -> np.ndarray:
+    """As the table says: a third less, and late as waves are high or low."""
+    return pressure(omega) * (0.5 + 0.25 * omega) * np.exp(-0.6j * omega)
+
+
+def record(seed: int, force) -> np.ndarray:
+    """Time, wave and heave, both with noise: as steady as waves are that repeat themselves."""
+    random = np.random.default_rng(seed)
+    period, lines = 2 * DURATION, np.arange(60, 200)
+    omega = 2 * np.pi * lines / period
+    height = 0.004 * np.exp(-0.5 * ((omega - 0.65) / 0.12) ** 2)
+    amplitude = height * (random.normal(size=lines.size) + 1j * random.normal(size=lines.size))
+    stiffness = RHO * G * AREA + 3 * TENSION / LENGTH
+    heave = amplitude * force(omega) / (stiffness - omega**2 * (MASS + ADDED) + 1j * omega * DAMPING)
+    time = np.arange(0.0, DURATION, STEP)
+    moving = np.exp(1j * np.outer(time, omega))
+    columns = [(moving @ one).real + random.normal(0, NOISE, time.size) for one in (amplitude, heave)]
+    return np.column_stack([time, *columns])
+
+
+def campaign_of(folder: Path, force) -> None:
+    """Two seas, one held out; a table of the true force, relative to rho g, as WAMIT writes it."""
+    (folder / "platform.yaml").write_text(PLATFORM)
+    rows = []
+    for omega in np.linspace(0.1, 1.6, 61)[::-1]:
+        for mode in range(1, 7):
+            value = complex(excited(np.array([omega]))[0]) / (RHO * G) if mode == 3 else 0j
+            rows.append(f"{2 * np.pi / omega:.6e} 0.0 {mode} {abs(value):.6e} {np.degrees(np.angle(value)):.6e} "
+                        f"{value.real:.6e} {value.imag:.6e}")  # fmt: skip
+    (folder / "buoy.3").write_text("\n".join(rows) + "\n")
+    tests = []
+    for seed, use in enumerate(("fit", "holdout")):
+        columns = record(seed, force)
+        np.savetxt(folder / f"sea-{seed}.csv", columns, "%.6f", ",", header="t,wave,heave", comments="")
+        tests.append({"id": f"sea-{seed}", "kind": "irregular", "file": f"sea-{seed}.csv", "use": use, "transient": 100.0,
+                      "peak_period": 9.7})  # fmt: skip
+    manifest = {
+        "name": "a buoy", "platform": "platform.yaml", "scale": 1.0,
+        "channels": {"time": {"column": "t", "unit": "s"}, "heave": {"column": "heave", "unit": "m"}},
+        "wave_channel": {"column": "wave", "unit": "m", "position": [0.0, 0.0]},
+        "noise": {"heave": NOISE}, "tests": tests,
+    }  # fmt: skip
+    (folder / "campaign.yaml").write_text(json.dumps(manifest))
+
+
+def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
+    """Named first, all of it, within what its deviation and rounding allow; the sea that was held out is followed."""
+    campaign_of(tmp_path, excited)
+    campaign = load_campaign(tmp_path)
+    found = diagnose(campaign.model, campaign)
+    assert found.verdict == "found"
+    first = found.effects[0]
+    share = first.parameters["computed_excitation.share"]
+    assert first.effect == "computed_excitation" and not first.indistinguishable
+    assert share.value == pytest.approx(1.0, abs=0.01 + 2 * share.standard_deviation) and share.standard_deviation < 0.02
+    assert first.evidence.holdout_gain > 0.95
+    before, after = ([one for one in some if one.use == "holdout"] for some in (found.anatomy_before, found.anatomy_after))
+    assert after[0].relative < 0.05 < 0.2 < before[0].relative
+
+
+def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:
+    """Where strips have the force that acts, nothing is missing, whatever the table says."""
+    campaign_of(tmp_path, pressure)
+    campaign = load_campaign(tmp_path)
+    found = diagnose(campaign.model, campaign)
+    assert found.verdict == "nothing_missing" and not found.effects
