@@ -120,6 +120,11 @@ def error_of_float32(model: Model, duration: float) -> dict[str, float]:
     return {dof: float(np.abs(other - exact)[:, i].max() / exact[:, i].std()) for i, dof in enumerate(DOFS) if dof in SEEN}
 
 
+def rounded(value: float) -> float:
+    """To three digits."""
+    return float(f"{value:.3g}")
+
+
 def draw(found: dict[str, dict[int, float]], device: str, path: Path) -> None:
     """Throughput against batch."""
     from jaxhydro.plot import BEFORE, SIMULATED, header, save, stack, style
@@ -149,8 +154,9 @@ def measure(quick: bool, figure: Path | None = None) -> Iterator[tuple[list[Row]
     sizes = (1, 2) if quick else SIZES["cpu" if cpu else "gpu"]
     batch = batch_of(model, duration, min(DISTINCT, max(sizes)))
     found = throughputs(batch, sizes, 1 if quick else ROUNDS, now)
+    taken = "CPU time" if cpu else "time"
     rows = [
-        Row(f"{size} sea{'s' * (size > 1)} at once, {precision}, simulated time over {"CPU " * cpu}time", f"{float(f"{value:.3g}"):.0f}")
+        Row(f"{size} sea{'s' * (size > 1)} at once, {precision}, simulated time over {taken}", f"{rounded(value):.0f}")
         for precision, by_size in found.items()
         for size, value in by_size.items()
     ]
