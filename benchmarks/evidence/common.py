@@ -91,11 +91,11 @@ def begin() -> None:
 
 
 def parallel(
-    section: str, key: str, names: Sequence[str], work: Callable[[str], Any], processes: int
+    section: str, key: str, names: Sequence[str], work: Callable[[str], Any], processes: int, go_on: bool = False
 ) -> Iterator[tuple[str, Any]]:
     """Results of `work(name)` for all names, those in the cache first; the others from processes of their own.
 
-    Where `accept_stale` is set and there are any, there are no others.
+    Where `accept_stale` is set and there are any, there are no others, unless the section is to `go_on` over many sessions.
     """
     missing = []
     for name in names:
@@ -104,7 +104,7 @@ def parallel(
             missing.append(name)
         else:
             yield name, result
-    if missing and not (accept_stale and len(missing) < len(names)):
+    if missing and (go_on or not (accept_stale and len(missing) < len(names))):
         with mp.get_context("spawn").Pool(min(processes, len(missing)), _worker) as pool:
             for name, result in pool.imap_unordered(_Named(work), missing):
                 yield name, keep(section, key, name, result)

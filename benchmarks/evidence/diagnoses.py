@@ -103,19 +103,21 @@ def run(figures: Path, processes: int, most: int) -> Section:
     made(names)
     tank = [ROOT / "benchmarks" / name for name in ("tank.py", "tank_effects.py", "reference_model.py", "reference_waves.py")]
     results: dict[str, dict[str, Any]] = {}
-    for name, result in parallel("diagnoses", fingerprint(*tank), names, of_case, processes):
+    key = fingerprint(*tank)
+    for name, result in parallel("diagnoses", key, names, of_case, processes, go_on=True):
         results[name] = result
         found = ", ".join(result["effects"]) or result["verdict"]
         say(f"  {name}: {found} ({result['seconds']:.0f} s, {len(results)} of {len(names)})")
-    return conclude({Case.of(name): results[name] for name in names if name in results})
+    here = sum((CACHE / "diagnoses" / key / f"{name}.json").exists() for name in results)
+    return conclude({Case.of(name): results[name] for name in names if name in results}, len(results) - here)
 
 
 def share(count: int, of: int) -> str:
     return f"{count} of {of}"
 
 
-def conclude(results: dict[Case, dict[str, Any]]) -> Section:
-    """The tables and what falls short."""
+def conclude(results: dict[Case, dict[str, Any]], earlier: int) -> Section:
+    """The tables and what falls short; so many results are of `earlier` sources."""
     said = {case: outcome(case, result) for case, result in results.items()}
     nulls = [said[case] for case in said if not case.effect]
     middle = [said[case] for case in said if case.effect in EFFECTS and case.strength == 2]
@@ -129,10 +131,11 @@ def conclude(results: dict[Case, dict[str, Any]]) -> Section:
     named, listed = middle.count("named"), middle.count("named") + middle.count("in the set")
     alarms = nulls.count("false alarm")
     total = sum(1 for _ in cases())
+    by = f", {earlier} of them by earlier sources" if earlier else ""
     text = (
         f"Nine decays and two seas of 1600 s each, from `benchmarks/tank.py`, a plain NumPy tank that shares no code with the "
         f"package: noise, imperfect releases, mass and mooring not quite as declared. {len(results)} of {total} campaigns were "
-        f"run. At the middle strength the right effect is named first in {share(named, len(middle))}, and among those told "
+        f"run{by}. At the middle strength the right effect is named first in {share(named, len(middle))}, and among those told "
         f"apart by nothing in {share(listed, len(middle))}; of campaigns with nothing missing {share(alarms, len(nulls))} "
         f"raised a false alarm.\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
