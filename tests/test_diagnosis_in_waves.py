@@ -2,18 +2,22 @@
 
 import json
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from calibration import load_campaign
+from calibration.campaign import Campaign
 from calibration.discovery.search import diagnose
 
 RHO, G, DEPTH = 1000.0, 9.81, 200.0
 RADIUS, DRAUGHT = 3.0, 10.0
 AREA = np.pi * RADIUS**2
 MASS, ADDED, DAMPING, TENSION, LENGTH = RHO * AREA * DRAUGHT, 6.0e4, 4.0e4, 1.0e4, 97.0
-STEP, DURATION, NOISE = 0.5, 600.0, 5e-4
+STEP, DURATION, TRANSIENT, NOISE = 0.5, 600.0, 100.0, 5e-4
+TONES = {0.31: 4.0e3, 0.43: 3.0e3}  # rad/s, N: what no candidate has
 PLATFORM = f"""
 name: a buoy
 water: {{density: {RHO}, depth: {DEPTH}, gravity: {G}}}
@@ -43,22 +47,30 @@ def excited(omega: np.ndarray) -> np.ndarray:
     return pressure(omega) * (0.5 + 0.25 * omega) * np.exp(-0.6j * omega)
 
 
-def record(seed: int, force) -> np.ndarray:
-    """Time, wave and heave, both with noise: as steady as waves are that repeat themselves."""
+def compliance(omega: np.ndarray) -> np.ndarray:
+    """Heave (m) by a force (N)."""
+    stiffness = RHO * G * AREA + 3 * TENSION / LENGTH
+    return 1 / (stiffness - omega**2 * (MASS + ADDED) + 1j * omega * DAMPING)
+
+
+def series(amplitude: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    return (np.exp(1j * np.outer(np.arange(0.0, DURATION, STEP), omega)) @ amplitude).real
+
+
+def record(seed: int, force, tones=MappingProxyType({})) -> np.ndarray:
+    """Time, wave and heave, both with noise: as steady as waves are that repeat themselves; `tones` act beside them."""
     random = np.random.default_rng(seed)
     period, lines = 2 * DURATION, np.arange(60, 200)
     omega = 2 * np.pi * lines / period
     height = 0.004 * np.exp(-0.5 * ((omega - 0.65) / 0.12) ** 2)
     amplitude = height * (random.normal(size=lines.size) + 1j * random.normal(size=lines.size))
-    stiffness = RHO * G * AREA + 3 * TENSION / LENGTH
-    heave = amplitude * force(omega) / (stiffness - omega**2 * (MASS + ADDED) + 1j * omega * DAMPING)
-    time = np.arange(0.0, DURATION, STEP)
-    moving = np.exp(1j * np.outer(time, omega))
-    columns = [(moving @ one).real + random.normal(0, NOISE, time.size) for one in (amplitude, heave)]
-    return np.column_stack([time, *columns])
+    beside, rate = np.array(list(tones.values())), np.array(list(tones))
+    heave = series(amplitude * force(omega) * compliance(omega), omega) + series(beside * compliance(rate), rate)
+    noise = random.normal(0, NOISE, (2, heave.size))
+    return np.column_stack([np.arange(0.0, DURATION, STEP), series(amplitude, omega) + noise[0], heave + noise[1]])
 
 
-def campaign_of(folder: Path, force) -> None:
+def campaign_of(folder: Path, force, tones=MappingProxyType({})) -> Campaign:
     """Two seas, one held out; a table of the true force, relative to rho g, as WAMIT writes it."""
     (folder / "platform.yaml").write_text(PLATFORM)
     rows = []
@@ -70,9 +82,9 @@ def campaign_of(folder: Path, force) -> None:
     (folder / "buoy.3").write_text("\n".join(rows) + "\n")
     tests = []
     for seed, use in enumerate(("fit", "holdout")):
-        columns = record(seed, force)
+        columns = record(seed, force, tones)
         np.savetxt(folder / f"sea-{seed}.csv", columns, "%.6f", ",", header="t,wave,heave", comments="")
-        tests.append({"id": f"sea-{seed}", "kind": "irregular", "file": f"sea-{seed}.csv", "use": use, "transient": 100.0,
+        tests.append({"id": f"sea-{seed}", "kind": "irregular", "file": f"sea-{seed}.csv", "use": use, "transient": TRANSIENT,
                       "peak_period": 9.7})  # fmt: skip
     manifest = {
         "name": "a buoy", "platform": "platform.yaml", "scale": 1.0,
@@ -81,12 +93,12 @@ def campaign_of(folder: Path, force) -> None:
         "noise": {"heave": NOISE}, "tests": tests,
     }  # fmt: skip
     (folder / "campaign.yaml").write_text(json.dumps(manifest))
+    return load_campaign(folder)
 
 
 def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
     """Named first, all of it, within what its deviation and rounding allow; the sea that was held out is followed."""
-    campaign_of(tmp_path, excited)
-    campaign = load_campaign(tmp_path)
+    campaign = campaign_of(tmp_path, excited)
     found = diagnose(campaign.model, campaign)
     assert found.verdict == "found"
     first = found.effects[0]
@@ -100,7 +112,20 @@ def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
 
 def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:
     """Where strips have the force that acts, nothing is missing, whatever the table says."""
-    campaign_of(tmp_path, pressure)
-    campaign = load_campaign(tmp_path)
+    campaign = campaign_of(tmp_path, pressure)
     found = diagnose(campaign.model, campaign)
     assert found.verdict == "nothing_missing" and not found.effects
+
+
+def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
+    """What goes with neither motion nor waves: no name, no law, though the motion follows it; and the force as it acted,
+    through the sea that was made ready."""
+    campaign = campaign_of(tmp_path, pressure, TONES)
+    found = diagnose(campaign.model, campaign)
+    assert found.verdict == "unexplained" and not found.effects
+    (force,) = found.latent
+    time = TRANSIENT + force.shown.time
+    acted = sum(size * np.cos(rate * time) for rate, size in TONES.items())
+    assert force.motion == "heave" and not force.law.terms
+    assert np.corrcoef(force.shown.force, acted)[0, 1] > 0.998
+    assert_allclose(np.std(force.shown.force), np.std(acted), rtol=0.02)

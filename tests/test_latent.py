@@ -168,8 +168,8 @@ def sea(height: float, seed: int, use: str, law) -> Force:
     velocity, time = np.gradient(position, step), step * np.arange(n)
     test = Moved(f"sea-{seed}", use, "irregular", time, {"surge": position}, {"surge": 0 * position}, {}, StillWater(), wave)
     gain = np.ones(len(frequency))
-    return Force(test, "surge", force, position, velocity, np.gradient(velocity, step), gain, np.ones(n), slice(100, n - 100),
-                 0.01 * float(np.std(force)), 1e3)  # fmt: skip
+    return Force(test, "surge", force, position, velocity, np.gradient(velocity, step), (position, velocity), gain,
+                 np.ones(n), slice(100, n - 100), 0.01 * float(np.std(force)), 1e3)  # fmt: skip
 
 
 def test_slow_drift_goes_with_the_squared_envelope():
@@ -207,12 +207,13 @@ def test_what_follows_next_to_nothing_has_no_law(known):
 def test_terms_that_all_but_cancel_are_no_law():
     """Two terms that differ by a thousandth follow anything that is like their difference."""
     one, other = np.random.default_rng(0).standard_normal((2, 500))
-    part = Part(other, np.column_stack([one, one + 1e-3 * other, 0.3 * other]), 1.0)
+    terms = np.column_stack([one, one + 1e-3 * other, 0.3 * other])
+    part = Part(other, terms, terms, 1.0)
     assert best(part.products(), 2)[0] != (0, 1)
     chosen, coefficients = best(part.products(), 1)
     assert chosen == (2,)
     assert_allclose(coefficients, 1 / 0.3, rtol=1e-6)
-    assert best(Part(other, part.terms[:, :2], 1.0).products(), 2)[0] == ()
+    assert best(Part(other, terms[:, :2], terms[:, :2], 1.0).products(), 2)[0] == ()
 
 
 def test_what_is_written(model, tmp_path):

@@ -82,6 +82,7 @@ def of_case(name: str) -> dict[str, Any]:
         "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (one.evidence for one in result.effects)],
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
         "refused": {f"{one.effect} {one.degree_of_freedom or ''}".strip(): one.reason for one in result.rejected},
+        "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
         "seconds": result.seconds,
     }  # fmt: skip
 

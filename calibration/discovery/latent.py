@@ -70,9 +70,10 @@ class Moved(NamedTuple):
 
 
 class Force(NamedTuple):
-    """The latent force (N, N m) of one motion of a test; motion (m, rad; /s; /s2) and force all along its clock, of which
-    `inside` is to be believed. `gain` by Fourier line and `taper` in time are what the force was seen through, `noise` (N, N m)
-    what the sensor's noise leaves in it, `peak` by how much its spectrum is above that at most, in power."""
+    """The latent force (N, N m) of one motion of a test; motion (m, rad; /s; /s2) and force all along its clock, and the
+    `simulated` motion and its rate without it. Of these `inside` is to be believed. `gain` by Fourier line and `taper` in time
+    are what the force was seen through, `noise` (N, N m) what the sensor's noise leaves in it, `peak` by how much its spectrum
+    is above that at most, in power."""
 
     test: Moved
     motion: str
@@ -80,6 +81,7 @@ class Force(NamedTuple):
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
+    simulated: tuple[np.ndarray, np.ndarray]
     gain: np.ndarray
     taper: np.ndarray
     inside: slice
@@ -193,7 +195,7 @@ def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> di
         left = float(np.sqrt(2 * (gain**2 * through).sum() / n))
         found[name] = Force(
             test, name, filtered(force[:, j] * taper, gain), path[:, j], speed[:, j], np.gradient(speed[:, j], test.step),
-            gain, taper, inside, left, peak,
+            (position[:, j] - np.asarray(rest)[j], rate[:, j]), gain, taper, inside, left, peak,
         )  # fmt: skip
     return found
 

@@ -3,6 +3,10 @@
 Small sparse regression over a library of terms, as Brunton, Proctor and Kutz 2016, PNAS 113, 3932-3937, eq. 3, but of at
 most three terms; which ones is tried out over all such sets, that orthogonal matching pursuit looks through one by one. The
 terms go through the filter that the force was seen through, so that like is compared with like.
+
+A force moves the body: whatever it is, terms of the measured motion follow what it did, though it need not follow them. So
+coefficients are those of instrumental variables, the terms along the motion that was simulated without it (Soderstrom and
+Stoica 1989, System Identification, chapter 8): of a force from elsewhere nothing is left then.
 """
 
 from __future__ import annotations
@@ -81,10 +85,10 @@ def lagged(velocity: np.ndarray, step: float, constant: float) -> np.ndarray:
     return np.fft.irfft(np.fft.rfft(velocity) / (1 + 1j * omega * constant), len(velocity))
 
 
-def columns_of(one: Force, slow: float, pace: float) -> np.ndarray:
+def columns_of(one: Force, slow: float, pace: float, without: bool = False) -> np.ndarray:
     """Terms (n, k) of one test inside it, as seen; zeros of what only waves have. `slow` (m/s, rad/s) is friction's v0, `pace`
-    (rad/s) the motion's."""
-    x, v, step = one.position, one.velocity, one.test.step
+    (rad/s) the motion's. `without`: along the motion that was simulated."""
+    (x, v), step = one.simulated if without else (one.position, one.velocity), one.test.step
     rows = [np.ones_like(x), x, v, np.abs(v) * v, x**3, np.tanh(v / slow), x * np.abs(x), x**2, v**3]
     rows += [lagged(v, step, lag / pace) for lag in LAGS]
     if one.test.wave is None:
@@ -96,16 +100,21 @@ def columns_of(one: Force, slow: float, pace: float) -> np.ndarray:
 
 
 class Part(NamedTuple):
-    """Force (n,) and terms (n, k) of a test or a block, every one counting alike unless it is mostly noise."""
+    """Force (n,), terms and instruments (n, k) of a test or a block, every one counting alike unless it is mostly noise."""
 
     force: np.ndarray
     terms: np.ndarray
+    instruments: np.ndarray
     weight: float
 
     def products(self) -> np.ndarray:
         """[X F]^T [X F], weighed."""
         both = np.column_stack([self.terms, self.force])
         return self.weight * both.T @ both
+
+    def across(self) -> np.ndarray:
+        """Z^T [X F], weighed, Z the instruments."""
+        return self.weight * self.instruments.T @ np.column_stack([self.terms, self.force])
 
 
 def best(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.ndarray]:
@@ -149,19 +158,21 @@ def law_of(motion: str, forces: Sequence[Force]) -> Law:
         lambda one: one.position, lambda one: one.velocity))  # fmt: skip
     pace = (moving / max(moved, 1e-300)) ** 0.5
 
-    def part(one: Force, some: slice = slice(None)) -> Part:
+    def part(one: Force) -> Part:
         force, terms = one.force[one.inside], columns_of(one, slow, pace)[:, : len(kinds)]
-        return Part(force[some], terms[some], 1 / (len(force) * (one.root_mean_square**2 + 9 * one.noise**2)))
+        instruments = columns_of(one, slow, pace, without=True)[:, : len(kinds)]
+        return Part(force, terms, instruments, 1 / (len(force) * (one.root_mean_square**2 + 9 * one.noise**2)))
 
     whole = [part(one) for one in fitted]
-    every = np.sum([one.products() for one in whole], axis=0)
+    every, across = (np.sum(some, axis=0) for some in zip(*((one.products(), one.across()) for one in whole)))
     held = [part(one) for one in forces if one.test.use == "holdout" and one.visible]
-    folds = [(every, held)] if held else list(_left_out(whole))
+    folds = [(across, held)] if held else list(_left_out(whole))
     law = Law((), 0.0, 0.0, "held-out tests" if held else "blocks left out in turn")
     for size in range(1, MOST + 1):
-        chosen, coefficients = best(every, size)
+        chosen, _ = best(every, size)
         if not chosen:
             continue
+        coefficients = _solved(across, chosen)
         share = float(np.mean([share_of(asked, chosen, _solved(given, chosen)) for given, asked in folds]))
         if share >= max(LEAST, law.share + BETTER):
             terms = tuple(LawTerm(kinds[i].name, float(c), kinds[i].unit(motion), i) for i, c in zip(chosen, coefficients))
@@ -171,19 +182,18 @@ def law_of(motion: str, forces: Sequence[Force]) -> Law:
     return replace(law, v0=slow, pace=pace)
 
 
-def _solved(products: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
-    """Coefficients of some terms."""
-    scale = np.sqrt(np.maximum(np.diag(products)[list(chosen)], 1e-300))
-    gram = products[np.ix_(chosen, chosen)] / np.outer(scale, scale) + 1e-9 * np.eye(len(chosen))
-    return np.linalg.solve(gram, products[list(chosen), -1] / scale) / scale
+def _solved(across: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
+    """Coefficients of some terms by their instruments."""
+    gram, onto = across[np.ix_(chosen, chosen)], across[list(chosen), -1]
+    scale = np.sqrt(np.maximum(np.abs(np.diag(gram)), 1e-300))
+    return np.linalg.lstsq(gram / np.outer(scale, scale), onto / scale, rcond=1e-9)[0] / scale
 
 
 def _left_out(parts: Sequence[Part]) -> Iterable[tuple[np.ndarray, list[Part]]]:
-    """Products of all blocks but every fourth of the tests, and those."""
+    """Products across all blocks but every fourth of the tests, and those."""
     for k in range(BLOCKS):
         blocks = [
-            [Part(f, x, one.weight) for f, x in zip(np.array_split(one.force, BLOCKS), np.array_split(one.terms, BLOCKS))]
-            for one in parts
+            [Part(*some, one.weight) for some in zip(*(np.array_split(x, BLOCKS) for x in one[:3]))] for one in parts
         ]
-        given = np.sum([block.products() for rows in blocks for i, block in enumerate(rows) if i != k], axis=0)
+        given = np.sum([block.across() for rows in blocks for i, block in enumerate(rows) if i != k], axis=0)
         yield given, [rows[k] for rows in blocks]
