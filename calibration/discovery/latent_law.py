@@ -193,7 +193,8 @@ def _left_out(parts: Sequence[Part]) -> Iterable[tuple[np.ndarray, list[Part]]]:
     """Products across all blocks but every fourth of the tests, and those."""
     for k in range(BLOCKS):
         blocks = [
-            [Part(*some, one.weight) for some in zip(*(np.array_split(x, BLOCKS) for x in one[:3]))] for one in parts
+            [Part(f, x, z, one.weight) for f, x, z in zip(*(np.array_split(values, BLOCKS) for values in one[:3]))]
+            for one in parts
         ]
         given = np.sum([block.across() for rows in blocks for i, block in enumerate(rows) if i != k], axis=0)
         yield given, [rows[k] for rows in blocks]
