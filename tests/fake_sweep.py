@@ -13,6 +13,9 @@ members:
 coefficients:
   column: {Ca_t: 1.0, Ca_z: 0.6, Cd_t: 1.0, Cd_z: 4.0}
 linear_damping: {B11: 2.0e5, B33: 2.0e5, B55: 2.0e7}
+sea_state_laws:
+  reference: {significant_height: 2.0, peak_period: 8.0}
+  exponents: {column.Cd_t: {significant_height: -0.5}, linear_damping.B11: {peak_period: 1.5}}
 mooring:
   kind: linear_springs
   lines:

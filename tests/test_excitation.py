@@ -193,6 +193,8 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "platform.yaml").write_text(_platform_text(str(path)), encoding="utf-8")
     assert jh.load_model(tmp_path / "b" / "platform.yaml").excitation is not None
+    written(tmp_path, rows_of(0.9 * forces()), "hull.3")  # another file of that name makes another sweep
+    assert _platform_text(str(path)) != (tmp_path / "b" / "platform.yaml").read_text(encoding="utf-8")
     path.write_text(text + "\nexcitation: {file: hull.3, use: candidate}\n", encoding="utf-8")
     model = jh.load_model(path)
     assert sought(model) == {"computed_excitation.share"}

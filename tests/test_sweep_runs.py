@@ -13,7 +13,7 @@ import jax
 import numpy as np
 import pytest
 import xarray as xr
-from fake_sweep import BREAKING, written
+from fake_sweep import BREAKING, PLATFORM, written
 from typer.testing import CliRunner
 
 import jaxhydro as jh
@@ -24,6 +24,7 @@ from jaxhydro.sweep.cases import Plan
 from jaxhydro.sweep.local import Worker
 from jaxhydro.sweep.run import opened, prepared
 from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store
+from jaxhydro.waves.sea_state import state_of
 
 VARIABLES = ("statistics", "density", "bands", "ranges", "series")
 RUNS = 24
@@ -84,13 +85,18 @@ def chunks(out: Path) -> dict[Path, int]:
 # --- what a run is
 
 
-def test_a_run_is_what_simulate_does_with_the_same_options(whole) -> None:
+def test_a_run_is_what_simulate_does_with_the_same_options(whole, tmp_path) -> None:
+    """And with the coefficients of its sea state, Cd of its height and B of its period."""
     setup = setup_in(whole / INPUTS)
     waves = jh.spectrum_components(
         lambda w: jh.jonswap(w, 3.0, 9.0), 150.0, setup.model.environment, low=0.03, cutoff=0.15, seed=5
     )
     sea = jh.IrregularSea(waves, setup.model.environment, 1)
-    moved = jh.simulate(setup.model, setup.times, sea, step=setup.limit)
+    (tmp_path / "plain.yaml").write_text(re.sub(r"sea_state_laws:\n(  .*\n)+", "", PLATFORM))
+    height, period = 4 * float((waves.amplitude**2 / 2).sum()) ** 0.5, state_of(waves).peak_period
+    values = {"column.Cd_t": (height / 2.0) ** -0.5, "linear_damping.B11": 2.0e5 * (period / 8.0) ** 1.5}
+    plain = jh.load_model(tmp_path / "plain.yaml").with_values(values)
+    moved = jh.simulate(plain, setup.times, sea, step=setup.limit)
     with xr.open_zarr(whole / RESULTS) as data:
         one = data.isel(case=1).sel(seed=5).load()
     np.testing.assert_allclose(one.series.sel(channel="surge"), moved["surge"], atol=1e-10)

@@ -18,6 +18,8 @@ CASES = {
     "focal-c2": "FOCAL campaign 2, three seas, the highest held out",
     "focal-c2-tables": "the same, the hull's WAMIT tables (`radiation`, `excitation`, `drift`) among the candidates",
 }
+DRAWN = "focal-c2-tables"
+SHOWN = 2400.0  # s, of the sea that was held out
 TABLES = {"radiation": "semi.1", "excitation": "semi.3", "drift": "semi.12d"}
 MOTIONS = ("surge", "heave", "pitch")
 BANDS = {"low_frequency": "low", "wave_frequency": "wave"}
@@ -112,8 +114,41 @@ def run(figures: Path, processes: int) -> Section:
         names = [one["effect"] for one in result["missing"]["effects"]]
         say(f"  {name}: {', '.join(names) or result['missing']['verdict']} ({result['seconds']:.0f} s)")
     results = {name: results[name] for name in CASES}
+    path = figures / "focal-closed.png"
+    draw(DRAWN, path)
     text = "\n".join(f"### {CASES[name]}\n\n{words(result)}" for name, result in results.items())
-    return Section(TITLE, intro() + text, (), tuple(s for name, result in results.items() for s in short_of(name, result)))
+    return Section(TITLE, intro() + text, (path,), tuple(s for name, result in results.items() for s in short_of(name, result)))
+
+
+def draw(name: str, path: Path) -> None:
+    """Of the sea that was held out: surge, and slow surge and pitch, measured, as declared and with what was found."""
+    import xarray as xr
+
+    from calibration.campaign import load_campaign
+    from jaxhydro.analysis import bands
+    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style, unit_of
+
+    campaign = load_campaign(campaign_of(name))
+    held = next(test for test in campaign.manifest.tests if test.use == "holdout" and test.kind == "irregular")
+    looks = {"measured": (MEASURED, 1.3), "before": (BEFORE, 1.0), "simulated": (SIMULATED, 0.8)}
+    names = {"measured": "measured", "before": "declared model", "simulated": "with what was found"}
+    with xr.open_dataset(written_to(name) / "simulated.nc") as motion, style():
+        here = motion.sel(test=held.id)
+        time = here.time.values - here.time.values[0]
+        step = float(time[1] - time[0])
+        figure, axes = stack([1.0, 1.0, 1.0])
+        artists = {}
+        for ax, (dof, slow) in zip(axes, (("surge", False), ("surge", True), ("pitch", True)), strict=True):
+            low, high = bands(dof, held.peak_period)["low_frequency"]
+            for kind, (colour, width) in looks.items():
+                values = here[kind].sel(channel=dof).values
+                values = within(values, low, high, step) if slow else values[np.isfinite(values)]
+                some = time[: len(values)] < SHOWN
+                (artists[names[kind]],) = ax.plot(time[: len(values)][some], values[some], color=colour, lw=width)
+            ax.set_ylabel(f"{'slow ' * slow}{dof}\n({unit_of(dof)})")
+        axes[-1].set_xlabel("Time (s)")
+        header(figure, f"FOCAL campaign 2, {held.id}, which was not fitted", artists, columns=2)
+        save(figure, path)
 
 
 def intro() -> str:

@@ -4,6 +4,7 @@ import json
 import time as clock
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from hashlib import sha256
 from importlib import resources
 from os import PathLike
 from pathlib import Path
@@ -146,4 +147,8 @@ def _platform_text(asked: str) -> str:
     platform, data = load_platform(asked), read_yaml(asked)
     # a store is elsewhere, and has to find the files; JSON is YAML
     beside = {key: data[key] | {"file": one.file} for key in BESIDE if (one := getattr(platform, key)) is not None}
-    return json.dumps(data | beside, indent=1) if beside else Path(asked).read_text(encoding="utf-8-sig")
+    if not beside:
+        return Path(asked).read_text(encoding="utf-8-sig")
+    # a comment for each file, so that another file of the same name is another platform
+    contents = [f"# {one['file']}: sha256 {sha256(Path(one['file']).read_bytes()).hexdigest()}" for one in beside.values()]
+    return "\n".join([json.dumps(data | beside, indent=1), *contents, ""])
