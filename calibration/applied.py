@@ -71,7 +71,7 @@ def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     added = [label for label in saved.values() if label not in model.values]
     if saved.augmented is None or not added:
         return model
-    from calibration.discovery.catalogue import with_effects
+    from calibration.discovery.candidates import with_effects
 
     try:
         return with_effects(model, added)

@@ -14,7 +14,8 @@ from calibration import calibrate
 from calibration.campaign import load_campaign
 from calibration.discovery import kept
 from calibration.discovery.bands import Rows, bands_of
-from calibration.discovery.catalogue import Candidate, catalogue, scales_of, with_effects
+from calibration.discovery.candidates import Candidate, with_effects
+from calibration.discovery.catalogue import catalogue, scales_of
 from calibration.discovery.judgement import Left, given_up
 from calibration.discovery.linear import Predicted
 from calibration.discovery.pose import pose

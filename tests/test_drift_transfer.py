@@ -13,7 +13,8 @@ from test_loads import COLUMN, build, model_of
 from test_water_effects import HULL, WATER, acts, irregular
 
 import jaxhydro as jh
-from calibration.discovery.catalogue import Scales, catalogue, sought
+from calibration.discovery.candidates import sought
+from calibration.discovery.catalogue import Scales, catalogue
 from jaxhydro.interop.quadratic_transfer import COLUMNS, read_transfer
 from jaxhydro.loads import DriftTransfer
 from jaxhydro.problems import InputError

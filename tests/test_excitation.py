@@ -12,7 +12,8 @@ from test_loads import COLUMN, PONTOON, RHO, G, build, model_of, only
 from test_water_effects import HULL, WATER, acts, irregular, with_values
 
 import jaxhydro as jh
-from calibration.discovery.catalogue import Scales, catalogue, sought
+from calibration.discovery.candidates import sought
+from calibration.discovery.catalogue import Scales, catalogue
 from jaxhydro.interop.excitation import read_excitation
 from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia, WaveGaugePosition
 from jaxhydro.problems import InputError

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
-from calibration.discovery.catalogue import Candidate
+from calibration.discovery.candidates import Candidate
 from calibration.discovery.judgement import LEAST_MATTER, Grounds, Left
 from calibration.discovery.search import Tried, in_order
 from calibration.discovery.study import Series, Study

@@ -10,7 +10,7 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.anatomy import anatomy, signature
-from calibration.discovery.catalogue import Candidate, with_candidates, with_effects
+from calibration.discovery.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence

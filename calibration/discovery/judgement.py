@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calibration.discovery.catalogue import Candidate
+from calibration.discovery.candidates import Candidate
 from calibration.discovery.linear import likelihoods, predict
 from calibration.discovery.study import FLOOR, Look, Prior, Study
 from calibration.formatting import percent

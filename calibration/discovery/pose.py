@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.discovery.catalogue import Candidate, catalogue, scales_of, sought, with_candidates, with_drag
+from calibration.discovery.candidates import Candidate, sought, with_candidates, with_drag
+from calibration.discovery.catalogue import catalogue, scales_of
 from calibration.discovery.gathering import study_of
 from calibration.discovery.study import Prior, Study
 from calibration.fit import labels_of, space_of

@@ -12,7 +12,7 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.blocks import Blocks
-from calibration.discovery.catalogue import Candidate
+from calibration.discovery.candidates import Candidate
 from calibration.discovery.conclusion import conclude
 from calibration.discovery.descent import Reached, fit
 from calibration.discovery.expected import expected
