@@ -91,6 +91,23 @@ def test_a_fit_ends_where_scipy_does(study, looks, close):
     assert_allclose(reached.look.place.own[2], begin.own[2])
 
 
+def test_a_fit_stays_where_its_parameters_make_sense(study):
+    """What would leave is at the end of its range, and all others where SciPy has them with it there."""
+    begin = Place(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
+    study.__dict__["limits"] = np.array([[-np.inf, np.inf], [-0.02, np.inf]])
+    look = study.look(begin, (0, 1))
+
+    def cost(z):
+        place = Place(np.array([z[0], 0.08]), np.vstack([z[1:].reshape(2, 2), begin.own[2:]]))
+        return cost_of(study, look, study.residual(place), place, study.used, PRIOR)
+
+    options = {"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}
+    expected = minimize(cost, [1.25, *begin.own[:2].ravel()], method="Nelder-Mead", options=options).x
+    reached = fit(study, look, study.used, PRIOR, iterations=60, looks=3, tolerance=1e-6)
+    assert_allclose(reached.look.place.x, [expected[0], 0.08], atol=2e-4)
+    assert_allclose(reached.look.place.own[:2].ravel(), expected[1:], atol=2e-3)
+
+
 def test_held_out_records_are_fitted_with_parameters_as_they_are(study):
     """No directions: only the own unknowns of what is asked for move."""
     begin = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.1, 0.3]]))

@@ -9,7 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from calibration import load_campaign
+from calibration.applied import applied
 from calibration.campaign import Campaign
+from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.search import diagnose
 
 RHO, G, DEPTH = 1000.0, 9.81, 200.0
@@ -108,6 +110,9 @@ def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
     assert first.evidence.holdout_gain > 0.95
     before, after = ([one for one in some if one.use == "holdout"] for some in (found.anatomy_before, found.anatomy_after))
     assert after[0].relative < 0.05 < 0.2 < before[0].relative
+    write_diagnosis(found, tmp_path / "out", figures=False)
+    used = applied(tmp_path / "out" / "diagnosis.json", campaign.model, campaign.platform.name)
+    assert_allclose(used.model.values["computed_excitation.share"], share.value)
 
 
 def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:

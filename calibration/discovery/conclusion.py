@@ -78,8 +78,9 @@ def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str
         about = study.model.about(name)
         known = deviation < 0.5 * prior.width[i]
         size = abs(slope) * deviation * float(study.directions[i, k])
-        bound = free.transform.at_bound(float(x))
         value = study.value(name, look.place.x)
+        ends = np.array([about.lower, about.upper])
+        bound = free.transform.at_bound(float(x)) or bool(np.isclose(value, ends, rtol=1e-6, atol=0.0).any())
         values[name] = Estimate(name, value, size if known else None, about.unit, about.meaning, free.start, bound, known)
     return values
 

@@ -5,6 +5,7 @@ slopes agree with the last step; they are taken anew where they have ceased to p
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,20 @@ def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: n
     return Look(place, look.active, residual, slopes, mine)
 
 
+def bounded(
+    study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """A damped step that stays where parameters make sense: what would leave goes to the end, the others as is best then."""
+    step, own = solve(study, look, used, prior, damping)
+    low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
+    kept = np.clip(step, low, high)
+    if (held := kept != step).any() and not held.all():
+        rest = look.along([i for i, out in zip(look.active, held) if not out])
+        rest = replace(rest, residual=look.residual + look.slopes[:, held] @ kept[held])
+        kept[~held], own = solve(study, rest, used, prior, damping)
+    return np.clip(kept, low, high), own
+
+
 def fit(
     study: Study,
     look: Look,
@@ -62,7 +77,7 @@ def fit(
     damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
     while taken < iterations and not settled:
         taken += 1
-        step, own = solve(study, look, used, prior, damping)
+        step, own = bounded(study, look, used, prior, damping)
         scale = min(1.0, LONGEST / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
         step, own = scale * step, scale * own
         there = look.place.moved(directions, step, own)

@@ -22,7 +22,7 @@ from calibration.discovery.evidence import (
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem
-from calibration.transforms import LogInterval
+from calibration.transforms import LogInterval, Scaled
 from jaxhydro.model import Model
 
 Seen = Literal["all", "fit"]
@@ -226,6 +226,19 @@ class Study:
     def steps(self, x: np.ndarray) -> np.ndarray:
         """How far coordinates are from where the study starts, along every direction."""
         return self.directions @ (x - np.asarray(self.space.start)) / (self.directions**2).sum(axis=1)
+
+    @cached_property
+    def limits(self) -> np.ndarray:
+        """How far along every direction (d, 2) a parameter makes sense: of those that are one parameter each, and whose map
+        knows no bounds itself."""
+        found = np.tile([-np.inf, np.inf], (len(self.names), 1))
+        for at, row in zip(found, self.directions):
+            moved = np.flatnonzero(row)
+            if len(moved) == 1 and isinstance(by := self.space.free[k := int(moved[0])].transform, Scaled):
+                about = self.model.about(self.labels[k])
+                ends = np.array([by.inverse(end) for end in (about.lower, about.upper)])
+                at[:] = np.sort((ends - float(self.space.start[k])) / row[k])
+        return found
 
     def value(self, label: str, x: np.ndarray) -> float:
         """A parameter (SI) at coordinates of all."""
