@@ -156,7 +156,7 @@ def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: P
         asked.append(list(labels))
         return model
 
-    monkeypatch.setattr("calibration.discovery.catalogue.with_effects", with_effects)
+    monkeypatch.setattr("calibration.discovery.candidates.with_effects", with_effects)
     model = jh.load_model(str(DEMO / "platform.yaml"))
     path = saved_with(written, tmp_path, {"column.Ca_t": 1.5, FORCE: 81000.0}, "VolturnUS-S")
     with pytest.raises(InputError, match=r"augmented\.parameters: expected parameters of this hull .* found 'coulomb_friction"):
