@@ -16,7 +16,7 @@ CASES = {
     "kvlcc2": "KVLCC2, roll decay, linear restoring declared",
     "focal-c4": "FOCAL campaign 4, release from a surge offset",
     "focal-c2": "FOCAL campaign 2, three seas, the highest held out",
-    "focal-c2-tables": "the same, the hull's WAMIT tables (`radiation`, `excitation`, `drift`) among the candidates",
+    "focal-c2-tables": "FOCAL campaign 2 with the hull's WAMIT tables (`radiation`, `excitation`, `drift`) among the candidates",
 }
 DRAWN = "focal-c2-tables"
 SHOWN = 1500.0  # s, of the sea that was held out
@@ -164,6 +164,7 @@ def words(found: dict[str, Any]) -> str:
     share = percent(missing["unexplained"]["share"])
     text = f"Verdict: *{missing['verdict'].replace('_', ' ')}*, {found['seconds'] / 60:.0f} minutes. "
     text += f"{share} of the error's energy is left: {missing['unexplained']['signature'].rstrip('.')}.\n\n"
+    text += "".join(f"{note.rstrip('.')}.\n\n" for note in found["notes"])
     if missing["effects"]:
         head = ("Found", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "Cannot be told from")
         text += table(head, effects(found)) + "\n"
