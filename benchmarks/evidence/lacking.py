@@ -16,7 +16,7 @@ CASES = {
     "kvlcc2": "KVLCC2, roll decay, linear restoring declared",
     "focal-c4": "FOCAL campaign 4, release from a surge offset",
     "focal-c2": "FOCAL campaign 2, three seas, the highest held out",
-    "focal-c2-tables": "FOCAL campaign 2 with the hull's WAMIT tables (`radiation`, `excitation`, `drift`) among the candidates",
+    "focal-c2-tables": "FOCAL campaign 2, the hull's WAMIT tables (`radiation`, `excitation`, `drift`) among the candidates",
 }
 DRAWN = "focal-c2-tables"
 SHOWN = 1500.0  # s, of the sea that was held out
