@@ -95,13 +95,10 @@ def main() -> None:
     parts = [arguments.only] if arguments.only else [name for name in PARTS if not (arguments.quick and name == SLOW)]
     figure = out.with_suffix(".png") if out is not None and not arguments.quick else None
 
+    taken = {"fit": (budget, arguments.quick, arguments.searches), "batch": (arguments.quick, figure), "sweep": ()}
+
     def of(name: str) -> Iterator[tuple[list[Row], list[str]]]:
-        part = importlib.import_module(f"benchmarks.bench_{name}")
-        if name == "fit":
-            return part.measure(budget, arguments.quick, arguments.searches)
-        return {"batch": lambda: part.measure(arguments.quick, figure), "sweep": part.measure}.get(
-            name, lambda: part.measure(arguments.quick)
-        )()
+        return importlib.import_module(f"benchmarks.bench_{name}").measure(*taken.get(name, (arguments.quick,)))
 
     for more, said in chain.from_iterable(map(of, parts)):
         rows += more

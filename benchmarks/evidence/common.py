@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"
 CACHE = Path(os.environ.get("JAXHYDRO_VALIDATE_CACHE", ROOT / ".venv" / "validate-cache"))
@@ -121,6 +123,14 @@ class _Named:
 
     def __call__(self, name: str) -> tuple[str, Any]:
         return name, self.work(name)
+
+
+def within(x: np.ndarray, low: float, high: float, step: float) -> np.ndarray:
+    """What of a series in steps (s) is in a band (Hz); samples that are none are left out."""
+    x = x[np.isfinite(x)]
+    lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
+    lines[(frequency < low) | (frequency > high)] = 0
+    return np.fft.irfft(lines, len(x))
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

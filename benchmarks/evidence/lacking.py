@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import CACHE, SHARED, Absent, Section, fingerprint, parallel, say, table
+from benchmarks.evidence.common import CACHE, SHARED, Absent, Section, fingerprint, parallel, say, table, within
 from calibration.formatting import number, percent
 
 TITLE = "What models of measured bodies lack"
@@ -94,14 +94,6 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
                 correlation.setdefault(test, {})[dof] = pair
     kept = ("missing", "baseline", "augmented", "tests", "notes", "seconds", "next_test")
     return {k: found[k] for k in kept} | {"correlation": correlation}
-
-
-def within(x: np.ndarray, low: float, high: float, step: float) -> np.ndarray:
-    """What of a series is in a band (Hz)."""
-    x = x[np.isfinite(x)]
-    lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
-    lines[(frequency < low) | (frequency > high)] = 0
-    return np.fft.irfft(lines, len(x))
 
 
 def run(figures: Path, processes: int) -> Section:

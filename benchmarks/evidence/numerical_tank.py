@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.evidence import numerical_tank_runs as runs
 from benchmarks.evidence import numerical_tank_truth as truth
-from benchmarks.evidence.common import Absent, Section, begin, cached, fingerprint, parallel, say
+from benchmarks.evidence.common import Absent, Section, begin, cached, fingerprint, parallel, say, within
 from benchmarks.evidence.numerical_tank_text import shortcomings, words
 
 TITLE = "A numerical wave tank taken as measurements"
@@ -64,7 +64,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
         artists = {}
         for (name, x), (colour, width) in zip(series.items(), looks):
             artists[name] = axes[0].plot(time, x, color=colour, lw=width)[0]
-            axes[1].plot(time, truth.within(x, 0.0, SLOW, float(time[1] - time[0])), color=colour, lw=width)
+            axes[1].plot(time, within(x, 0.0, SLOW, float(time[1] - time[0])), color=colour, lw=width)
         axes[0].set_ylabel("Surge (m)")
         axes[1].set_ylabel(f"slower than\n{SLOW:g} Hz (m)")
         axes[1].set_xlabel("Time (s)")

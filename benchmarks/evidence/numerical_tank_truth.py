@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import fsolve
 from scipy.signal import hilbert, savgol_filter
 
+from benchmarks.evidence.common import within
 from benchmarks.evidence.numerical_tank_runs import (
     DECAYS,
     END,
@@ -118,20 +119,13 @@ def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
         force = table[channel][::5][some[::5]]
         mine = {k: float(v) for k, v in law.get(motion, {}).items()}
         made = sum((value * ways[way] for way, value in mine.items()), np.zeros(len(envelope)))[some[::5]]
-        slow, of_law = (within(x, *BANDS[motion]) for x in (force, made))
+        slow, of_law = (within(x, *BANDS[motion], float(time[5] - time[0])) for x in (force, made))
         found[motion] = {
             "mean": float(force.mean()), "slow": float(slow.std()),
             "law": [float(made.mean()), float(of_law.std())] if mine else None,
             "correlation": float(np.corrcoef(slow, of_law)[0, 1]) if mine else None,
         }  # fmt: skip
     return found
-
-
-def within(x: np.ndarray, low: float, high: float, step: float = 0.5) -> np.ndarray:
-    """What of a series is in a band (Hz)."""
-    lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
-    lines[(frequency < low) | (frequency > high)] = 0
-    return np.fft.irfft(lines, len(x))
 
 
 def excitation() -> dict[str, list[float]]:

@@ -309,7 +309,7 @@ class Search:
             if self.study.seas:  # ... and so were coefficients
                 places.append(self.renewed(places[-1], self.posed.base))
             every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
-            after = min(every, key=lambda state: float(state.likelihood[self.study.used].sum()))
+            after = self.likeliest(*every)
             state = self.challenged(state, after, new, done + 0.16)
             self.say(f"{name}: blocks left out in turn" if self.study.used.all() else name, done + 0.17)
             verdict = self.judge(state, after, new, last=True)
@@ -324,6 +324,10 @@ class Search:
             self.rejected.pop(new.name, None)
             return state, after
         return state, None
+
+    def likeliest(self, *states: State) -> State:
+        """The one that follows the fitted tests best."""
+        return min(states, key=lambda state: float(state.likelihood[self.study.used].sum()))
 
     def challenged(self, without: State, after: State, one: Candidate, fraction: float) -> State:
         """A model without an effect; where that is better by far, fitted from where it is with it: any effect may help a fit
@@ -370,7 +374,7 @@ class Search:
         if one.begin:
             place = self.shaped(self.renewed(state.look.place, self.posed.base), one.begin)
             other = self.refit(self.study.look(place, self.active(chosen)), chosen, f"{name}, as computed", fraction)
-            after = min(after, other, key=lambda state: float(state.likelihood[self.study.used].sum()))
+            after = self.likeliest(after, other)
         verdict = self.judge(state, after, one)
         gains = state.likelihood - after.likelihood
         fitted, held = float(gains[self.study.used].sum()), float(gains[~self.study.used].sum())
