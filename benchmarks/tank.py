@@ -126,7 +126,7 @@ class Setup:
         body, errors = self.platform["rigid_body"], self.truth["errors"]
         self.values = {"mass": body["mass"] * errors["mass"], "inertia": body["inertia"]["Iyy"] * errors["inertia"],
                        "centre": body["centre_of_mass"][2], "lumps": [], "sliding": (0.0, 0.0), "current": 0.0,
-                       "tracked": (0.0, 0.0), "lag": 0.0, "gauge": 0.0, "reflection": (0.0, 0.0)}
+                       "tracked": (0.0, 0.0), "lag": 0.0, "gauge": 0.0, "reflection": (0.0, 0.0), "seen": 0.0}
         self.effects = []
         for effect in spec.effects:
             law, variant = find(effect)
@@ -669,7 +669,7 @@ def simulate(setups: Sequence[Setup], tests: Sequence[str] | None = None, step: 
             record = motion[r]
             if name == "sea":
                 values, t = setups[c].values, np.arange(len(record)) * STEP
-                level = seas[c, i].elevation(values["gauge"], reflected=False)
+                level = seas[c, i].elevation(values["gauge"], reflected=bool(values["seen"]))
                 record = np.column_stack([record, seas[c, i].series(level, t - values["lag"])])
             found[c][i] = record
     return found

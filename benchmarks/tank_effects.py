@@ -378,13 +378,14 @@ class WaveGaugePosition(Effect):
 
 
 class WaveReflection(Effect):
-    """r eta(t - tau) comes back against the waves; the wave channel has the incident waves only, as the contract says."""
+    """r eta(t - tau) comes back against the waves; the wave channel has the incident waves only, or also what comes back."""
 
-    parameters = {"": {"share": (0.01, 0.04, 0.15), "delay": (90.0,) * 3}}
+    parameters = {"": {"share": (0.01, 0.04, 0.15), "delay": (90.0,) * 3},
+                  "incident": {"seen": (0.0,) * 3}, "measured": {"seen": (1.0,) * 3}}
 
     @staticmethod
     def amend(setup, p):
-        setup["reflection"] = (p["share"], p["delay"])
+        setup["reflection"], setup["seen"] = (p["share"], p["delay"]), p["seen"]
 
 
 class StaticOffset(Effect):

@@ -153,7 +153,7 @@ class Model(eqx.Module):
     def through(self, sea: AbstractSea) -> AbstractSea:
         """The sea as the platform meets it."""
         # what belongs to the waves themselves before what becomes of them
-        for load in sorted(self.loads, key=lambda load: load.drifts() is None and load.excites() is None):
+        for load in sorted(self.loads, key=lambda load: (load.drifts() is None and load.excites() is None, load.moves)):
             sea = load.through(sea)
         return sea
 

@@ -122,6 +122,19 @@ def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:
     assert found.verdict == "nothing_missing" and not found.effects
 
 
+def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
+    """When and how much, of waves whose record has incident ones only."""
+    share, delay = 0.08, 47.3
+    campaign = campaign_of(tmp_path, lambda omega: pressure(omega) * (1 + share * np.exp(-1j * omega * delay)))
+    found = diagnose(campaign.model, campaign)
+    assert [one.effect for one in found.effects] == ["wave_reflection"]
+    said = {label.split(".")[1]: one for label, one in found.effects[0].parameters.items()}
+    assert said["seen"].value == 0
+    for name, true in {"coefficient": share, "delay": delay}.items():
+        assert said[name].value == pytest.approx(true, abs=0.003 + 3 * said[name].standard_deviation)
+    assert said["coefficient"].standard_deviation < 0.01 and said["delay"].standard_deviation < 0.2
+
+
 def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     """What goes with neither motion nor waves: no name, no law, though the motion follows it; and the force as it acted,
     through the sea that was made ready."""

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from functools import partial
 
 import equinox as eqx
 import jax
@@ -341,18 +342,52 @@ def test_a_regular_wave_comes_back() -> None:
 
 
 def test_a_prepared_sea_comes_back() -> None:
-    """In whole steps of its clock, as the direct sum does; nothing before the delay, and nothing at the null."""
+    """Between the steps of its clock, too, as the direct sum does; nothing before the delay, and nothing at the null."""
     sea = irregular(2, 0.3)
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
     load = with_values(WaveReflection.null(8.1), coefficient=0.25)
     points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, -1.0]])
-    met, exact = load.through(prepared), with_values(WaveReflection.null(8.0), coefficient=0.25).through(sea.direct())
+    met, exact = load.through(prepared), load.through(sea.direct())
     for one, other in zip(*(water(one, jnp.asarray(40.5), points) for one in (met, exact)), strict=True):
         assert_allclose(one, other, atol=2e-5 * np.abs(other).max())
     for time, one in ((17.75, met), (10.125, met), (40.5, WaveReflection.null(8.1).through(prepared))):
         found, expected = (water(which, jnp.asarray(time), points) for which in (one, prepared))
         assert_allclose(found[0], expected[0], rtol=1e-13)
     assert isinstance(load.through(jh.StillWater()), jh.StillWater)
+
+
+def test_what_the_gauge_saw_come_back() -> None:
+    """With r = 0.25, all of it in the record: the elevation at the origin is as measured, and the flow along the waves what
+    r^2 leaves of sent and sent back."""
+    sea = irregular(1, 0.3).direct()
+    met = with_values(WaveReflection.null(8.1), coefficient=0.25, seen=1.0).through(sea)
+    time, here, along = jnp.asarray(40.5), jnp.array([[0.0], [0.0], [-4.0]]), np.asarray(sea.direction())
+    assert_allclose(met.elevation(time, here[:2]), sea.elevation(time, here[:2]), atol=1e-12)
+    now, then = (sea.flow(one, here) for one in (time, time - 8.1))
+    assert_allclose(met.flow(time, here).pressure, now.pressure, rtol=1e-12)
+    assert_allclose(along @ met.flow(time, here).velocity[:2], along @ (now.velocity - 0.5 * then.velocity)[:2], rtol=1e-9)
+
+
+def test_slopes_of_a_prepared_sea_that_comes_back() -> None:
+    """By the share, the delay, what the gauge saw and where it stood: those of the direct sum, and differences, on and above
+    the surface."""
+    sea = irregular(1, 0.3)
+    model = model_of(only(build(COLUMN)), WaveGaugePosition.null(), WaveReflection.null())
+    points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, 0.4]])
+    labels = (*(f"wave_reflection.{name}" for name in ("coefficient", "delay", "seen")), "wave_gauge_position.distance")
+
+    def met(which, x):
+        here = model.with_values(dict(zip(labels, x))).through(which)
+        return jnp.concatenate([jnp.ravel(one) for one in water(here, jnp.asarray(40.5), points)[:4]])
+
+    prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
+    for x in (jnp.array([0.2, 8.1, 0.6, -1.5]), jnp.array([0.0, 8.1, 0.0, 0.0])):
+        found, exact = jax.jacfwd(partial(met, prepared))(x), jax.jacfwd(partial(met, sea.direct()))(x)
+        apart = [partial(met, prepared)(x + e) - partial(met, prepared)(x - e) for e in 1e-5 * jnp.eye(4)]
+        assert_allclose(found, np.stack(apart, axis=1) / 2e-5, atol=1e-6 * np.abs(found).max())
+        for one, other in zip(found.T, exact.T, strict=True):
+            assert_allclose(one, other, atol=2e-4 * max(np.abs(other).max(), 1e-3))
+        assert_allclose(jax.jacrev(partial(met, prepared))(x), found, atol=1e-10)
 
 
 # all of them
@@ -380,7 +415,7 @@ def test_pressure_on_a_column_in_deep_water() -> None:
 
 
 def test_every_parameter_has_a_slope_at_its_null() -> None:
-    """In two waves, moving: of force, flow or reading. The shape of the low-pass alone has none."""
+    """In two waves, moving: of force, flow or reading. The shapes of the low-pass and of what comes back alone have none."""
     first, second = (jh.regular_wave(2.0, period, WATER, phase=0.3).waves for period in (9.0, 11.0))
     sea = WaveSea(first + second, WATER)
     assert isinstance(sea.waves, PlaneWaves)
@@ -404,4 +439,4 @@ def test_every_parameter_has_a_slope_at_its_null() -> None:
     slope = np.asarray(jax.jacfwd(look)(x))
     assert np.isfinite(slope).all()
     silent = {label for label, column in zip(labels, slope.T, strict=True) if not np.abs(column).max() > 1e-9}
-    assert silent == {"sea_state_dependent_drag.cutoff"}
+    assert silent == {"sea_state_dependent_drag.cutoff", "wave_reflection.delay", "wave_reflection.seen"}

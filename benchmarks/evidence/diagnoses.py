@@ -13,6 +13,7 @@ EFFECTS = (
     "umbilical", "coulomb_friction", "hysteresis", "mooring_nonlinearity", "radiation_memory", "current",
     "amplitude_dependent_drag", "sea_state_dependent_drag", "wave_drift", "wave_drift_damping", "hidden_oscillator",
     "nonlinear_hydrostatics", "coupled_damping", "mass_properties", "sensor_reference", "sensor_lag", "wave_gauge_position",
+    "wave_reflection",
 )  # fmt: skip
 OUTSIDE = ("stiffness_drift", "end_stop", "cogging")  # no candidate has these laws
 SEEDS, NULLS = 3, 20

@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import jax.numpy as jnp
+import numpy as np
 
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
@@ -35,23 +36,29 @@ from jaxhydro.loads import (
     WaveDriftDamping,
     WaveExcitation,
     WaveGaugePosition,
+    WaveReflection,
 )
 from jaxhydro.model import Model
+
+if TYPE_CHECKING:
+    from calibration.discovery.study import Study
 
 
 @dataclass(frozen=True)
 class Candidate:
     """An effect that may be missing. `amplitudes` are the labels that are null where it is not; `shapes` those that mean
-    nothing then, freed with it, and tried at the values of `grid` first; `positive`, amplitudes that physics wants above
-    zero; `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without
-    the effect may stand in its way. `telling`: the test that would tell it from others. One's own law comes with its
-    `load` at null and, by label, `sizes` of its amplitudes that are noticeable."""
+    nothing then, freed with it, and tried at the values of `grid` first, then at those that `places` finds in a residual
+    and its slopes along the first amplitude, of each of the grid; `positive`, amplitudes that physics wants above zero;
+    `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without the
+    effect may stand in its way. `telling`: the test that would tell it from others. One's own law comes with its `load` at
+    null and, by label, `sizes` of its amplitudes that are noticeable."""
 
     effect: str
     dof: str | None
     amplitudes: tuple[str, ...]
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
+    places: Callable[["Study", np.ndarray, np.ndarray], tuple[Mapping[str, float], ...]] | None = None
     positive: tuple[str, ...] = ()
     begin: Mapping[str, float] = field(default_factory=dict)
     telling: str = ""
@@ -63,6 +70,11 @@ class Candidate:
     def labels(self) -> tuple[str, ...]:
         """All its parameters."""
         return (*self.amplitudes, *self.shapes)
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """What the grid tells apart and no fit moves: one of a few."""
+        return tuple(dict.fromkeys(label for at in self.grid for label in at if label not in self.shapes))
 
     @property
     def name(self) -> str:
@@ -104,6 +116,7 @@ WHOLE: dict[str, Callable[[], AbstractLoad]] = {
     "sensor_reference": SensorReference.null,
     "sensor_lag": SensorLag.null,
     "wave_gauge_position": WaveGaugePosition.null,
+    "wave_reflection": WaveReflection.null,
     "covered_ends": CoveredEnds.null,
 }
 DRAG = ("amplitude_dependent_drag", "sea_state_dependent_drag")

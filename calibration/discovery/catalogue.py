@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from calibration.discovery.candidates import COMPUTED, Candidate, sought
+from calibration.discovery.returning import AT_ONCE, delays
 from calibration.parameters import Free
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.environment import DOFS
@@ -34,7 +35,9 @@ from jaxhydro.loads import (
     WaveDriftDamping,
     WaveExcitation,
     WaveGaugePosition,
+    WaveReflection,
 )
+from jaxhydro.loads.wave_reflection import COEFFICIENT, DELAY, LATER, LATEST, SEEN
 from jaxhydro.model import Model
 
 PERIODS = (8.0, 16.0, 32.0, 64.0)  # s: of hidden oscillators, tried in turn
@@ -109,6 +112,7 @@ def catalogue(
     _of_strips(known, model, waves)
     if waves:
         _of_gauges(known)
+        _of_the_basin(known)
     return known.found, known.free, known.units
 
 
@@ -343,4 +347,19 @@ def _of_gauges(known: _Listed) -> None:
         [known.linear("wave_gauge_position.distance", 1.0)],
         telling="regular waves of three periods with a second gauge",
         source=WaveGaugePosition.source,
+    )
+
+
+def _of_the_basin(known: _Listed) -> None:
+    """What is in the water that was not sent: the gauge saw it, too, or did not."""
+    known.linear(SEEN, 1.0)
+    known.add(
+        "wave_reflection",
+        None,
+        [known.linear(COEFFICIENT, 0.02)],
+        shapes=(known.linear(DELAY, LATEST / 3, LATER),),
+        grid=AT_ONCE,
+        places=delays,
+        telling="a few regular waves that stop: what comes after them, at a row of gauges",
+        source=WaveReflection.source,
     )

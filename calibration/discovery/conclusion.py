@@ -58,6 +58,7 @@ def augmented_model(search: Search, state: State) -> Model:
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
+    values |= {label: search.study.value(label, state.look.place.x) for one in state.chosen for label in one.choices}
     own = [one for one in state.chosen if one.load is not None]
     return with_effects(with_candidates(search.posed.declared, own), values).with_values(values)
 
@@ -90,7 +91,9 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Cal
     effects = [label for one in state.chosen for label in one.labels]
     nuisances = [name for name in search.posed.nuisances if name in search.study.labels and name not in effects]
     names = [*search.posed.base, *nuisances, *effects]
-    parameters = {**estimates_of(search, state, names), **_lines(search, state)}
+    lines = [one.label for one in search.study.space.free if one.label.startswith("mooring.")]
+    choices = [label for one in state.chosen for label in one.choices]
+    parameters = estimates_of(search, state, names) | _as_given(search, state, lines, False) | _as_given(search, state, choices)
     tests = tests_of(campaign, search, state)
     if before is not None:
         earlier = {test.id: test for test in before.tests}
@@ -101,14 +104,13 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Cal
     )  # fmt: skip
 
 
-def _lines(search: Search, state: State) -> dict[str, Estimate]:
-    """Mooring lines, which are only nearly known, and move together: values, without deviations of their own."""
+def _as_given(search: Search, state: State, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
+    """Values without deviations of their own: of what was chosen, and of mooring lines, nearly known, which move together."""
     found = {}
-    for one in search.study.space.free:
-        if one.label.startswith("mooring."):
-            about = search.study.model.about(one.label)
-            value = search.study.value(one.label, state.look.place.x)
-            found[one.label] = Estimate(one.label, value, None, about.unit, about.meaning, one.start, False, False)
+    for label in labels:
+        about, start = search.study.model.about(label), search.study.space.free[search.study.labels.index(label)].start
+        value = search.study.value(label, state.look.place.x)
+        found[label] = Estimate(label, value, None, about.unit, about.meaning, start, False, known)
     return found
 
 
@@ -183,8 +185,9 @@ def effect_of(search: Search, one: Candidate, after: State) -> Effect:
     left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
     about = search.study.model.about(one.amplitudes[0])
     held = found.verdict.held if found.verdict.unseen else float("nan")
+    parameters = estimates_of(search, after, one.labels) | _as_given(search, after, one.choices)
     return Effect(
-        one.effect, one.dof, about.meaning, one.source, estimates_of(search, after, one.labels),
+        one.effect, one.dof, about.meaning, one.source, parameters,
         Evidence(found.score, found.verdict.bic, held, found.verdict.clear), max(0.0, 1 - now / left) if left > 0 else 0.0,
         found.alike, one.telling or None,
     )  # fmt: skip

@@ -5,6 +5,7 @@ import time as clock
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
@@ -205,16 +206,21 @@ class Search:
         there = {label for one in state.chosen for label in one.labels}
         others = [one for one in self.posed.candidates if not set(one.labels) <= there]
         best: dict[str, Scored] = {}
-        for g in range(max((len(one.grid) for one in others), default=0) or 1):
-            todo = [one for one in others if g < max(len(one.grid), 1)]
-            place = self.shaped(state.look.place, {k: v for one in todo if one.grid for k, v in one.grid[g].items()})
+        grids = {one.name: one.grid or ({},) for one in others}
+        for g in count():
+            if not (todo := [one for one in others if g < len(grids[one.name])]):
+                break
+            place = self.shaped(state.look.place, {k: v for one in todo for k, v in grids[one.name][g].items()})
             columns = dict.fromkeys(i for one in todo for i in self.study.index(one.amplitudes) if i not in state.look.active)
             seen = self.study.look(place, list(columns))
             for one in todo:
                 self.say(f"round {number}: scoring {one.name}", fraction)
                 mine = [i for i in self.study.index(one.amplitudes) if i not in state.look.active]
-                look = replace(state.look.beside(seen.along(mine)), place=place if one.grid else state.look.place)
+                look = replace(state.look.beside(seen.along(mine)), place=self.shaped(state.look.place, grids[one.name][g]))
                 found = predict(self.study, look, self.prior([*state.chosen, one]))
+                if one.places is not None and g < len(one.grid):
+                    found_at = one.places(self.study, state.residual, seen.along(mine[:1]).slopes[:, 0])
+                    grids[one.name] += tuple({**one.grid[g], **shape} for shape in found_at)
                 if self.wrong_sign(one, look, found):
                     found = found._replace(gain=0 * found.gain)
                 if one.name not in best or found.fitted > best[one.name].predicted.fitted:

@@ -18,6 +18,7 @@ NAMES = {
     "sensor_reference": "a wrong sensor reference",
     "sensor_lag": "a sensor lag",
     "wave_gauge_position": "a wrong wave gauge position",
+    "wave_reflection": "waves that come back",
     "wave_excitation": "another wave excitation",
     "potential_flow": "what the platform's tables of potential flow have",
 }

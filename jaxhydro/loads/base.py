@@ -108,6 +108,7 @@ class AbstractLoad(eqx.Module):
 
     values: eqx.AbstractVar[Mapping[str, Float[Array, ""]]]
     source: ClassVar[str] = ""
+    moves: ClassVar[bool] = False  # the sea, with all that others make of it
 
     def rest(self) -> Any:
         """Its memory before t = 0; None where it has none (not `()`: diffrax cannot carry it)."""

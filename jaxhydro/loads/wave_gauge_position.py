@@ -22,6 +22,7 @@ class WaveGaugePosition(AbstractLoad):
     """
 
     values: dict[str, Float[Array, ""]]
+    moves: ClassVar[bool] = True
     source: ClassVar[str] = "Sharma and Dean 1981, SPE Journal 21 (the waves that are moved)"
 
     @classmethod

@@ -38,6 +38,26 @@ class Clock(NamedTuple):
     fine: int = 0
 
 
+class Returned(NamedTuple):
+    """What comes back of a sea: `share` (-) of it, `delay` (s) later, mirrored about the origin, which is at -`middle` (m,
+    along the waves) in a prepared sea's box; `seen` (-) of that is in the sea already, as if it had been sent."""
+
+    share: Float[Array, ""]
+    delay: Float[Array, ""]
+    seen: Float[Array, ""]
+    middle: Float[Array, ""]
+
+
+def between(place: Float[Array, "..."], total: int) -> tuple[Int[Array, "... h"], Float[Array, "... h"]]:
+    """Steps of a clock of `total`, and their weights, that say what is at places (in steps) between them (Lagrange)."""
+    base = jnp.clip(jnp.floor(place).astype(int) - POINTS // 2 + 1, 0, max(total - POINTS, 0))
+    nodes = jnp.arange(POINTS)
+    apart = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, nodes[:, None] - nodes)
+    away = (place - base)[..., None, None] - nodes
+    weight = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, away / apart).prod(axis=-1)
+    return jnp.minimum(base[..., None] + nodes, total - 1), weight
+
+
 class IrregularSea(AbstractSea):
     """Components on successive harmonics of a period, with what they bind at second order where `order` is 2: by `kinds` at
     sums and differences of their frequencies, or at one of these alone.
@@ -255,7 +275,7 @@ class SupportSea(AbstractSea):
     acceleration, pressure over density, what cylinders of each radius are excited by horizontally (and `Flow.tuned` for
     each); vertical velocity and acceleration, and what excites the cylinders vertically; elevation. Only times of the clock
     may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with the
-    group velocity.
+    group velocity. Of what comes `back`, nothing does before its delay, and `excitation` and `drift` know nothing.
     """
 
     environment: Environment
@@ -272,6 +292,7 @@ class SupportSea(AbstractSea):
     half: float = eqx.field(static=True)  # m, of the box
     forces: int = eqx.field(static=True, default=0)
     envelope: Envelope | None = None
+    back: Returned | None = None
 
     def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
         """The same sea for an integration over `steps` steps that starts `index` steps after the clock did; beyond its end the
@@ -282,13 +303,8 @@ class SupportSea(AbstractSea):
         total = self.series.shape[0]
         fine = None
         if self.fine is not None:
-            place = index + jnp.arange(self.fine.shape[0])
-            base = jnp.clip(place - POINTS // 2 + 1, 0, max(total - POINTS, 0))
-            nodes = jnp.arange(POINTS)
-            apart = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, nodes[:, None] - nodes)
-            away = (place - base + 0.5)[:, None, None] - nodes
-            weight = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, away / apart).prod(axis=2)
-            fine = jnp.einsum("hp,hpfr->hfr", weight, self.series[jnp.minimum(base[:, None] + nodes, total - 1), 0])
+            steps_, weight = between(index + jnp.arange(self.fine.shape[0]) + 0.5, total)
+            fine = jnp.einsum("hp,hpfr->hfr", weight, self.series[steps_, 0])
         kept = self.series[jnp.minimum(index + jnp.arange(steps + 1), total - 1)]
         start = self.start + index * self.step
         found = eqx.tree_at(lambda sea: (sea.series, sea.start), self, (kept, start))
@@ -311,10 +327,41 @@ class SupportSea(AbstractSea):
             found = jnp.where(between, self.fine[jnp.minimum(index, self.fine.shape[0] - 1)], found)
         return found
 
+    def _sets(self, time: Float[Array, ""]) -> Float[Array, "s f 2*r"]:
+        """`rows` without forces; where waves come back also, of all of these, what does, its slope by the delay, and the waves
+        as they were sent then."""
+        here = self.rows(time)[self.forces :]
+        if self.back is None:
+            return here[None]
+        total = self.series.shape[0]
+        turn = jnp.exp(-2j * self.wavenumber * self.back.middle)
+        families = (here.shape[0] - 6) // 2
+        # horizontal velocity, acceleration, and what cylinders are excited by turn round
+        sign = jnp.ones(len(here)).at[jnp.array([0, 1, *range(3, 3 + families)])].set(-1.0)
+
+        def delayed(delay: Float[Array, ""]) -> tuple[Float[Array, "f 2*r"], ...]:
+            steps, weight = between((time - delay - self.start) / self.step, total)
+            then = jnp.einsum("h,hfr->fr", weight, self.series[steps, 0, self.forces :])
+            real, imaginary = jnp.split(then, 2, axis=-1)
+            there = sign[:, None] * jnp.conj((real + 1j * imaginary) * jnp.conj(turn))
+            return jnp.concatenate([there.real, there.imag], axis=-1) - seen * then, then
+
+        delay, seen = jax.lax.stop_gradient((self.back.delay, self.back.seen))
+        (back, then), (later, _) = jax.jvp(delayed, (delay,), (jnp.ones_like(delay),))
+        begun = time - delay > self.start - 1e-6 * self.step
+        return jnp.stack([here, *(jnp.where(begun, one, 0.0) for one in (back, later, then))])
+
+    def _met(self, parts: Float[Array, "s ..."]) -> Array:
+        """What is met, of what was found of `_sets`: derivatives by the share and the delay cost no more than it does."""
+        if self.back is None:
+            return parts[0]
+        late, seen = (one - jax.lax.stop_gradient(one) for one in (self.back.delay, self.back.seen))
+        return parts[0] + self.back.share * (parts[1] + late * parts[2] - seen * parts[3])
+
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
-        rows, k, fade = self.rows(time)[self.forces :], self.wavenumber, self.fade
-        families = (rows.shape[0] - 6) // 2
-        even, odd = rows[: 3 + families], rows[3 + families : -1]
+        sets, k, fade = self._sets(time), self.wavenumber, self.fade
+        families = (sets.shape[1] - 6) // 2
+        even, odd = (one.reshape(-1, sets.shape[2]) for one in (sets[:, : 3 + families], sets[:, 3 + families : -1]))
         place = self.along @ points[:2] - self.middle
         level, above = stretched(self, self.stretching, time, points, self.environment.depth)
         if above is None:
@@ -326,6 +373,7 @@ class SupportSea(AbstractSea):
                 jnp.concatenate([even, odd * slope / tanh**2]), jnp.concatenate([odd, even * slope]), k, place, level, fade
             )
             along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
+        along, up = (self._met(one.reshape(len(sets), -1, one.shape[1])) for one in (along, up))
         excited: list[Array] = []
         if cylinders is not None and families:
             of, radii = jnp.array(cylinders.of), cylinders.radius.size
@@ -340,7 +388,7 @@ class SupportSea(AbstractSea):
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         place = self.along @ points - self.middle
-        return surface(self.rows(time)[-1], self.wavenumber, place)
+        return self._met(jax.vmap(surface, (0, None, None))(self._sets(time)[:, -1], self.wavenumber, place))
 
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)
