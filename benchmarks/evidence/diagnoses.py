@@ -96,6 +96,8 @@ def of_case(name: str) -> dict[str, Any]:
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
         "refused": {f"{one.effect} {one.degree_of_freedom or ''}".strip(): one.reason for one in result.rejected},
         "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
+        "tried": {f"{one.round} {one.effect} {one.degree_of_freedom or ''}".strip(): one.verdict._asdict()
+                  for one in result.scores if one.verdict is not None},
         "seconds": result.seconds,
     }  # fmt: skip
 
@@ -178,6 +180,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     if nulls:
         words = [_words(case, said[case], results[case]) for case in said if not case.effect]
         text += f"\nOf nothing missing: {', '.join(words)}.\n"
+    text += thresholds({case: result for case, result in results.items() if not case.effect})
     goals = (
         (named, len(known), NAMED, "named first"), (listed, len(known), IN_SET, "in the set"),
         (both, len(pairs), BOTH, "both of two found"), (near, len(held), 1.0, f"held-out error within {FACTOR} times"),
@@ -189,6 +192,41 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     if len(results) < total:
         short.append(f"diagnosis: {len(results)} of {total} campaigns run")
     return Section(TITLE, text, (figure,), tuple(short))
+
+
+def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
+    """What candidates reach where nothing is missing, rule by rule, and how many campaigns would be told of an effect by the
+    other rules alone; "" where there are no such campaigns."""
+    from calibration.discovery import judgement as by
+
+    rules = {
+        "bic": ("fall of BIC in the fitted tests", by.LEAST_BIC),
+        "held": ("share of the held-out squared error that goes", by.LEAST_GAIN),
+        "net": ("fall of -2 ln L in the held-out tests", by.LEAST_NET),
+        "clear": ("standard deviations from none", by.LEAST_CLEAR),
+        "matters": ("fall of an error, over what matters", 1.0),
+    }
+    tried = {case: list(result["tried"].values()) for case, result in nulls.items() if "tried" in result}
+    every = [one for some in tried.values() for one in some]
+    if not every:
+        return ""
+    rows = []
+    for name, (words, least) in rules.items():
+        others = {other: limit for other, (_, limit) in rules.items() if other != name}
+        passing = {
+            case: [one[name] for one in some if all(one[other] >= limit for other, limit in others.items())]
+            for case, some in tried.items()
+        }
+        highest = max((value for values in passing.values() for value in values), default=None)
+        alone = sum(bool(values) for values in passing.values())
+        rows.append((words, f"{least:g}", f"{max(one[name] for one in every):.3g}", share(alone, len(tried)),
+                     "–" if highest is None else f"{highest:.3g}"))  # fmt: skip
+    return (
+        f"\nWhat an effect has to reach, and what the {len(every)} candidates reached that were refitted in "
+        f"{len(tried)} campaigns with nothing missing: at most, and at most among those that pass all the other rules, which "
+        f"is what a threshold has to be above:\n\n"
+        + table(("rule", "threshold", "at most", "told of an effect without the rule", "at most, past the others"), rows)
+    )  # fmt: skip
 
 
 def draw(results: dict[Case, dict[str, Any]], path: Path) -> Path:

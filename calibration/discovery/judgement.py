@@ -108,13 +108,15 @@ class Grounds(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the squared error that goes, whether that is of what was not fitted, how
-    clear it is, and why it is refused ("" where it is not)."""
+    """What a refit says of an effect: BIC, share of the squared error that goes, whether that is of what was not fitted, by how
+    much -2 ln L of all that falls, how clear the effect is, how much it matters, and why it is refused ("" where it is not)."""
 
     bic: float
     held: float
     unseen: bool
+    net: float
     clear: float
+    matters: float
     refused: str
 
 
@@ -122,7 +124,7 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
     """Whether an effect is believed; `count` are independent observations, for BIC."""
     bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(one.labels) * math.log(count)
     held, told = grounds.gain()
-    clear = clearness(study, one, after, prior)
+    net, clear, matters = grounds.net, clearness(study, one, after, prior), grounds.matters()
     values = {label: study.value(label, after.look.place.x) for label in one.positive}
     wrong = [label for label, value in values.items() if value < 0 and clearly(study, label, one, after, prior)]
     refused = ""
@@ -135,13 +137,13 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
         if grounds.unseen:
             where = "held-out tests" if grounds.study is study else "blocks left out in turn"
         refused = f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
-    elif told and grounds.net < LEAST_NET:
+    elif told and net < LEAST_NET:
         refused = "elsewhere the model becomes worse by it"
     elif clear < LEAST_CLEAR:
         refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
-    elif grounds.matters() < 1:
+    elif matters < 1:
         refused = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
-    return Verdict(bic, held, grounds.unseen, clear, refused)
+    return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
 
 
 def given_up(study: Study, alone: Left, now: Left) -> list[str]:

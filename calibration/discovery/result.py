@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibration.discovery.judgement import Verdict
 from calibration.result import Calibration, Estimate
 
 
@@ -48,7 +49,8 @@ class Rejected:
 @dataclass(frozen=True, eq=False)
 class Score:
     """A candidate at its null, in one round: `gain` of -2 ln L at first order, degrees of freedom it takes, and what the
-    held-out tests would gain by the same step; `refitted` gains where it was tried (None: it was not)."""
+    held-out tests would gain by the same step; `refitted` gains where it was tried (None: it was not), and by what it was
+    judged then."""
 
     round: int
     effect: str
@@ -58,6 +60,7 @@ class Score:
     holdout: float
     refitted: float | None
     refitted_holdout: float | None
+    verdict: Verdict | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -386,7 +386,8 @@ class Search:
         fitted, held = float(gains[self.study.used].sum()), float(gains[~self.study.used].sum())
         for i, score in enumerate(self.scores):
             if score.round == number and (score.effect, score.degree_of_freedom) == (one.effect, one.dof):
-                self.scores[i] = replace(score, refitted=fitted, refitted_holdout=verdict.held if verdict.unseen else None)
+                held_out = verdict.held if verdict.unseen else None
+                self.scores[i] = replace(score, refitted=fitted, refitted_holdout=held_out, verdict=verdict)
         worth = fitted + max(held, -1e3) - len(one.labels) * math.log(self.count)
         return Tried(one, scored.predicted.fitted, after, verdict, worth)
 
