@@ -7,7 +7,7 @@ the units and at the scale of the files, whatever `scale` says.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -185,6 +185,16 @@ class Manifest(Schema):
             else:
                 channels[name] = channels[name].model_copy(update=override.model_dump(exclude_none=True))
         return channels
+
+    def turned(self, channels: Collection[str]) -> Manifest:
+        """With the signs of these channels changed, in tests that have one of their own, too."""
+        def other(some: Mapping[str, Any]) -> dict[str, Any]:
+            return {name: one.model_copy(update={"sign": -one.sign}) if name in channels and one and one.sign else one
+                    for name, one in some.items()}  # fmt: skip
+
+        wave = None if self.wave_channel is None else other({WAVE: self.wave_channel})[WAVE]
+        tests = tuple(test.model_copy(update={"channels": other(test.channels)}) for test in self.tests)
+        return self.model_copy(update={"channels": other(self.channels), "wave_channel": wave, "tests": tests})
 
 
 def _channel_problems(manifest: Manifest) -> Iterator[Problem]:

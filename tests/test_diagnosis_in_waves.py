@@ -13,6 +13,9 @@ from calibration.applied import applied
 from calibration.campaign import Campaign
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.search import diagnose
+from calibration.discovery.signs import turned
+from calibration.report import write_report
+from calibration.runs import runs
 
 RHO, G, DEPTH = 1000.0, 9.81, 200.0
 RADIUS, DRAUGHT = 3.0, 10.0
@@ -135,6 +138,35 @@ def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
     assert said["coefficient"].standard_deviation < 0.01 and said["delay"].standard_deviation < 0.2
 
 
+def test_a_wrong_sign_is_found(tmp_path: Path) -> None:
+    """Of the motion, or of the waves, which one motion cannot tell; turned round, nothing is missing."""
+    campaign = campaign_of(tmp_path, lambda omega: -pressure(omega))
+    found = diagnose(campaign.model, campaign)
+    (effect,) = found.effects
+    assert (found.verdict, effect.effect, effect.degree_of_freedom) == ("found", "sensor_sign", "heave")
+    assert effect.indistinguishable == ("sensor_sign (wave)",) and effect.evidence.holdout_gain > 0.99
+    assert "sign: -1" in found.notes[0] and all(one.relative < 0.1 for one in found.anatomy_after)
+    write_diagnosis(found, tmp_path / "out")
+    page = write_report(tmp_path / "out").read_text()
+    assert "a wrong sign in heave" in page and "cannot tell it from a wrong sign in wave" in page
+
+
+def test_a_campaign_turned_round(tmp_path: Path) -> None:
+    """As if its manifest said so, of a test that has a sign of its own, too."""
+    campaign = campaign_of(tmp_path, pressure)
+    manifest = json.loads((tmp_path / "campaign.yaml").read_text())
+    manifest["tests"][1]["channels"] = {"heave": {"sign": -1}}
+    (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
+    one = load_campaign(tmp_path)
+    made, again = turned(one, ["wave", "heave"]), turned(turned(one, ["wave", "heave"]), ["wave", "heave"])
+    for was, now, right in zip(campaign.records, made.records, (-1, 1), strict=True):
+        assert_allclose(now.values["heave"], right * was.values["heave"])
+        assert_allclose(now.wave, -was.wave)
+    for was, now in zip(runs(campaign), runs(made), strict=True):
+        assert_allclose(now.wave, -was.wave)
+    assert again.manifest == one.manifest
+
+
 def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     """What goes with neither motion nor waves: no name, no law, though the motion follows it; and the force as it acted,
     through the sea that was made ready."""
@@ -142,8 +174,7 @@ def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     found = diagnose(campaign.model, campaign)
     assert found.verdict == "unexplained" and not found.effects
     (force,) = found.latent
-    time = TRANSIENT + force.shown.time
-    acted = sum(size * np.cos(rate * time) for rate, size in TONES.items())
+    acted = sum(size * np.cos(rate * force.shown.time) for rate, size in TONES.items())
     assert force.motion == "heave" and not force.law.terms
     assert np.corrcoef(force.shown.force, acted)[0, 1] > 0.998
     assert_allclose(np.std(force.shown.force), np.std(acted), rtol=0.02)

@@ -78,5 +78,7 @@ def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
         name = words.called(one.effect, one.degree_of_freedom)
         say(f"{name[:1].upper()}{name[1:]}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
     say(words.left_over(saved))
+    for force in saved.missing.unexplained.forces:
+        say(force.words)
     if saved.next_test:
         say(f"Next test: {saved.next_test}")

@@ -24,6 +24,7 @@ from jaxhydro.model import Model
 if TYPE_CHECKING:
     from calibration.discovery.judgement import State
     from calibration.discovery.search import Search
+    from calibration.discovery.study import Place
 
 # of a motion: what is left beyond it is not for noise, nor for a model's last digits. Fitted seas of the tank's campaigns with
 # nothing missing leave up to 0.1, where mass and moorings are declared a little wrong
@@ -31,12 +32,13 @@ LEFT = {"decay": 0.03, "waves": 0.25}
 
 
 def conclude(
-    campaign: Campaign, search: Search, before: State, after: State, notes: Sequence[str], seconds: float
+    campaign: Campaign, search: Search, before: State, after: State, notes: Sequence[str], seconds: float,
+    first: Sequence[Effect] = (),
 ) -> Diagnosis:
-    """Everything that is reported, of the declared model's fit and the last one."""
+    """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
-    effects = tuple(effect_of(search, one, after) for one in after.chosen)
+    effects = (*first, *(effect_of(search, one, after) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
     kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
@@ -94,7 +96,7 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Cal
     lines = [one.label for one in search.study.space.free if one.label.startswith("mooring.")]
     choices = [label for one in state.chosen for label in one.choices]
     parameters = estimates_of(search, state, names) | _as_given(search, state, lines, False) | _as_given(search, state, choices)
-    tests = tests_of(campaign, search, state)
+    tests = tests_of(campaign, search, state.look.place)
     if before is not None:
         earlier = {test.id: test for test in before.tests}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
@@ -126,9 +128,9 @@ def _with_start(test: TestFit, before: TestFit) -> TestFit:
     return replace(test, start=start, bands=bands)
 
 
-def tests_of(campaign: Campaign, search: Search, state: State) -> list[TestFit]:
-    """Every test with the motions of a fit."""
-    study, place = search.study, state.look.place
+def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
+    """Every test with the motions at a place."""
+    study = search.study
     motions = study.motions(place)
     found = {}
     if study.decays is not None:

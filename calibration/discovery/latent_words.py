@@ -168,7 +168,7 @@ def _shown(one: Force, law: Law) -> Shown:
     if names:
         follows = columns_of(one, law.v0, law.pace)[:, names] @ np.array([term.coefficient for term in law.terms])
     beside, values = ("velocity", one.velocity) if wave is None else ("wave", wave)
-    return Shown(one.test.id, one.test.time[some] - one.test.time[0], one.force[some], follows, beside, values[some])
+    return Shown(one.test.id, one.test.time[some], one.force[some], follows, beside, values[some])
 
 
 BANDS = {

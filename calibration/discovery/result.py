@@ -114,7 +114,8 @@ class Law:
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """A stretch of a latent force (N, N m) over time (s), its law (empty: none), and the velocity or wave `beside` it."""
+    """A stretch of a latent force (N, N m) at times of the record (s), its law (empty: none), and the velocity or wave `beside`
+    it."""
 
     test: str
     time: np.ndarray

@@ -23,6 +23,7 @@ from calibration.discovery.linear import Predicted, likelihoods, predict
 from calibration.discovery.pose import WIDE, Posed, pose
 from calibration.discovery.records import options_for
 from calibration.discovery.result import Diagnosis, Rejected, Score
+from calibration.discovery.signs import in_words, reversed_channels, turned
 from calibration.discovery.study import Look, Place, Prior
 from calibration.fit import Progress, prepare, run
 from calibration.residuals import first_guess
@@ -113,6 +114,7 @@ class Search:
                 width[self.study.index(one.amplitudes)] = WIDE
         return Prior(self.posed.prior.mean, width)
 
+    @cached_property
     def start(self) -> Place:
         """Coefficients and releases of an ordinary calibration to the decays, which finds them from far away."""
         study = self.study
@@ -135,7 +137,7 @@ class Search:
     def declared(self) -> State:
         """The declared model, fitted."""
         self.say("calibrating the declared model", 0.03)
-        place = self.start()
+        place = self.start
         self.anchor(place.x)
         if self.study.decays is not None and self.study.seas:
             self.alone = Left.of(self.study, self.study.residual(place))
@@ -421,9 +423,18 @@ def diagnose(
             keep(kept, search, states)
 
     say("reading the records", 0.0)
-    options, notes = options_for(campaign) if options is None else (options, ())
-    search = Search(campaign, pose(campaign, options, candidates), say)
-    states += [] if kept is None else resumed(kept, search)
+
+    def begun_with(campaign: Campaign) -> tuple[Search, tuple[str, ...]]:
+        how, notes = options_for(campaign) if options is None else (options, ())
+        search = Search(campaign, pose(campaign, how, candidates), say)
+        states.extend([] if kept is None else resumed(kept, search))
+        return search, notes
+
+    search, notes = begun_with(campaign)
+    wrong = {} if states else reversed_channels(campaign, search)
+    if wrong:
+        search, notes = begun_with(campaign := turned(campaign, list(wrong)))
+        notes = (in_words(list(wrong)), *notes)
     if states:
         say(f"going on from what was reached before: round {len(states)}", 0.15)
     else:
@@ -431,7 +442,8 @@ def diagnose(
 
     def concluded() -> Diagnosis:
         lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
-        return conclude(campaign, search, states[0], states[-1], (*notes, *search.notes, *lost), clock.monotonic() - begun)
+        every, seconds = (*notes, *search.notes, *lost), clock.monotonic() - begun
+        return conclude(campaign, search, states[0], states[-1], every, seconds, tuple(wrong.values()))
 
     try:
         for again in range(2 * ROUNDS):

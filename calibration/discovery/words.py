@@ -17,6 +17,7 @@ NAMES = {
     "hidden_oscillator": "a hidden oscillator",
     "sensor_reference": "a wrong sensor reference",
     "sensor_lag": "a sensor lag",
+    "sensor_sign": "a wrong sign",
     "wave_gauge_position": "a wrong wave gauge position",
     "wave_reflection": "waves that come back",
     "wave_excitation": "another wave excitation",
@@ -125,8 +126,10 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     """How sure an effect is: sentences with their numbers."""
     evidence = one.evidence
     held = any(row.get("use") == "holdout" for row in saved.augmented.error.values())
-    said = [f"{strength(evidence).capitalize()} evidence on the fitted tests: BIC falls by {number(evidence.delta_bic, 3)} "
-            "(above 10 is very strong)."]  # fmt: skip
+    said = []
+    if evidence.delta_bic is not None:
+        fell = f"BIC falls by {number(evidence.delta_bic, 3)} (above 10 is very strong)"
+        said.append(f"{strength(evidence).capitalize()} evidence on the fitted tests: {fell}.")
     gain = evidence.holdout_gain
     if gain is None:
         said.append("No test was held out to check it.")
