@@ -28,8 +28,8 @@ from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
 from jaxhydro.simulate import farthest
 from jaxhydro.statics import equilibrium
-from jaxhydro.waves.irregular_sea import SupportSea
 from jaxhydro.waves.sea_state import SeaState
+from jaxhydro.waves.support_sea import SupportSea
 
 Objective = Literal["bands", "spectrum", "motion", "both", "blocks"]
 OF_ENERGY = ("bands", "spectrum", "both")

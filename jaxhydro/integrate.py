@@ -12,8 +12,8 @@ from jaxtyping import Array, Float, Int
 
 from jaxhydro import adams_bashforth, runge_kutta
 from jaxhydro.model import Model, State
-from jaxhydro.waves.irregular_sea import Clock
 from jaxhydro.waves.sea import AbstractSea
+from jaxhydro.waves.support_sea import Clock
 
 Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]

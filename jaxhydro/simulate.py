@@ -18,9 +18,10 @@ from jaxhydro.response import Response
 from jaxhydro.rotations import rotation
 from jaxhydro.statics import equilibrium, natural_modes
 from jaxhydro.waves.irregular import fourier_length
-from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea, SupportSea
+from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import state_of
+from jaxhydro.waves.support_sea import SupportSea
 
 SEA_STEP = 0.25  # s, in irregular seas where no step is asked for
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for

@@ -20,7 +20,7 @@ from jaxhydro.loads import DriftTransfer
 from jaxhydro.problems import InputError
 from jaxhydro.statics import linearised
 from jaxhydro.sweep.run import _platform_text
-from jaxhydro.waves.irregular_sea import Clock
+from jaxhydro.waves.support_sea import Clock
 from jaxhydro.waves.transfer import Transfer
 
 GRID = np.linspace(0.2, 2.2, 9)  # rad/s

@@ -21,7 +21,7 @@ from calibration.discovery.study import Prior, Series, Study
 from calibration.identifiability import VAGUE
 from calibration.parameters import Free, ParameterSpace
 from calibration.transforms import Scaled
-from jaxhydro.waves.irregular_sea import Clock
+from jaxhydro.waves.support_sea import Clock
 
 MASS, STIFFNESS, B11 = 8e6, 2e5, 3e5
 AFLOAT = {

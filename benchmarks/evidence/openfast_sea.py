@@ -15,7 +15,7 @@ import pandas as pd
 
 import jaxhydro as jh
 from benchmarks.evidence.openfast import FOLDER, platform
-from jaxhydro.waves import irregular_sea, second_order
+from jaxhydro.waves import SupportSea, irregular_sea, second_order
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.flow import Cylinders, Flow
 
@@ -123,7 +123,7 @@ def _without(beats: float, fundamental: float) -> Iterator[None]:
 class GridSea(jh.AbstractSea):
     """A sea whose flow and surface come from a grid along x, by Catmull and Rom's cubic."""
 
-    inner: irregular_sea.SupportSea
+    inner: SupportSea
     spacing: float = eqx.field(static=True)
 
     @property

@@ -15,7 +15,7 @@ from calibration.residuals import Data, Problem
 from jaxhydro.integrate import Grid, integrate
 from jaxhydro.model import Model, State
 from jaxhydro.statics import equilibrium
-from jaxhydro.waves.irregular_sea import SupportSea
+from jaxhydro.waves.support_sea import SupportSea
 
 
 class Frame(NamedTuple):

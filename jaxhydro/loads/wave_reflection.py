@@ -8,8 +8,8 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Parameter
 from jaxhydro.waves.flow import Cylinders, Flow
-from jaxhydro.waves.irregular_sea import Returned, SupportSea
 from jaxhydro.waves.sea import AbstractSea, StillWater
+from jaxhydro.waves.support_sea import Returned, SupportSea
 
 COEFFICIENT, DELAY, SEEN = "wave_reflection.coefficient", "wave_reflection.delay", "wave_reflection.seen"
 LATER, LATEST = 60.0, 600.0  # s

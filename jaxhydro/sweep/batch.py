@@ -27,9 +27,10 @@ from jaxhydro.simulate import farthest, largest_step, simulate, steps_in
 from jaxhydro.statics import EquilibriumError, equilibrium
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.statistics import Kept, kept_of
-from jaxhydro.waves.irregular_sea import IrregularSea, SupportSea
+from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.second_order import elevation_spectrum
+from jaxhydro.waves.support_sea import SupportSea
 
 PLATFORM, CALIBRATION, PLAN = "platform.yaml", "calibration.json", "plan.json"  # in a sweep's folder of inputs
 

@@ -18,8 +18,8 @@ from jaxhydro.statics import equilibrium
 from jaxhydro.sweep.batch import prepared_for, sea_of, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.schema import Sweep
-from jaxhydro.waves.irregular_sea import SupportSea
 from jaxhydro.waves.sea_state import SeaState, state_of
+from jaxhydro.waves.support_sea import SupportSea
 
 
 class Sensitivity(NamedTuple):

@@ -1,0 +1,199 @@
+"""A sea made ready for a time integration: evaluated fast at displaced positions."""
+
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float, Int
+
+from jaxhydro.environment import Environment
+from jaxhydro.waves.envelope import Envelope
+from jaxhydro.waves.flow import Cylinders, Flow
+from jaxhydro.waves.sea import AbstractSea, Stretching, stretched
+from jaxhydro.waves.supports import field, surface
+
+POINTS = 8  # steps of a clock between which a sea is interpolated
+
+
+class Clock(NamedTuple):
+    """When a time integration asks for the sea: at `nodes` (shares) of `steps` steps of `step` (s) from `start` (s).
+
+    The first `fine` steps are also asked for at their middle.
+    """
+
+    start: float
+    step: float
+    steps: int
+    nodes: tuple[float, ...]
+    fine: int = 0
+
+
+class Returned(NamedTuple):
+    """What comes back of a sea: `share` (-) of it, `delay` (s) later, mirrored about the origin, which is at -`middle` (m,
+    along the waves) in a prepared sea's box; `seen` (-) of that is in the sea already, as if it had been sent."""
+
+    share: Float[Array, ""]
+    delay: Float[Array, ""]
+    seen: Float[Array, ""]
+    middle: Float[Array, ""]
+
+
+def between(place: Float[Array, "..."], total: int) -> tuple[Int[Array, "... h"], Float[Array, "... h"]]:
+    """Steps of a clock of `total`, and their weights, that say what is at places (in steps) between them (Lagrange)."""
+    base = jnp.clip(jnp.floor(place).astype(int) - POINTS // 2 + 1, 0, max(total - POINTS, 0))
+    nodes = jnp.arange(POINTS)
+    apart = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, nodes[:, None] - nodes)
+    away = (place - base)[..., None, None] - nodes
+    weight = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, away / apart).prod(axis=-1)
+    return jnp.minimum(base[..., None] + nodes, total - 1), weight
+
+
+class SupportSea(AbstractSea):
+    """An irregular sea of one heading for one hull and one clock: see `supports` for how it works.
+
+    `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: `forces` (0 or 6) of the
+    first order on a platform; horizontal velocity and
+    acceleration, pressure over density, what cylinders of each radius are excited by horizontally (and `Flow.tuned` for
+    each); vertical velocity and acceleration, and what excites the cylinders vertically; elevation. Only times of the clock
+    may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with the
+    group velocity. Of what comes `back`, nothing does before its delay, and `excitation` and `drift` know nothing.
+    """
+
+    environment: Environment
+    series: Float[Array, "t s f 2*r"]
+    fine: Float[Array, "h f 2*r"] | None
+    wavenumber: Float[Array, " r"]
+    fade: Float[Array, " r"]  # exp(-2kh)
+    middle: Float[Array, ""]  # m, of the box along the waves
+    along: Float[Array, "2"]
+    start: Float[Array, ""]
+    step: Float[Array, ""]
+    nodes: tuple[float, ...] = eqx.field(static=True)
+    stretching: Stretching = eqx.field(static=True)
+    half: float = eqx.field(static=True)  # m, of the box
+    forces: int = eqx.field(static=True, default=0)
+    envelope: Envelope | None = None
+    back: Returned | None = None
+
+    def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
+        """The same sea for an integration over `steps` steps that starts `index` steps after the clock did; beyond its end the
+        sea stands still. What its first steps ask for at their middle is interpolated between `POINTS` steps (Lagrange).
+
+        A wave of 20 steps is met to 1e-6 there, one of 8 to 2e-3.
+        """
+        total = self.series.shape[0]
+        fine = None
+        if self.fine is not None:
+            steps_, weight = between(index + jnp.arange(self.fine.shape[0]) + 0.5, total)
+            fine = jnp.einsum("hp,hpfr->hfr", weight, self.series[steps_, 0])
+        kept = self.series[jnp.minimum(index + jnp.arange(steps + 1), total - 1)]
+        start = self.start + index * self.step
+        found = eqx.tree_at(lambda sea: (sea.series, sea.start), self, (kept, start))
+        found = eqx.tree_at(lambda sea: sea.fine, found, fine, is_leaf=lambda leaf: leaf is None)
+        if self.envelope is None:
+            return found
+        # its series is kept whole, for what it is read ahead
+        return eqx.tree_at(lambda sea: sea.envelope.lead, found, self.envelope.lead + index * self.step)
+
+    def rows(self, time: Float[Array, ""]) -> Float[Array, "f 2*r"]:
+        """Amplitudes of the supports at a time of the clock."""
+        place = (time - self.start) / self.step
+        whole = jnp.floor(place + 1e-6)
+        share = place - whole
+        node = jnp.argmin(jnp.abs(share - jnp.array(self.nodes))) if len(self.nodes) > 1 else 0
+        index = jnp.clip(whole.astype(int), 0, self.series.shape[0] - 1)
+        found = self.series[index, node]
+        if self.fine is not None:
+            between = jnp.abs(share - 0.5) < 0.25
+            found = jnp.where(between, self.fine[jnp.minimum(index, self.fine.shape[0] - 1)], found)
+        return found
+
+    def _sets(self, time: Float[Array, ""]) -> Float[Array, "s f 2*r"]:
+        """`rows` without forces; where waves come back also, of all of these, what does, its slope by the delay, and the waves
+        as they were sent then."""
+        here = self.rows(time)[self.forces :]
+        if self.back is None:
+            return here[None]
+        total = self.series.shape[0]
+        turn = jnp.exp(-2j * self.wavenumber * self.back.middle)
+        families = (here.shape[0] - 6) // 2
+        # horizontal velocity, acceleration, and what cylinders are excited by turn round
+        sign = jnp.ones(len(here)).at[jnp.array([0, 1, *range(3, 3 + families)])].set(-1.0)
+
+        def delayed(delay: Float[Array, ""]) -> tuple[Float[Array, "f 2*r"], ...]:
+            steps, weight = between((time - delay - self.start) / self.step, total)
+            then = jnp.einsum("h,hfr->fr", weight, self.series[steps, 0, self.forces :])
+            real, imaginary = jnp.split(then, 2, axis=-1)
+            there = sign[:, None] * jnp.conj((real + 1j * imaginary) * jnp.conj(turn))
+            return jnp.concatenate([there.real, there.imag], axis=-1) - seen * then, then
+
+        delay, seen = jax.lax.stop_gradient((self.back.delay, self.back.seen))
+        (back, then), (later, _) = jax.jvp(delayed, (delay,), (jnp.ones_like(delay),))
+        begun = time - delay > self.start - 1e-6 * self.step
+        return jnp.stack([here, *(jnp.where(begun, one, 0.0) for one in (back, later, then))])
+
+    def _met(self, parts: Float[Array, "s ..."]) -> Array:
+        """What is met, of what was found of `_sets`: derivatives by the share and the delay cost no more than it does."""
+        if self.back is None:
+            return parts[0]
+        late, seen = (one - jax.lax.stop_gradient(one) for one in (self.back.delay, self.back.seen))
+        return parts[0] + self.back.share * (parts[1] + late * parts[2] - seen * parts[3])
+
+    def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
+        sets, k, fade = self._sets(time), self.wavenumber, self.fade
+        families = (sets.shape[1] - 6) // 2
+        even, odd = (one.reshape(-1, sets.shape[2]) for one in (sets[:, : 3 + families], sets[:, 3 + families : -1]))
+        place = self.along @ points[:2] - self.middle
+        level, above = stretched(self, self.stretching, time, points, self.environment.depth)
+        if above is None:
+            along, up = field(even, odd, k, place, level, fade)
+        else:
+            tanh = jnp.tile((1 - fade) / (1 + fade), 2)
+            slope = jnp.tile(k, 2) * tanh
+            along, up = field(
+                jnp.concatenate([even, odd * slope / tanh**2]), jnp.concatenate([odd, even * slope]), k, place, level, fade
+            )
+            along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
+        along, up = (self._met(one.reshape(len(sets), -1, one.shape[1])) for one in (along, up))
+        excited: list[Array] = []
+        if cylinders is not None and families:
+            of, radii = jnp.array(cylinders.of), cylinders.radius.size
+            for first in range(0, families, radii):
+                horizontal = sum(jnp.where(of == i, along[3 + first + i], 0.0) for i in range(radii))
+                vertical = sum(jnp.where(of == i, up[2 + first + i], 0.0) for i in range(radii))
+                excited.append(jnp.stack([horizontal, vertical]))
+        axes = jnp.zeros((3, 2)).at[:2, 0].set(self.along).at[2, 1].set(1.0)
+        diffracted, tuned = [*excited, None, None][:2]
+        velocity, acceleration = (jnp.stack([along[i], up[i]]) for i in (0, 1))
+        return Flow(velocity, acceleration, along[2], diffracted, tuned, axes)
+
+    def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
+        place = self.along @ points - self.middle
+        return self._met(jax.vmap(surface, (0, None, None))(self._sets(time)[:, -1], self.wavenumber, place))
+
+    def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
+        return None if self.stretching == "none" else self.elevation(time, points)
+
+    def drift(self, time: Float[Array, ""]) -> Float[Array, " d"] | None:
+        if self.envelope is None:
+            return None
+        return self.envelope.at((time + self.envelope.lead - self.start) / self.step)
+
+    def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
+        if not self.forces:
+            return None
+        along = (self.along @ place - self.middle)[None]
+        return jax.vmap(surface, (0, None, None))(self.rows(time)[: self.forces], self.wavenumber, along)[:, 0]
+
+    def direction(self) -> Float[Array, "2"]:
+        return self.along
+
+    def moved(self, distance: Float[Array, ""]) -> "SupportSea":
+        found = eqx.tree_at(lambda sea: sea.middle, self, self.middle + distance)
+        if self.envelope is None:
+            return found
+        # at the origin is now what was at -distance, and came to where the origin was that much later
+        lead = self.envelope.lead + distance * self.envelope.slowness
+        return eqx.tree_at(lambda sea: sea.envelope.lead, found, lead)
