@@ -17,6 +17,7 @@ from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum, fold
+from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import Box, supports, weights
 from jaxhydro.waves.transfer import Transfer
 
