@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
-from calibration.discovery.judgement import LEAST_MATTER, Grounds, Left
+from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, refusal
 from calibration.discovery.search import Tried, in_order
 from calibration.discovery.study import Series, Study
 from calibration.records import Record
@@ -101,6 +101,24 @@ def test_what_matters_of_a_decay(channel, least):
         after = 0.5 - share * least
         grounds = Grounds(study, np.array([True]), left([1], [0.5]), left([1], [after]), True)
         assert (grounds.matters() >= 1) == matters
+
+
+@pytest.mark.parametrize(("numbers", "where", "said"), [
+    ({"bic": 9, "net": 60}, HELD_OUT, ""),
+    ({"bic": 9, "net": 60}, FITTED, "too little in the fitted tests (BIC +9)"),
+    ({"bic": 9, "net": 60}, BLOCKS, "too little in the fitted tests (BIC +9)"),
+    ({"bic": 5, "net": 60}, HELD_OUT, "too little in the fitted tests (BIC +5)"),
+    ({"bic": 9, "net": 15}, HELD_OUT, "too little in fitted and held-out tests together (BIC +9, -2 ln L -15)"),
+    ({"bic": 43, "net": -197}, HELD_OUT, "becomes worse"),
+    ({"bic": 43, "net": -197, "held": 0.0}, HELD_OUT, "squared error of the held-out tests changes by -0 % only"),
+    ({"bic": 43, "held": 0.1}, BLOCKS, "squared error of the blocks left out in turn changes by -10 % only"),
+    ({"bic": 43, "clear": 2.0}, HELD_OUT, "2.0 standard deviations from none"),
+    ({"bic": 43, "matters": 0.9}, HELD_OUT, "no error falls by"),
+])  # fmt: skip
+def test_what_an_effect_has_to_reach(numbers, where, said):
+    """Little in the fitted tests is enough where tests that were not fitted agree; much is not where they do not."""
+    reason = refusal(**{"held": 0.7, "net": 100.0, "clear": 6.0, "matters": 2.0, **numbers}, where=where)
+    assert said in reason if said else not reason
 
 
 def test_blocks_are_consecutive_and_whole():

@@ -201,12 +201,16 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
 
     rules = {
         "bic": ("fall of BIC in the fitted tests", by.LEAST_BIC),
+        "together": ("with the fall of -2 ln L in the held-out tests", by.LEAST_TOGETHER),
         "held": ("share of the held-out squared error that goes", by.LEAST_GAIN),
         "net": ("fall of -2 ln L in the held-out tests", by.LEAST_NET),
         "clear": ("standard deviations from none", by.LEAST_CLEAR),
         "matters": ("fall of an error, over what matters", 1.0),
     }
-    tried = {case: list(result["tried"].values()) for case, result in nulls.items() if "tried" in result}
+    tried = {
+        case: [one | {"together": one["bic"] + one["net"]} for one in result["tried"].values()]
+        for case, result in nulls.items() if "tried" in result
+    }  # fmt: skip
     every = [one for some in tried.values() for one in some]
     if not every:
         return ""

@@ -12,12 +12,14 @@ from calibration.discovery.study import FLOOR, Look, Prior, Study
 from calibration.formatting import percent
 
 # thresholds, set by what they do on campaigns with nothing missing
-LEAST_BIC = 30.0
+LEAST_BIC = 6.0  # strong, by Kass and Raftery 1995
+LEAST_TOGETHER = 30.0  # with what -2 ln L of what was not fitted falls by; BIC alone where there is nothing of that kind
 LEAST_GAIN = 0.15  # share of the held-out error above the floor, squared
 LEAST_NET = 10.0  # by which -2 ln L of what was not fitted falls: very strong, by Kass and Raftery 1995
 LEAST_CLEAR = 3.0  # standard deviations
 LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
 LEAST_SEEN = 3.0  # ... and less than that many times the floor, is no business of engineers, nor sure of its name
+FITTED, HELD_OUT, BLOCKS = "fitted tests", "held-out tests", "blocks left out in turn"
 LOST, TIMES = 0.1, 3.0  # of a decay's motion, and of what is left alone: what a joint fit may leave of it
 
 
@@ -127,23 +129,28 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
     net, clear, matters = grounds.net, clearness(study, one, after, prior), grounds.matters()
     values = {label: study.value(label, after.look.place.x) for label in one.positive}
     wrong = [label for label, value in values.items() if value < 0 and clearly(study, label, one, after, prior)]
-    refused = ""
-    if wrong:
-        refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow"
-    elif bic < LEAST_BIC:
-        refused = f"it gains too little in the fitted tests (BIC {bic:+.0f})"
-    elif told and held < LEAST_GAIN:
-        where = "fitted tests"
-        if grounds.unseen:
-            where = "held-out tests" if grounds.study is study else "blocks left out in turn"
-        refused = f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
-    elif told and net < LEAST_NET:
-        refused = "elsewhere the model becomes worse by it"
-    elif clear < LEAST_CLEAR:
-        refused = f"its parameters are no more than {clear:.1f} standard deviations from none"
-    elif matters < 1:
-        refused = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
+    refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow" if wrong else ""
+    where = FITTED if not grounds.unseen else HELD_OUT if grounds.study is study else BLOCKS
+    refused = refused or refusal(bic, held if told else None, net, clear, matters, where)
     return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
+
+
+def refusal(bic: float, held: float | None, net: float, clear: float, matters: float, where: str) -> str:
+    """Why numbers are not enough to believe an effect, `held` and `net` of what is `where` (None: nothing to tell); else ""."""
+    apart = held is not None and where == HELD_OUT
+    if bic < (LEAST_BIC if apart else LEAST_TOGETHER):
+        return f"it gains too little in the fitted tests (BIC {bic:+.0f})"
+    if held is not None and held < LEAST_GAIN:
+        return f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
+    if held is not None and net < LEAST_NET:
+        return "elsewhere the model becomes worse by it"
+    if apart and bic + net < LEAST_TOGETHER:
+        return f"it gains too little in fitted and held-out tests together (BIC {bic:+.0f}, -2 ln L {-net:+.0f})"
+    if clear < LEAST_CLEAR:
+        return f"its parameters are no more than {clear:.1f} standard deviations from none"
+    if matters < 1:
+        return f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
+    return ""
 
 
 def given_up(study: Study, alone: Left, now: Left) -> list[str]:

@@ -17,7 +17,7 @@ from calibration.discovery.candidates import Candidate
 from calibration.discovery.conclusion import conclude
 from calibration.discovery.descent import Reached, fit
 from calibration.discovery.expected import expected
-from calibration.discovery.judgement import LEAST_BIC, Grounds, Left, State, Verdict, given_up, judge
+from calibration.discovery.judgement import LEAST_TOGETHER, Grounds, Left, State, Verdict, given_up, judge
 from calibration.discovery.kept import keep, resumed
 from calibration.discovery.linear import Predicted, likelihoods, predict
 from calibration.discovery.pose import WIDE, Posed, pose
@@ -153,7 +153,7 @@ class Search:
         reached = self.fit(self.study.look(state.look.place, self.base), (), ITERATIONS, 0, name, 0.12)
         first = self.state((), reached)
         better = float((state.likelihood - first.likelihood)[self.study.used].sum())
-        if better < LEAST_BIC:
+        if better < LEAST_TOGETHER:
             self.study, self.linear = study, False
             return state
         self.notes.append(
@@ -343,7 +343,7 @@ class Search:
         place = self.renewed(after.look.place, one.labels)
         other = self.refit(self.study.look(place, without.look.active), without.chosen, f"without {one.name}", fraction)
         gain = float((without.likelihood - other.likelihood)[self.study.used].sum())
-        return other if gain > LEAST_BIC else without
+        return other if gain > LEAST_TOGETHER else without
 
     def renewed(self, place: Place, names: Sequence[str]) -> Place:
         """A place where some directions are as they were where the search began."""
