@@ -197,22 +197,22 @@ class AmplitudeDependentDrag(Effect):
 
 
 class SeaStateDependentDrag(Effect):
-    """Drag share |u| u + (1 - share) |u_h| u_h, u_h the relative velocity above `corner` (Hz), a Butterworth filter of
-    second order: the law of HydroDyn's AxFDLoFSc and AxVnCOff (there of first order), here in every direction."""
+    """Drag share |u| u + (1 - share) |u_h| u_h, u_h the relative velocity above `corner` (Hz), a filter of first order: the law
+    of HydroDyn's AxFDLoFSc and AxVnCOff, here in every direction."""
 
     parameters = {"": {"share": (0.93, 0.75, 0.4), "corner": (0.07,) * 3}}
     states = 0
 
     def begin(self):
-        b, a = butter(2, self.p["corner"][0], "high", fs=1 / self.runs["step"])
-        self.b, self.a, self.memory, self.last = b, a, None, None
+        self.b, self.a = butter(1, self.p["corner"][0], "high", fs=1 / self.runs["step"])
+        self.memory = None
 
     def drag(self, now, u, size):
         if self.memory is None:
-            self.memory = np.zeros((2, *u.shape))
-        high = self.b[0] * u + self.memory[0]
+            self.memory = np.zeros_like(u)
+        high = self.b[0] * u + self.memory
         if now.first:                                                    # transposed direct form, once a step
-            self.memory = np.stack([self.b[1] * u - self.a[1] * high + self.memory[1], self.b[2] * u - self.a[2] * high])
+            self.memory = self.b[1] * u - self.a[1] * high
         share = self.p["share"][:, None]
         return share * size * u + (1 - share) * now.size_of(high) * high
 

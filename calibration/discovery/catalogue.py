@@ -40,6 +40,7 @@ from jaxhydro.loads import (
 from jaxhydro.loads.wave_reflection import COEFFICIENT, DELAY, LATER, LATEST, SEEN
 from jaxhydro.model import Model
 
+CUTOFFS = (0.03, 0.015, 0.06)  # Hz: below which motion is slow, tried in turn
 PERIODS = (8.0, 16.0, 32.0, 64.0)  # s: of hidden oscillators, tried in turn
 RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
 SHARE = 0.1  # of computed radiation or drift that is noticeable
@@ -318,6 +319,8 @@ def _of_strips(known: _Listed, model: Model, waves: bool) -> None:
             "sea_state_dependent_drag",
             None,
             [known.linear("sea_state_dependent_drag.low_share", 0.1, 1.0)],
+            shapes=(known.shape(cutoff := "sea_state_dependent_drag.cutoff", 0.03, 0.005, 0.08),),
+            grid=tuple({cutoff: frequency} for frequency in CUTOFFS),
             telling="a decay in surge in still water against one in waves",
             source="OpenFAST HydroDyn, pull request 2895",
         )
