@@ -84,6 +84,7 @@ class _Check:
             return found
         if self.driven in self.values:
             self.period = dominant_period(self.time, self.values[self.driven])
+        found += self.held_out()
         return [*found, *self.oscillation(), *self.sea(), *(f for name in self.values for f in self.signal(name))]
 
     def found(self, severity: Severity, channel: str, time: float | None, message: str, expected: str = "") -> Finding:
@@ -91,6 +92,13 @@ class _Check:
 
     def at(self, time: float) -> str:
         return f"{time:.6g} {self.unit}"
+
+    def held_out(self) -> Iterator[Finding]:
+        """Is it really held out?"""
+        for other in self.others if self.test.use == "holdout" else ():
+            alike = other.test.use == "fit" and other.test.file == self.test.file and len(other.time) > 0
+            if alike and min(self.time[-1], other.time[-1]) > max(self.time[0], other.time[0]):
+                yield self.found("warning", "", None, f"held out, and the fitted test {other.test.id} has samples of it")
 
     def window(self) -> Iterator[Finding]:
         """Is there enough of a record?"""

@@ -45,7 +45,7 @@ DIAGNOSING = "\n\n".join((
     "jaxhydro simulate my-campaign --calibration diagnosis/diagnosis.json --out seas",
     "[bold]What makes a good campaign[/bold]",
     "Tests of one kind from small and large amplitudes: effects differ by how they grow. At least one test of every kind "
-    "marked `use: holdout`: without one an effect is believed on the fitted tests alone. Decays say nothing of what acts in "
+    "marked `use: holdout`: without one blocks of the fitted tests are left out in turn. Decays say nothing of what acts in "
     "waves only.",
     "[bold]What it writes[/bold]",
     "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "

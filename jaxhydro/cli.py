@@ -173,8 +173,8 @@ def diagnose(
 
     The declared model is fitted to the tests marked `fit`. What is left is compared with the noise; effects that could be
     missing are scored, the best of them fitted with all coefficients free again, and kept only where the tests marked
-    `holdout` gain by it. Nothing in the campaign has to name an effect. The answer may be that nothing is missing, or that
-    something is and none of the known effects explains it.
+    `holdout` gain by it, or where there are none blocks of the fitted ones, left out in turn. Nothing in the campaign has to
+    name an effect. The answer may be that nothing is missing, or that something is and none of the known effects explains it.
     """
     out = options.results_folder(out, "diagnosis.json")
     _start()

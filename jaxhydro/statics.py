@@ -90,10 +90,12 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
 
 
 class Modes(NamedTuple):
-    """Undamped natural modes of small motion: period (s), longest first; shape (mode, dof), the largest entry 1."""
+    """Undamped natural modes of small motion: period (s), longest first; shape (mode, dof), the largest entry 1; and motions in
+    which the platform falls away from rest."""
 
     period: np.ndarray
     shape: np.ndarray
+    unstable: tuple[str, ...] = ()
 
     def of(self, dof: str) -> float:
         """Longest period (s) of a mode in whose shape `dof` is the largest entry; nan if there is none."""
@@ -133,7 +135,10 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     square, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
     order = np.argsort(square.real)
     square, vectors = square.real[order], vectors.real[:, order]
-    kept = square > 1e-10 * np.abs(square).max()
-    shape = vectors[:, kept].T * np.array([1, 1, 1, 50, 50, 50])
+    largest = np.abs(square).max()
+    kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
+    vectors = vectors * np.array([[1], [1], [1], [50], [50], [50]])
+    shape = vectors[:, kept].T
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)
-    return Modes(2 * np.pi / np.sqrt(square[kept]), shape)
+    unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
+    return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable))

@@ -418,6 +418,15 @@ def test_warnings(tmp_path, csv, words):
     assert np.all(np.diff(record.time) > 0) and all(np.all(np.isfinite(values)) for values in record.values.values())
 
 
+def test_what_is_held_out_is_not_fitted_too(tmp_path):
+    """The same samples for both: said; another part of the file is another record."""
+    one = {"kind": "decay", "degree_of_freedom": "surge", "file": "d.csv"}
+    for window, said in ([0, 20], True), ([20, 40], False):
+        tests = [{"id": "a", "window": [0, 20], **one}, {"id": "b", "use": "holdout", "window": window, **one}]
+        found = messages(write(tmp_path, manifest(tests=tests)))
+        assert any("held out, and the fitted test a has samples of it" in message for message in found) == said
+
+
 @pytest.mark.parametrize("csv", [
     table(),
     table(x=np.round(SURGE, 1)),                                                  # coarse, and not clipped

@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
 from jaxhydro import runge_kutta
+from jaxhydro.command import print_rest
 from jaxhydro.integrate import Grid, integrate
 from jaxhydro.response import Response
 from jaxhydro.rotations import angular_velocity, attitude_rates, rotation
@@ -414,6 +415,17 @@ def test_natural_modes() -> None:
     assert math.isnan(modes.of("yaw"))
     assert list(modes.period) == sorted(modes.period, reverse=True)
     assert_allclose(np.abs(modes.shape).max(axis=1), 1.0)
+    assert modes.unstable == ()
+
+
+def test_a_platform_that_falls_over() -> None:
+    """A waterplane that does not hold it up: in which motion, and no run of it is begun."""
+    body = {"mass": 8e6, "centre_of_mass": [0, 0, -3], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}
+    declared = platform(rigid_body=body, hydrostatics={"C33": 4e6, "C44": -4e8, "C55": 9e8}, added_mass={"A33": 2e6})
+    model = jh.build(declared)
+    assert jh.natural_modes(model).unstable == ("roll",)
+    with pytest.raises(jh.EquilibriumError, match="unstable in roll"):
+        print_rest(model, "made")
 
 
 # errors

@@ -84,6 +84,7 @@ def test_a_wrong_table_is_told_by_its_row(tmp_path, table, words) -> None:
         ({"scatter": "none.csv"}, "none.csv', and there is none"),
         ({"seed": 3}, "found 'seed'. Did you mean 'seeds'?"),
         ({"seeds": [1, 1]}, "seeds: expected each one once, found 1 twice"),
+        ({"headings": [0, 360]}, "headings: expected each one once, found 0 deg twice"),
         ({"seeds": 0}, "seeds: expected a number of seeds"),
         ({"headings": 30}, "headings: expected a list"),
         ({"cutoff": 0.02}, "cutoff: expected a number above low, 0.03 Hz, found 0.02"),

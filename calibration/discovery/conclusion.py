@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calibration.campaign import Campaign
+from calibration.conclusion import strays
 from calibration.discovery.anatomy import anatomy, signature
 from calibration.discovery.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.latent import latent_of
@@ -47,10 +48,11 @@ def conclude(
     much = any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
     verdict = "found" if effects else ("unexplained" if much else "nothing_missing")
     wanted = [one.telling for one in after.chosen if one.telling]
+    lost = strays([test for test in baseline.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
-        anatomy(search, before), left, share, words, wanted[0] if wanted else "", tuple(notes), seconds,
+        anatomy(search, before), left, share, words, wanted[0] if wanted else "", (*lost, *notes), seconds,
         latent,
     )  # fmt: skip
 

@@ -127,6 +127,9 @@ class Sweep(Consistent):
             for i, state in enumerate(self.scatter):
                 if state.gamma is not None:
                     yield Problem(f"scatter[{i}].gamma", "a JONSWAP spectrum with it", self.spectrum)
+        towards = [(one.heading if isinstance(one, Heading) else float(one)) % 360 for one in self.headings]
+        if twice := [one for i, one in enumerate(towards) if one in towards[:i]]:
+            yield Problem("headings", "each one once", f"{twice[0]:g} deg twice")
         for key in ("motions", "seeds"):
             values = getattr(self, key)
             if isinstance(values, tuple) and len(set(values)) < len(values):
