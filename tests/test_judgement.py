@@ -105,9 +105,9 @@ def test_what_matters_of_a_decay(channel, least):
 
 @pytest.mark.parametrize(("numbers", "where", "said"), [
     ({"bic": 9, "net": 60}, HELD_OUT, ""),
-    ({"bic": 9, "net": 60}, FITTED, "too little in the fitted tests (BIC +9)"),
-    ({"bic": 9, "net": 60}, BLOCKS, "too little in the fitted tests (BIC +9)"),
-    ({"bic": 5, "net": 60}, HELD_OUT, "too little in the fitted tests (BIC +5)"),
+    ({"bic": 9, "net": 60}, FITTED, "too little in the fitted tests (BIC +9, 30 are asked)"),
+    ({"bic": 9, "net": 60}, BLOCKS, "too little in the fitted tests (BIC +9, 30 are asked)"),
+    ({"bic": 5, "net": 60}, HELD_OUT, "too little in the fitted tests (BIC +5, 6 are asked)"),
     ({"bic": 9, "net": 15}, HELD_OUT, "too little in fitted and held-out tests together (BIC +9, -2 ln L -15)"),
     ({"bic": 43, "net": -197}, HELD_OUT, "becomes worse"),
     ({"bic": 43, "net": -197, "held": 0.0}, HELD_OUT, "squared error of the held-out tests changes by -0 % only"),

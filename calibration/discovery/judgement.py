@@ -138,8 +138,8 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
 def refusal(bic: float, held: float | None, net: float, clear: float, matters: float, where: str) -> str:
     """Why numbers are not enough to believe an effect, `held` and `net` of what is `where` (None: nothing to tell); else ""."""
     apart = held is not None and where == HELD_OUT
-    if bic < (LEAST_BIC if apart else LEAST_TOGETHER):
-        return f"it gains too little in the fitted tests (BIC {bic:+.0f})"
+    if bic < (least := LEAST_BIC if apart else LEAST_TOGETHER):
+        return f"it gains too little in the fitted tests (BIC {bic:+.0f}, {least:.0f} are asked)"
     if held is not None and held < LEAST_GAIN:
         return f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
     if held is not None and net < LEAST_NET:

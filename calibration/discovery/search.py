@@ -37,6 +37,10 @@ ITERATIONS = 8  # of a refit
 LAST = 50  # ... of what is let in
 LOOKS = 8  # slopes taken anew in that
 ALIKE = 0.1  # of the best one's gain: what comes as near cannot be told from it
+ABSOLUTE = (
+    "the campaign states no `zero`: motions are taken as measured from the reference position, and a sensor whose zero is "
+    "elsewhere for ballast or a force"
+)
 SENSORS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
 
 
@@ -205,6 +209,7 @@ class Search:
     def score(self, state: State, number: int, fraction: float) -> list[Scored]:
         """Every candidate that is not in the model, at its null, the fitted directions projected out; the best first."""
         self.say(f"round {number}: scoring", fraction)
+        self.scores = [one for one in self.scores if one.round != number]  # of a fit that was bettered on the way
         there = {label for one in state.chosen for label in one.labels}
         others = [one for one in self.posed.candidates if not set(one.labels) <= there]
         best: dict[str, Scored] = {}
@@ -442,7 +447,8 @@ def diagnose(
 
     def concluded() -> Diagnosis:
         lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
-        every, seconds = (*notes, *search.notes, *lost), clock.monotonic() - begun
+        unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
+        every, seconds = (*notes, *search.notes, *lost, *unknown), clock.monotonic() - begun
         return conclude(campaign, search, states[0], states[-1], every, seconds, tuple(wrong.values()))
 
     try:

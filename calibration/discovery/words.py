@@ -16,6 +16,7 @@ NAMES = {
     "current": "a current",
     "hidden_oscillator": "a hidden oscillator",
     "sensor_reference": "a wrong sensor reference",
+    "sea_state_dependent_drag": "drag apart for slow motion",
     "sensor_lag": "a sensor lag",
     "sensor_sign": "a wrong sign",
     "wave_gauge_position": "a wrong wave gauge position",
