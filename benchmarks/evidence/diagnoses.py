@@ -201,7 +201,7 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
 
     rules = {
         "bic": ("fall of BIC in the fitted tests", by.LEAST_BIC),
-        "together": ("with the fall of -2 ln L in the held-out tests", by.LEAST_TOGETHER),
+        "together": ("that fall and the one of -2 ln L in the held-out tests together", by.LEAST_TOGETHER),
         "held": ("share of the held-out squared error that goes", by.LEAST_GAIN),
         "net": ("fall of -2 ln L in the held-out tests", by.LEAST_NET),
         "clear": ("standard deviations from none", by.LEAST_CLEAR),
