@@ -77,7 +77,8 @@ def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
         return with_effects(model, added)
     except (KeyError, ValueError) as error:
         said = str(error.args[0] if error.args else error)
-        raise wrong(Path(path), "parameters of effects that this version knows", said, "augmented.parameters") from None
+        expected = "parameters that the platform declares, or of effects that this version knows"
+        raise wrong(Path(path), expected, said, "augmented.parameters") from None
 
 
 def _with_drag(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
