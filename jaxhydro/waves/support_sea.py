@@ -156,7 +156,7 @@ class SupportSea(AbstractSea):
                 jnp.concatenate([even, odd * slope / tanh**2]), jnp.concatenate([odd, even * slope]), k, place, level, fade
             )
             along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
-        along, up = (self._met(one.reshape(len(sets), -1, one.shape[1])) for one in (along, up))
+        along, up = (self._met(one.reshape(len(sets), len(one) // len(sets), one.shape[1])) for one in (along, up))
         excited: list[Array] = []
         if cylinders is not None and families:
             of, radii = jnp.array(cylinders.of), cylinders.radius.size
