@@ -84,8 +84,8 @@ class _Check:
             return found
         if self.driven in self.values:
             self.period = dominant_period(self.time, self.values[self.driven])
-        found += self.held_out()
-        return [*found, *self.oscillation(), *self.sea(), *(f for name in self.values for f in self.signal(name))]
+        signals = (f for name in self.values for f in self.signal(name))
+        return [*found, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
 
     def found(self, severity: Severity, channel: str, time: float | None, message: str, expected: str = "") -> Finding:
         return Finding(severity, self.test.file, self.test.id, channel, time, message, expected)

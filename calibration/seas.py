@@ -30,6 +30,7 @@ from jaxhydro.waves.second_order import KINDS, Kind
 
 MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
 INSIDE = 0.95  # of its variance, that should lie in the band
+NO_ZERO = "the campaign states no `zero`: motions are taken as measured from the reference position"
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ def compare(
     step = sea_step(model, options)
     from_rest = campaign.manifest.zero is not None
     still = np.asarray(equilibrium(model)) if from_rest else np.zeros(6)
-    notes = [] if from_rest else ["the campaign states no `zero`: motions are taken as measured from the reference position"]
+    notes = [] if from_rest else [NO_ZERO]
     tests = []
     for run, one in made:
         waves = one.sea.components

@@ -19,7 +19,8 @@ from calibration.discovery.catalogue import catalogue, scales_of
 from calibration.discovery.judgement import Left, given_up
 from calibration.discovery.linear import Predicted
 from calibration.discovery.pose import pose
-from calibration.discovery.search import Scored, Search, diagnose
+from calibration.discovery.search import Search, diagnose
+from calibration.discovery.trials import Scored
 from calibration.seas import Options
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cached_property
 from itertools import count
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -25,9 +24,10 @@ from calibration.discovery.records import options_for
 from calibration.discovery.result import Diagnosis, Rejected, Score
 from calibration.discovery.signs import in_words, reversed_channels, turned
 from calibration.discovery.study import Look, Place, Prior
+from calibration.discovery.trials import Found, Scored, Tried, in_order
 from calibration.fit import Progress, prepare, run
 from calibration.residuals import first_guess
-from calibration.seas import Options
+from calibration.seas import NO_ZERO, Options
 from jaxhydro.model import Model
 
 ROUNDS = 6  # effects at most
@@ -36,58 +36,7 @@ FAR = 0.3  # of what a refitted effect gains: what gains less at first order is 
 ITERATIONS = 8  # of a refit
 LAST = 50  # ... of what is let in
 LOOKS = 8  # slopes taken anew in that
-ALIKE = 0.1  # of the best one's gain: what comes as near cannot be told from it
-ABSOLUTE = (
-    "the campaign states no `zero`: motions are taken as measured from the reference position, and a sensor whose zero is "
-    "elsewhere for ballast or a force"
-)
-SENSORS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
-
-
-class Scored(NamedTuple):
-    """A candidate at its null, at the best of its shapes: what it would gain at first order, and the look that says so."""
-
-    candidate: Candidate
-    predicted: Predicted
-    look: Look
-
-
-class Tried(NamedTuple):
-    """A refit: where it ended, what it says, and what that is worth beside others; `score` is the first-order gain."""
-
-    candidate: Candidate
-    score: float
-    state: State
-    verdict: Verdict
-    worth: float
-
-    def like(self, best: "Tried") -> bool:
-        """Whether it cannot be told from another."""
-        return best.worth - self.worth < ALIKE * abs(best.worth)
-
-
-def in_order(good: Sequence[Tried]) -> list[Tried]:
-    """As they are to be believed: among those that cannot be told from the best one first what sensors make of a motion, then
-    what has the fewest parameters; the others by what they are worth."""
-    best = max(good, key=lambda one: one.worth, default=None)
-
-    def rank(one: Tried) -> tuple[float, ...]:
-        if best is None or not one.like(best):
-            return 1, -one.worth
-        return 0, one.candidate.effect not in SENSORS, len(one.candidate.labels), -one.worth
-
-    return sorted(good, key=rank)
-
-
-class Found(NamedTuple):
-    """An effect's evidence: its first-order gain, the states before it was let in and after, the verdict, and what the records
-    cannot tell from it."""
-
-    score: float
-    before: State
-    after: State
-    verdict: Verdict
-    alike: tuple[str, ...]
+ABSOLUTE = f"{NO_ZERO}, and a sensor whose zero is elsewhere for ballast or a force"
 
 
 class Search:

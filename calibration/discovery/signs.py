@@ -19,6 +19,7 @@ from calibration.discovery.result import Effect, Evidence
 from calibration.discovery.words import several
 from calibration.manifest import WAVE
 from calibration.result import Estimate
+from calibration.runs import KINDS
 from calibration.seas_results import bands_of
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
     """Effects by channel (motion, or `wave`): what has to be turned round. Of all motions alike it is the wave."""
     if not search.study.seas:
         return {}
-    met = list(_met(campaign, search))
+    met = _met(campaign, search)
     fitted = [one for one in met if one.use == "fit"]
     told = list(dict.fromkeys(one.channel for one in fitted))
     wrong = [name for name in told if all(one.correlation < AGAINST for one in fitted if one.channel == name)]
@@ -78,19 +79,18 @@ def in_words(channels: Sequence[str]) -> str:
 def _met(campaign: Campaign, search: Search) -> list[Met]:
     found = []
     for test in tests_of(campaign, search, search.start):
-        record = campaign.record(test.id)
-        if record.wave is None:
+        wave = campaign.record(test.id).wave
+        if test.kind not in KINDS or wave is None:
             continue
-        step = float(test.time[1] - test.time[0])
-        low, high = bands_of(WAVE, 1 / peak_of(record.wave, step))["wave_frequency"]
+        step, taper = float(test.time[1] - test.time[0]), np.hanning(len(test.time))
+        low, high = bands_of(WAVE, 1 / peak_of(wave, step))["wave_frequency"]
         frequency = np.fft.rfftfreq(len(test.time), step)
         inside = (frequency >= low) & (frequency < high)
         for series in test.series:
-            taper = np.hanning(len(test.time))
             there, model = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (series.measured, series.simulated))
             own, its = (float((np.abs(x) ** 2).sum()) for x in (there, model))
             noise = series.noise**2 * float((taper**2).sum()) * inside.sum()
-            if series.channel in search.posed.motions and min(own, its) > SEEN**2 * noise:
+            if series.scored and min(own, its) > SEEN**2 * noise:
                 both = float((np.conj(model) * there).sum().real)
                 error, other = own + its - 2 * both, own + its + 2 * both
                 found.append(Met(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from jaxhydro.problems import InputError, Problem, shown
-from jaxhydro.sweep.schema import Grid, Heading, SeaState, Sweep
+from jaxhydro.sweep.schema import Grid, SeaState, Sweep
 
 
 class Case(NamedTuple):
@@ -101,11 +101,10 @@ def plan_of(sweep: Sweep, source: str) -> tuple[Plan, int]:
     none is above 0.
     """
     states: tuple[SeaState, ...] = sweep.scatter.states() if isinstance(sweep.scatter, Grid) else sweep.scatter  # type: ignore[assignment]
-    towards = [one if isinstance(one, Heading) else Heading(heading=float(one)) for one in sweep.headings]
     every = [
         Case(state.hs, state.tp, state.gamma, one.heading, state.probability * one.probability)
         for state in states
-        for one in towards
+        for one in sweep.towards
     ]
     total = sum(case.probability for case in every)
     if not total > 0:

@@ -127,14 +127,19 @@ class Sweep(Consistent):
             for i, state in enumerate(self.scatter):
                 if state.gamma is not None:
                     yield Problem(f"scatter[{i}].gamma", "a JONSWAP spectrum with it", self.spectrum)
-        towards = [(one.heading if isinstance(one, Heading) else float(one)) % 360 for one in self.headings]
-        if twice := [one for i, one in enumerate(towards) if one in towards[:i]]:
+        turns = [one.heading % 360 for one in self.towards]
+        if twice := [one for i, one in enumerate(turns) if one in turns[:i]]:
             yield Problem("headings", "each one once", f"{twice[0]:g} deg twice")
         for key in ("motions", "seeds"):
             values = getattr(self, key)
             if isinstance(values, tuple) and len(set(values)) < len(values):
                 twice = next(value for i, value in enumerate(values) if value in values[:i])
                 yield Problem(key, "each one once", f"{twice!r} twice")
+
+    @property
+    def towards(self) -> tuple[Heading, ...]:
+        """The headings, each with its share."""
+        return tuple(one if isinstance(one, Heading) else Heading(heading=float(one)) for one in self.headings)
 
     @property
     def start(self) -> float:

@@ -1,6 +1,5 @@
 """A sea made ready for a time integration: evaluated fast at displaced positions."""
 
-
 from typing import NamedTuple
 
 import equinox as eqx
@@ -54,11 +53,11 @@ class SupportSea(AbstractSea):
     """An irregular sea of one heading for one hull and one clock: see `supports` for how it works.
 
     `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: `forces` (0 or 6) of the
-    first order on a platform; horizontal velocity and
-    acceleration, pressure over density, what cylinders of each radius are excited by horizontally (and `Flow.tuned` for
-    each); vertical velocity and acceleration, and what excites the cylinders vertically; elevation. Only times of the clock
-    may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with the
-    group velocity. Of what comes `back`, nothing does before its delay, and `excitation` and `drift` know nothing.
+    first order on a platform; horizontal velocity and acceleration, pressure over density, what cylinders of each radius are
+    excited by horizontally (and `Flow.tuned` for each); vertical velocity and acceleration, and what excites the cylinders
+    vertically; elevation. Only times of the clock may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the
+    box with the sea, and the envelope with the group velocity. Of what comes `back`, nothing does before its delay, and
+    `excitation` and `drift` know nothing.
     """
 
     environment: Environment
@@ -86,8 +85,8 @@ class SupportSea(AbstractSea):
         total = self.series.shape[0]
         fine = None
         if self.fine is not None:
-            steps_, weight = between(index + jnp.arange(self.fine.shape[0]) + 0.5, total)
-            fine = jnp.einsum("hp,hpfr->hfr", weight, self.series[steps_, 0])
+            near, weight = between(index + jnp.arange(self.fine.shape[0]) + 0.5, total)
+            fine = jnp.einsum("hp,hpfr->hfr", weight, self.series[near, 0])
         kept = self.series[jnp.minimum(index + jnp.arange(steps + 1), total - 1)]
         start = self.start + index * self.step
         found = eqx.tree_at(lambda sea: (sea.series, sea.start), self, (kept, start))
@@ -106,8 +105,8 @@ class SupportSea(AbstractSea):
         index = jnp.clip(whole.astype(int), 0, self.series.shape[0] - 1)
         found = self.series[index, node]
         if self.fine is not None:
-            between = jnp.abs(share - 0.5) < 0.25
-            found = jnp.where(between, self.fine[jnp.minimum(index, self.fine.shape[0] - 1)], found)
+            halfway = jnp.abs(share - 0.5) < 0.25
+            found = jnp.where(halfway, self.fine[jnp.minimum(index, self.fine.shape[0] - 1)], found)
         return found
 
     def _sets(self, time: Float[Array, ""]) -> Float[Array, "s f 2*r"]:
