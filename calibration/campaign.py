@@ -8,6 +8,7 @@ from pathlib import Path
 
 from calibration.checks import Finding, check_records
 from calibration.manifest import Manifest, platform_source, read_manifest
+from calibration.plausible import check_plausible
 from calibration.records import Record, read_series, records_of
 from jaxhydro.model import Model
 from jaxhydro.platform import build
@@ -74,5 +75,9 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     faulty = {finding.test for finding in errors}
     findings = tuple(replace(f, severity="warning", message=f"left out: {f.message}") if f in errors else f
                      for f in findings)
-    records = records_of(manifest, series)
-    return Campaign(manifest, folder, platform, tuple(r for r in records if r.id not in faulty), findings)
+    records = tuple(record for record in records_of(manifest, series) if record.id not in faulty)
+    campaign = Campaign(manifest, folder, platform, records, findings)
+    doubtful = check_plausible(records, campaign.model, manifest.zero is not None)
+    if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
+        raise InputError(source, grave)
+    return replace(campaign, findings=(*findings, *doubtful))

@@ -27,6 +27,7 @@ from calibration.seas import Diverged, Options, compare
 from calibration.seas_outputs import write_comparison
 from jaxhydro.console import complain, progress, say, table
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.statics import stable_modes
 
 SECONDS = 60.0  # CPU time of a search
 ENDED = {
@@ -193,6 +194,7 @@ def simulate_campaign(
         used = applied(calibration, model, loaded.platform.name)
         model = used.model
         _told(used, calibration, loaded)
+    stable_modes(model)
     try:
         found = compare(loaded, model, options, lambda line: say(line, stderr=True))
     except Diverged as error:

@@ -1,8 +1,8 @@
 """Delimited text to a table: comma, semicolon, tab or white space, found by trying; decimal points or commas.
 
-A line that starts with # or % is a comment, and the header may stand in the last of them. A row of units under the
-header is left out. Empty cells and `nan` become NaN; what else is not a number is told by its row, counted as an editor
-does.
+A line that starts with # or % is a comment, and the header may stand in the last of them. What a logger wrote above
+the header, and a row of units under it, are left out. Empty cells and `nan` become NaN; what else is not a number is
+told by its row, counted as an editor does.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from jaxhydro.problems import InputError, Problem
 _COMMENTS = ("#", "%")
 _WHITESPACE = None
 _SHOWN = 5               # of one kind of mistake
+_TOP = 200               # lines, that a header is looked for in
 
 
 def wrong(path: Path, where: str, expected: str, found: str, hint: str = "") -> InputError:
@@ -67,6 +68,7 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
     if not kept:
         raise wrong(path, "file", "a table with a header", "an empty file" if not rows else "comments only")
     delimiter = _delimiter([line for _, line in kept[:200]])
+    kept = kept[_above([line for _, line in kept], delimiter) :]
     header, fields = None, _split(kept[0][1], delimiter)
     if not any(map(_is_number, fields)):
         header, kept = fields, kept[1:]
@@ -139,6 +141,23 @@ def _delimiter(lines: list[str]) -> str | None:
         whole = [row for row in cells if len(row) == width]
         return sum(_is_number(cell, delimiter) for row in whole for cell in row) / sum(map(len, cells)), len(whole)
     return max((";", "\t", ",", _WHITESPACE), key=score)
+
+
+def _above(lines: list[str], delimiter: str | None) -> int:
+    """How many lines stand above the header: the last line without numbers that is as wide as the table, or, if that has units,
+    the one before it. 0 where there is none such."""
+    cells = [_split(line, delimiter) for line in lines[:_TOP]]
+    width = Counter(_widths(lines, delimiter)).most_common(1)[0][0]
+
+    def of_numbers(row: list[str]) -> bool:
+        numbers = [_is_number(cell) for cell in row]
+        return any(numbers) and (len(row) == width or (len(row) > 1 and all(numbers)))
+
+    first = next((i for i, row in enumerate(cells) if of_numbers(row)), 0)
+    names = [len(row) == width and not any(map(_is_number, row)) and sum(map(bool, row)) for row in cells[:first]]
+    if first > 1 and _is_units(cells[first - 1]) and names[-2] >= names[-1]:
+        return first - 2
+    return first - 1 if first > 1 and names[-1] else 0
 
 
 def _split(line: str, delimiter: str | None) -> list[str]:

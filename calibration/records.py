@@ -103,6 +103,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     channels = manifest.channels_of(test)
     problems: list[Problem] = []
     columns: dict[str, np.ndarray] = {}
+    taken: dict[int, str] = {}
     names = [str(name) for name in table.columns]
     for channel, stated in list(channels.items()):
         column, where = stated.column, f"{test.file}, channel {channel} of test {test.id}"
@@ -115,8 +116,11 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
                 continue
             problems.append(Problem(where, f"a column {column!r}", ", ".join(names[:12]), suggest(column, names)))
         else:
-            cells = table.iloc[:, names.index(column) if isinstance(column, str) else column]
-            if cells.dtype.kind == "f":
+            number = names.index(column) if isinstance(column, str) else column
+            cells, other = table.iloc[:, number], taken.setdefault(number, channel)
+            if other != channel:
+                problems.append(Problem(where, "a column of its own", f"that of channel {other}, {column!r}"))
+            elif cells.dtype.kind == "f":
                 columns[channel] = cells.to_numpy()
             else:
                 problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}"))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.manifest import WAVE
+from calibration.manifest import WAVE, platform_source
 from calibration.records import Record, factors, there, whole_series
 from jaxhydro.problems import InputError, Problem
 
@@ -52,7 +52,8 @@ def runs(campaign: Campaign) -> tuple[Run, ...]:
     if not groups:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
         expected = "at least one irregular or regular test that is not ignored"
-        raise InputError(source, [Problem("tests", expected, found)])
+        hint = f"A decay: jaxhydro simulate {platform_source(campaign.manifest, campaign.folder)} --release MOTION=VALUE."
+        raise InputError(source, [Problem("tests", expected, found, hint)])
     problems: list[Problem] = []
     found_runs = []
     for group in groups.values():

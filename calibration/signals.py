@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from scipy import signal
 
 SPIKE = 8.0               # robust standard deviations
+SEGMENT = 1000.0          # s of a record in waves, or an eighth of it
 
 
 def resolution(values: np.ndarray) -> float:
@@ -60,12 +62,18 @@ def dominant_period(time: np.ndarray, values: np.ndarray) -> float | None:
     if len(values) < 8 or np.ptp(values) == 0 or np.any(np.diff(time) <= 0):
         return None
     even = np.linspace(time[0], time[-1], len(time))
-    signal = np.interp(even, time, values)
-    power = np.abs(np.fft.rfft(signal - line(even, signal), 4 * len(signal)))**2
+    resampled = np.interp(even, time, values)
+    power = np.abs(np.fft.rfft(resampled - line(even, resampled), 4 * len(resampled)))**2
     peak = int(np.argmax(power))
     if peak == 0 or power[int(0.6 * peak): int(1.6 * peak) + 5].sum() < 0.4 * power.sum():
         return None
-    return float(4 * len(signal) * (even[1] - even[0]) / peak)
+    return float(4 * len(resampled) * (even[1] - even[0]) / peak)
+
+
+def peak_frequency(wave: np.ndarray, step: float) -> float:
+    """Frequency (Hz) of a wave record's highest peak, by Welch's estimate; `step` in s."""
+    frequency, density = signal.welch(wave, 1 / step, nperseg=min(len(wave), max(round(SEGMENT / step), 8)))
+    return float(frequency[max(int(density.argmax()), 1)])
 
 
 def constant_stretches(values: np.ndarray, grain: float) -> tuple[np.ndarray, np.ndarray]:

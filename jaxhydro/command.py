@@ -20,7 +20,7 @@ from jaxhydro.platform_schema import Platform, load_platform
 from jaxhydro.plot import for_people, unit_of
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.simulate import default_step, free_decay
-from jaxhydro.statics import EquilibriumError, equilibrium, natural_modes
+from jaxhydro.statics import equilibrium, natural_modes, stable_modes
 from jaxhydro.strips import COLUMN_SLOPE
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
 
@@ -132,10 +132,7 @@ def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, s
 
 def print_rest(model: Model, platform: str) -> None:
     """Print where the platform rests, and its natural periods. Raises EquilibriumError where it does not stay there."""
-    rest, modes = np.asarray(equilibrium(model)), natural_modes(model)
-    if modes.unstable:
-        motions = " and ".join(modes.unstable)
-        raise EquilibriumError(f"the platform is unstable in {motions}: check mass, centre of mass, volume and mooring")
+    rest, modes = np.asarray(equilibrium(model)), stable_modes(model)
     rest = rest.round(8) + 0.0  # no -0.0000
     rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q)):.4f}") for dof, q in zip(DOFS, rest)]
     table(f"{platform}: at rest", ("Motion", "Position"), rows)

@@ -142,3 +142,12 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)
     unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
     return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable))
+
+
+def stable_modes(model: Model) -> Modes:
+    """Natural modes about the equilibrium. Raises EquilibriumError where the platform does not stay there."""
+    modes = natural_modes(model)
+    if modes.unstable:
+        motions = " and ".join(modes.unstable)
+        raise EquilibriumError(f"the platform is unstable in {motions}: check mass, centre of mass, volume and mooring")
+    return modes

@@ -1,6 +1,7 @@
 """Diagnosis in waves: a buoy whose heave is known in closed form, excited as a table says and strips do not."""
 
 import json
+import re
 from pathlib import Path
 from types import MappingProxyType
 
@@ -173,6 +174,7 @@ def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     campaign = campaign_of(tmp_path, pressure, TONES)
     found = diagnose(campaign.model, campaign)
     assert found.verdict == "unexplained" and not found.effects
+    assert re.fullmatch(r"[^(]+ \(of what was tried, [^(]+ came nearest\)", found.next_test)
     (force,) = found.latent
     acted = sum(size * np.cos(rate * force.shown.time) for rate, size in TONES.items())
     assert force.motion == "heave" and not force.law.terms

@@ -170,6 +170,15 @@ def test_a_killed_sweep_goes_on_and_is_bitwise_the_same(file, whole, tmp_path) -
     assert_bitwise(out, whole)
 
 
+def test_a_platform_that_falls_over_is_not_swept(tmp_path) -> None:
+    """Nor is a folder begun."""
+    file = written(tmp_path)
+    (tmp_path / "buoy.yaml").write_text(PLATFORM.replace("[0.0, 0.0, -12.0]", "[0.0, 0.0, 12.0]"))
+    with pytest.raises(jh.EquilibriumError, match="unstable in roll and pitch"):
+        run_sweep(file, tmp_path / "o", workers=1)
+    assert not (tmp_path / "o").exists()
+
+
 def test_a_worker_that_is_killed_loses_nothing(file, whole, tmp_path) -> None:
     """Its run is done by the process in its place."""
     opened(tmp_path / "o", prepared(load_sweep(file), "sweep"))

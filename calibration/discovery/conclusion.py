@@ -15,6 +15,7 @@ from calibration.discovery.candidates import Candidate, with_candidates, with_ef
 from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence
+from calibration.discovery.words import called
 from calibration.records import Record
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from calibration.seas_results import bands_of
@@ -47,14 +48,24 @@ def conclude(
     told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
     much = any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
     verdict = "found" if effects else ("unexplained" if much else "nothing_missing")
-    wanted = [one.telling for one in after.chosen if one.telling]
     lost = strays([test for test in baseline.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
-        anatomy(search, before), left, share, words, wanted[0] if wanted else "", (*lost, *notes), seconds,
+        anatomy(search, before), left, share, words, next_test(search, after, verdict), (*lost, *notes), seconds,
         latent,
     )  # fmt: skip
+
+
+def next_test(search: Search, after: State, verdict: str) -> str:
+    """The test that would tell what was found from others; where that is nothing, what comes nearest from the rest."""
+    if verdict == "unexplained":
+        tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
+        best = max(tried, key=lambda one: one.verdict.bic if one.verdict else 0.0, default=None)
+        name = None if best is None else (best.effect, best.degree_of_freedom)
+        mine = [one for one in search.posed.candidates if (one.effect, one.dof) == name]
+        return "; ".join(f"{one.telling} (of what was tried, {called(one.name)} came nearest)" for one in mine if one.telling)
+    return next((one.telling for one in after.chosen if one.telling), "")
 
 
 def augmented_model(search: Search, state: State) -> Model:

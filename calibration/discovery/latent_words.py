@@ -14,12 +14,12 @@ from calibration.discovery.result import Followed, LatentForce, Law, Shown
 from calibration.discovery.words import pretty, quantity, several
 from calibration.formatting import number, percent
 from calibration.seas_results import bands_of
+from calibration.signals import SEGMENT, peak_frequency
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
     from calibration.discovery.latent import Force
 
-SEGMENT = 1000.0  # s of a record in waves, or an eighth of it
 CYCLES = 4.0  # of a decay's own period in a segment
 FEWEST = 4  # segments, and cycles
 CLEAR = 3.0  # times what noise leaves: forces that are asked how they grow
@@ -44,18 +44,12 @@ def pace_of(one: Force) -> float:
     return float(np.std(one.velocity[one.inside]) / max(np.std(one.position[one.inside]), 1e-300)) / (2 * np.pi)
 
 
-def peak_of(wave: np.ndarray, step: float) -> float:
-    """Frequency (Hz) of a wave's highest peak."""
-    frequency, density = signal.welch(wave, 1 / step, nperseg=min(len(wave), max(round(SEGMENT / step), 8)))
-    return float(frequency[max(int(density.argmax()), 1)])
-
-
 def bands_in(one: Force) -> dict[str, tuple[float, float]]:
     """Bands (Hz) that a force is told apart in: in waves those of the package, in a decay about the motion's own frequency."""
     if one.test.wave is None:
         own = pace_of(one)
         return {"slower": (0.0, 0.5 * own), "own": (0.5 * own, 1.5 * own), "higher": (1.5 * own, np.inf)}
-    low, high = bands_of("wave", 1 / peak_of(one.test.wave, one.test.step))["wave_frequency"]
+    low, high = bands_of("wave", 1 / peak_frequency(one.test.wave, one.test.step))["wave_frequency"]
     return {"low_frequency": (0.0, low), "wave_frequency": (low, high), "higher": (high, np.inf)}
 
 
@@ -108,7 +102,7 @@ def coherences(forces: Sequence[Force]) -> dict[str, Followed]:
     """How the force goes with the motion, and in waves with the elevation and, slowly, with its squared envelope."""
     found = {name: followed(forces, values, lambda _: (0.0, np.inf)) for name, values in MOTION.items()}
     if (wavy := [one for one in forces if one.test.wave is not None]) and len(wavy) == len(forces):
-        half = {one.test.id: 0.5 * peak_of(one.test.wave, one.test.step) for one in wavy if one.test.wave is not None}
+        half = {one.test.id: 0.5 * peak_frequency(one.test.wave, one.test.step) for one in wavy if one.test.wave is not None}
         found["elevation"] = followed(wavy, lambda one: np.asarray(one.test.wave), lambda one: (half[one.test.id], np.inf))
         envelope: Values = lambda one: squared_envelope(np.asarray(one.test.wave), one.test.step)  # noqa: E731
         found["squared_envelope"] = followed(wavy, envelope, lambda one: (0.0, half[one.test.id]))

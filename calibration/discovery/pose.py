@@ -137,7 +137,8 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
         direction(one.label, {one.label: 1.0}, mean, deviation)
     for name, (parts, deviation) in nuisances.items():
         direction(name, parts, 0.0, deviation)
-    candidates = [one for one in candidates if not set(one.amplitudes) <= set(nuisances) or one.effect == "mass_properties"]
+    kept = {"mass_properties"} if campaign.manifest.zero is not None else {"mass_properties", "static_offset"}
+    candidates = [one for one in candidates if not set(one.amplitudes) <= set(nuisances) or one.effect in kept]
     for candidate in candidates:
         for label in candidate.amplitudes:
             if label not in names:

@@ -60,11 +60,10 @@ class Search:
         return list(dict.fromkeys([*self.base, *self.study.index([label for one in chosen for label in one.labels])]))
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
-        """Mass properties are nearly known unless they are what is looked for."""
+        """What is nearly known, mass properties or draught, is not where it is what is looked for."""
         width = self.posed.prior.width.copy()
         for one in chosen:
-            if one.effect == "mass_properties":
-                width[self.study.index(one.amplitudes)] = WIDE
+            width[self.study.index(one.amplitudes)] = WIDE
         return Prior(self.posed.prior.mean, width)
 
     @cached_property

@@ -14,13 +14,13 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.conclusion import tests_of
-from calibration.discovery.latent_words import peak_of
 from calibration.discovery.result import Effect, Evidence
 from calibration.discovery.words import several
 from calibration.manifest import WAVE
 from calibration.result import Estimate
 from calibration.runs import KINDS
 from calibration.seas_results import bands_of
+from calibration.signals import peak_frequency
 
 if TYPE_CHECKING:
     from calibration.discovery.search import Search
@@ -83,7 +83,7 @@ def _met(campaign: Campaign, search: Search) -> list[Met]:
         if test.kind not in KINDS or wave is None:
             continue
         step, taper = float(test.time[1] - test.time[0]), np.hanning(len(test.time))
-        low, high = bands_of(WAVE, 1 / peak_of(wave, step))["wave_frequency"]
+        low, high = bands_of(WAVE, 1 / peak_frequency(wave, step))["wave_frequency"]
         frequency = np.fft.rfftfreq(len(test.time), step)
         inside = (frequency >= low) & (frequency < high)
         for series in test.series:

@@ -11,7 +11,7 @@ NAMES = {
     "coulomb_friction": "Coulomb friction",
     "mass_properties": "wrong mass properties",
     "mooring_nonlinearity": "a nonlinear mooring",
-    "static_offset": "a static offset",
+    "static_offset": "a static offset (a force, or a sensor's zero)",
     "umbilical": "an umbilical",
     "current": "a current",
     "hidden_oscillator": "a hidden oscillator",

@@ -16,6 +16,7 @@ from jaxhydro.command import calibration_file
 from jaxhydro.files import check_folder
 from jaxhydro.platform_schema import BESIDE, builtin_platforms, load_platform
 from jaxhydro.problems import read_yaml
+from jaxhydro.statics import stable_modes
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.load import load_sweep
@@ -62,6 +63,7 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     plan, left_out = plan_of(sweep, source)
     calibration = None if sweep.calibration is None else calibration_file(sweep.calibration)
     setup = setup_of(plan, sweep.platform, calibration)
+    stable_modes(setup.model)
     # as chosen for this platform: workers need not choose again
     setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
