@@ -8,6 +8,8 @@ from calibration.tables import USE, Rows
 
 KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
 ORDER = list(USE)
+NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
+VARIED = "Let vary, as it is only nearly known: mass, trim, moorings"
 
 
 def tests(saved: SavedDiagnosis) -> Rows:
@@ -59,25 +61,29 @@ def bands(saved: SavedDiagnosis) -> Rows:
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
-def coefficients(saved: SavedDiagnosis) -> Rows:
-    """Every fitted parameter as declared, before and after; the effects' own are among those after."""
+def coefficients(saved: SavedDiagnosis, nearly_known: bool = False) -> Rows:
+    """Every fitted parameter as declared, before and after, the effects' own among those after; or those that are let vary
+    though nobody declared them."""
     before, after = saved.baseline.parameters, saved.augmented.parameters
     rows = []
     for label in dict.fromkeys([*before, *after]):
         was, now = before.get(label), after.get(label)
         one = now or was
-        if one is None:
+        if one is None or label.startswith(NEARLY_KNOWN) != nearly_known:
             continue
         start = was.start if was is not None else None
         known = was is not None and now is not None and was.identifiable and now.identifiable and was.value != 0
         moved = f"{100 * (now.value / was.value - 1):+.2g} %" if known and was and now else ""
-        rows.append((label, number(start, 3), _value(was), _value(now), pretty(one.unit), moved))
-    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
+        rows.append((label, number(start, 3), _value(was), _value(now), pretty(one.unit), *([] if nearly_known else [moved])))
+    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", *([] if nearly_known else ["Moved by"])), rows
 
 
 def rejected(saved: SavedDiagnosis) -> Rows:
-    """What was tried and is not in the model."""
-    rows = [(called(one.effect, one.degree_of_freedom), one.reason) for one in saved.missing.rejected]
+    """What was tried and is not in the model, together where it is for the same reason."""
+    reasons: dict[str, list[str]] = {}
+    for one in saved.missing.rejected:
+        reasons.setdefault(one.reason, []).append(called(one.effect, one.degree_of_freedom))
+    rows = [("; ".join(names), reason) for reason, names in reasons.items()]
     return ("Effect", "Why not"), rows
 
 
