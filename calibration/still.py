@@ -6,9 +6,7 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import lineax as lx
 import numpy as np
-import optimistix as optx
 from jaxtyping import Array, Float
 
 from calibration.manifest import Period
@@ -17,7 +15,7 @@ from calibration.records import Record
 from calibration.residuals import characteristic_length, group_products
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.statics import equilibrium, linearised
+from jaxhydro.statics import equilibrium, held_at, linearised
 
 WIDTHS = np.array([1.0, 1.0, 1.0, 50.0, 50.0, 50.0])  # as `natural_modes` compares rotations with translations
 ALIKE = 0.7  # of a shape's largest entry: surge and sway of one period may come mixed
@@ -53,25 +51,6 @@ class OffsetProblem(eqx.Module):
     def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:
         """One group."""
         return group_products(lambda x: (self.residuals(x),), x, self.tail)
-
-
-def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"]:
-    """Where the platform rests (m, rad) with one motion held: the other five forces balance. Motions that nothing restrains
-    stay at zero; differentiable in all."""
-    free = jnp.array([i for i in range(6) if i != dof])
-    scale = model.body.mass * model.environment.gravity * jnp.array([1.0, 1.0, 1.0, 10.0, 10.0, 10.0])
-
-    def balance(others, args):
-        model, value = args
-        return (model.force_at_rest(jnp.zeros(6).at[free].set(others).at[dof].set(value)) / scale)[free]
-
-    linear = lx.AutoLinearSolver(well_posed=False)
-    solver: optx.Newton = optx.Newton(rtol=1e-12, atol=1e-12, linear_solver=linear)
-    found: optx.Solution = optx.root_find(
-        balance, solver, jnp.zeros(5), (model, value), max_steps=64, throw=False,
-        adjoint=optx.ImplicitAdjoint(linear_solver=linear),
-    )  # fmt: skip
-    return jnp.zeros(6).at[free].set(found.value).at[dof].set(value)
 
 
 def pose_offsets(model: Model, records: Sequence[Record], space: ParameterSpace, from_rest: bool) -> OffsetProblem:

@@ -27,12 +27,26 @@ def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
     return model.force_at_rest(position) / (weight * jnp.array([1.0, 1.0, 1.0, 10.0, 10.0, 10.0]))
 
 
+class _Held(NamedTuple):
+    """A motion that something holds: 1 there (6,), and where (m, rad)."""
+
+    mask: Float[Array, "6"]
+    value: Float[Array, ""]
+
+
+def _unbalanced(position: Float[Array, "6"], model: Model, held: _Held | None) -> Float[Array, "6"]:
+    """What a position of rest makes zero: `_balance`, and of a motion that is held how far it is from there."""
+    found = _balance(position, model)
+    return found if held is None else jnp.where(held.mask > 0, position - held.value, found)
+
+
 @eqx.filter_custom_jvp
-def _root(model: Model) -> Float[Array, "6"]:
-    # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start
+def _root(model: Model, held: _Held | None) -> Float[Array, "6"]:
+    # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start, and programs
+    # with the library's implicit derivative cannot be kept compiled
 
     def balance(q: Float[Array, "6"]) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-        found = _balance(q, model)
+        found = _unbalanced(q, model, held)
         return found, found
 
     def going(at: tuple[Array, Array, Array]) -> Array:
@@ -52,15 +66,14 @@ def _root(model: Model) -> Float[Array, "6"]:
 @_root.def_jvp
 def _root_jvp(primals, tangents):
     """By the implicit function theorem."""
-    (model,), (moved,) = primals, tangents
-    root = _root(model)
-    _, balance = eqx.filter_jvp(lambda m: _balance(root, m), (model,), (moved,))
-    return root, -jnp.linalg.pinv(jax.jacfwd(_balance)(root, model), rtol=FREE) @ balance
+    root = _root(*primals)
+    _, balance = eqx.filter_jvp(lambda *at: _unbalanced(root, *at), primals, tangents)
+    return root, -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=FREE) @ balance
 
 
 @eqx.filter_jit
 def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-    position = _root(model)
+    position = _root(model, None)
     return position, _balance(position, model)
 
 
@@ -87,6 +100,12 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
         where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], at[2:5], ("m", "rad", "rad")))
         raise EquilibriumError(f"the platform only balances at {where}: check mass, centre of mass, volume and mooring")
     return position
+
+
+def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"]:
+    """Where the platform rests (m, rad) with one motion held: the other five forces balance. Motions that nothing restrains
+    stay at zero; differentiable in all."""
+    return _root(model, _Held(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))
 
 
 class Modes(NamedTuple):

@@ -17,12 +17,13 @@ from calibration.joint import calibrate_jointly
 from calibration.parameters import parameter_space
 from calibration.residuals import softened
 from calibration.seas import seas_of, with_diffraction
-from calibration.still import held_at, natural_period, pose_offsets, pose_periods
+from calibration.still import natural_period, pose_offsets, pose_periods
 from calibration.stretches import stretches, walk
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.stiffness import Stiffness
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError
+from jaxhydro.statics import held_at
 
 LABELS = ("column.Ca_t", "column.Cd_t", "pontoon.Ca_z", "pontoon.Cd_z", "linear_damping.B11")
 FACTORS = (0.8, 1.5, 1.2, 0.6, 1.6)
