@@ -14,9 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from calibration.manifest import DOFS, WAVE, Manifest
+from calibration.manifest import DOFS, IN_WAVES, WAVE, Manifest
 from calibration.records import Series, factors, read_series, there
-from calibration.signals import constant_stretches, dominant_period, flanks, line, resolution, spikes
+from calibration.signals import constant_stretches, dominant_period, flanks, line, resolution, spikes, wave_height
 from jaxhydro.problems import Problem
 
 REPAIRABLE = 0.02                 # of a window's rows
@@ -73,7 +73,7 @@ class _Check:
         self.step = float(np.mean(steps[steps <= GAP * np.median(steps)])) if np.any(steps > 0) else 0.0
         # the rows after the transient
         self.compared = self.time >= self.time[0] + self.test.transient if len(self.time) else good[:0]
-        self.driven = WAVE if self.test.kind in ("regular", "irregular") else self.test.degree_of_freedom or ""
+        self.driven = WAVE if self.test.kind in IN_WAVES else self.test.degree_of_freedom or ""
         self.period: float | None = None
 
     def all(self) -> list[Finding]:
@@ -195,7 +195,7 @@ class _Check:
         name = "significant_wave_height" if irregular else "wave_height"
         stated = test.significant_wave_height if irregular else test.wave_height
         metres = abs(factors(self.manifest, self.series.channels)[WAVE]) / self.manifest.scale
-        height = (4.0 if irregular else 8**0.5) * float(np.std(self.values[WAVE][self.compared])) * metres
+        height = wave_height(self.values[WAVE][self.compared], irregular) * metres
         if stated is not None and not 0.7 < height / stated < 1.4:
             yield self.found("warning", WAVE, None, f"{name} is stated as {stated:g} m, and recorded as {height:.3g} m")
 

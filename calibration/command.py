@@ -14,9 +14,9 @@ from calibration.folder import MOTION
 from calibration.joint import calibrate_jointly
 from calibration.joint_fit import Loss
 from calibration.laws import LAWS, of_law
+from calibration.manifest import IN_WAVES
 from calibration.outputs import NotFinite, write_calibration
 from calibration.result import Calibration
-from calibration.runs import KINDS
 from calibration.sea_fit import calibrate_in_waves
 from calibration.sea_laws import SeaLaws, choose_law
 from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws
@@ -55,9 +55,9 @@ def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campai
 
     def kind(campaign: Campaign) -> str:
         kinds = {test.kind for test in campaign.manifest.tests if test.use == "fit"}
-        return tests or ("waves" if "decay" not in kinds and kinds & set(KINDS) else "decays")
+        return tests or ("waves" if "decay" not in kinds and kinds & set(IN_WAVES) else "decays")
 
-    used = {"decays": ("decay",), "waves": KINDS, "all": ("decay", *KINDS, "static")}
+    used = {"decays": ("decay",), "waves": IN_WAVES, "all": ("decay", *IN_WAVES, "static")}
     loaded = load(path, out, counted=lambda campaign: tables.counted(campaign, used[kind(campaign)]))
     return loaded, kind(loaded)
 

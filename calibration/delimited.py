@@ -24,7 +24,7 @@ from jaxhydro.problems import InputError, Problem
 _COMMENTS = ("#", "%")
 _WHITESPACE = None
 _SHOWN = 5               # of one kind of mistake
-_TOP = 200               # lines, that a header is looked for in
+_TOP = 200               # lines, in which delimiter and header are looked for
 
 
 def wrong(path: Path, where: str, expected: str, found: str, hint: str = "") -> InputError:
@@ -67,7 +67,7 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
     kept = [(number, line) for number, line in rows if not line.lstrip().startswith(_COMMENTS)]
     if not kept:
         raise wrong(path, "file", "a table with a header", "an empty file" if not rows else "comments only")
-    delimiter = _delimiter([line for _, line in kept[:200]])
+    delimiter = _delimiter([line for _, line in kept[:_TOP]])
     kept = kept[_above([line for _, line in kept], delimiter) :]
     header, fields = None, _split(kept[0][1], delimiter)
     if not any(map(_is_number, fields)):

@@ -11,6 +11,7 @@ from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, series_of, strays
 from calibration.descent import descend
 from calibration.directions import uncertainty_of
+from calibration.manifest import IN_WAVES
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record
 from calibration.residuals import Data, Problem, Unknowns, condensed, dominant_period, first_guess, gather
@@ -208,7 +209,7 @@ def prepare(
     records = [record for record in campaign.used("fit") if record.kind == "decay"]
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
-        waves = any(r.kind in ("regular", "irregular") and r.use == "fit" for r in campaign.records)
+        waves = any(r.kind in IN_WAVES and r.use == "fit" for r in campaign.records)
         hint = "Tests in waves are fitted by `jaxhydro calibrate --tests waves`, `calibrate_in_waves`." if waves else ""
         raise InputError(source, [Wrong("tests", "at least one decay test marked `use: fit`", found, hint)])
     for record in records:

@@ -11,8 +11,8 @@ from calibration.conclusion import estimates, remarks, strays
 from calibration.fit import Interrupted, Progress, held_out, labels_of, prepare, run, space_of
 from calibration.formatting import number, percent, with_deviation
 from calibration.joint_fit import JointFit, Kind, Loss, Sources
+from calibration.manifest import IN_WAVES
 from calibration.result import Calibration
-from calibration.runs import KINDS
 from calibration.sea_fit import tests_in_waves
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, moving_channels, sea_step, seas_of, with_diffraction
@@ -61,7 +61,7 @@ def calibrate_jointly(
         raise InputError("--objective", [Problem("", "--tests waves beside blocks", "--tests all")])
     fitted = campaign.used("fit")
     decays = [record for record in fitted if record.kind == "decay" and "decays" in kinds]
-    waves = [record for record in fitted if record.kind in KINDS and "waves" in kinds]
+    waves = [record for record in fitted if record.kind in IN_WAVES and "waves" in kinds]
     held = [r for r in fitted if r.kind == "static" and r.degree_of_freedom is not None and "offsets" in kinds]
     stated_periods = campaign.manifest.calibrate.natural_periods if "periods" in kinds else {}
     if not (decays or waves or held or stated_periods):
@@ -133,7 +133,7 @@ def _conclude(
     if made:
         in_waves, notes = tests_in_waves(campaign, declared, model, options, made)
         tests += in_waves
-    said = remarks(campaign, parameters, known, ("decay", *KINDS, "static"))
+    said = remarks(campaign, parameters, known, ("decay", *IN_WAVES, "static"))
     said = (*_of_kinds(campaign, model, joint), *said)
     return Calibration(
         campaign.manifest.name, model, parameters, tuple(tests), joint.converged and not lost, joint.iterations, seconds,

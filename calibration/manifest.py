@@ -48,6 +48,7 @@ def _column(value: Any) -> Any:
 
 
 Kind = Literal["decay", "regular", "irregular", "static", "forced"]
+IN_WAVES: tuple[Kind, ...] = ("regular", "irregular")
 Motion = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Name = Annotated[Text, BeforeValidator(lambda value: str(value) if type(value) is int else value)]
 Column = Annotated[str | int, PlainValidator(_column)]
@@ -241,7 +242,7 @@ def _test_problems(manifest: Manifest) -> Iterator[Problem]:
         elif test.degree_of_freedom is not None and test.degree_of_freedom not in present:
             yield Problem(f"{at}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present),
                           repr(test.degree_of_freedom))
-        if test.kind in ("regular", "irregular") and test.use != "ignore" and manifest.wave_channel is None:
+        if test.kind in IN_WAVES and test.use != "ignore" and manifest.wave_channel is None:
             yield Problem(f"{at}.kind", "a wave_channel in the manifest, since waves drive this test", "none")
         for problem in _ordered(test.window) if test.window is not None else ():
             yield Problem(f"{at}.window", problem.expected, problem.found)

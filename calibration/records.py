@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from calibration.manifest import SI, WAVE, Channel, Manifest, Test, quantity
+from calibration.manifest import IN_WAVES, SI, WAVE, Channel, Manifest, Test, quantity
 from calibration.readers import read_table
 from calibration.signals import noise_level
 from jaxhydro.problems import InputError, Problem, suggest
@@ -111,7 +111,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
             problems.append(Problem(where, f"one column {column!r}", f"{names.count(column)} of that name",
                                     "A number, 0 for the first column, tells them apart."))
         elif column not in names if isinstance(column, str) else column >= len(names):
-            if channel == WAVE and test.kind not in ("regular", "irregular") and WAVE not in test.channels:
+            if channel == WAVE and test.kind not in IN_WAVES and WAVE not in test.channels:
                 del channels[channel]            # no waves, and none measured
                 continue
             problems.append(Problem(where, f"a column {column!r}", ", ".join(names[:12]), suggest(column, names)))

@@ -9,7 +9,7 @@ from string import Template
 
 from calibration.folder import DIAGNOSIS, FIGURES, GENERATOR, REPORT, RESULT, UNCERTAINTY
 from calibration.formatting import number, percent, with_deviation
-from calibration.runs import KINDS
+from calibration.manifest import IN_WAVES
 from calibration.saved import Drawn, Error, Parameter, Saved, read_as, read_saved
 from calibration.tables import USE
 from jaxhydro.files import write_whole
@@ -74,7 +74,7 @@ def framed(title: str, by: str, body: Iterable[str], version: str) -> str:
 
 def _state(saved: Saved) -> str:
     fitted, objective = saved.baseline, saved.baseline.objective
-    wavy = any(test.use == "fit" and test.kind in KINDS for test in saved.tests.values())
+    wavy = any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values())
     meaning = "J, the sum of RMSE over standard deviation" if wavy else "Objective J, the sum of RMSE over standard deviation"
     lines = [f"{meaning}: <b>{number(objective.fit, 3)}</b> over the fitted tests"]
     if objective.holdout is not None:

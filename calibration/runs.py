@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.manifest import WAVE, platform_source
+from calibration.manifest import IN_WAVES, WAVE, platform_source
 from calibration.records import Record, factors, there, whole_series
 from jaxhydro.problems import InputError, Problem
 
-KINDS = ("regular", "irregular")
 LEAST = 20  # samples
 UNEVEN = 0.2  # of a step, by which a time may miss the even clock that fits all best: rounding in a file does half of it
 LONGEST_GAP = 3  # samples of the wave that may be missing in a row, and are drawn straight
@@ -45,7 +44,7 @@ def runs(campaign: Campaign) -> tuple[Run, ...]:
     source = str(campaign.folder / "campaign.yaml")
     groups: dict[tuple[str, float, str], list[Record]] = {}
     for record in campaign.records:
-        if record.kind in KINDS and record.use != "ignore":
+        if record.kind in IN_WAVES and record.use != "ignore":
             test = record.test
             key = (test.file, test.sea.heading, repr(campaign.manifest.channels_of(test)))
             groups.setdefault(key, []).append(record)

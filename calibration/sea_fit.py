@@ -12,8 +12,8 @@ from calibration.conclusion import estimates, remarks
 from calibration.directions import family
 from calibration.fit import Interrupted, Progress, labels_of, space_of
 from calibration.laws import PLAIN, Drag, Over, of_law, reference_of, with_drag, with_laws
+from calibration.manifest import IN_WAVES
 from calibration.result import BandError, Calibration, TestFit
-from calibration.runs import KINDS
 from calibration.sea_descent import SeaFit
 from calibration.sea_remarks import sea_remarks
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
@@ -62,7 +62,7 @@ def calibrate_in_waves(
     begun = clock.monotonic()
     source = str(campaign.folder / "campaign.yaml")
     options = Options() if options is None else options
-    records = [record for record in campaign.used("fit") if record.kind in KINDS]
+    records = [record for record in campaign.used("fit") if record.kind in IN_WAVES]
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
         raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", found)])
@@ -118,7 +118,7 @@ def _conclude(
     uncertainty, known = fit.identifiability()
     parameters = estimates(problem.space, problem.model, np.asarray(fit.x), uncertainty)
     tests, warnings = tests_in_waves(campaign, declared, model, options, made)
-    notes = (*remarks(campaign, parameters, known, KINDS), *sea_remarks(model, tests), *fit.notes, *warnings)
+    notes = (*remarks(campaign, parameters, known, IN_WAVES), *sea_remarks(model, tests), *fit.notes, *warnings)
     return Calibration(
         campaign.manifest.name, model, parameters, tests, fit.converged, fit.iterations, seconds, tuple(fit.history),
         notes, campaign.platform.name, known,

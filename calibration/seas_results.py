@@ -10,7 +10,7 @@ import jaxhydro
 from calibration.applied import Applied
 from calibration.campaign import Campaign
 from calibration.formatting import number, percent
-from calibration.runs import KINDS
+from calibration.manifest import IN_WAVES
 from calibration.seas import Compared, Options, SeaTest, moving_channels
 from calibration.tables import Rows
 from jaxhydro.analysis import BANDS, LONG, SEGMENT, PowerSpectrum, band_integral, bands, power_spectrum
@@ -143,7 +143,7 @@ def _about(test: SeaTest) -> dict[str, Any]:
 
 def counted(campaign: Campaign) -> str:
     """How many tests there are to be simulated, and how many others."""
-    waves = sum(test.kind in KINDS and test.use != "ignore" for test in campaign.manifest.tests)
+    waves = sum(test.kind in IN_WAVES and test.use != "ignore" for test in campaign.manifest.tests)
     others = len(campaign.manifest.tests) - waves
     return f"{waves} {'test' if waves == 1 else 'tests'} in waves" + (f"; left aside: {others}" if others else "")
 

@@ -70,6 +70,11 @@ def dominant_period(time: np.ndarray, values: np.ndarray) -> float | None:
     return float(4 * len(resampled) * (even[1] - even[0]) / peak)
 
 
+def wave_height(elevation: np.ndarray, irregular: bool) -> float:
+    """Significant wave height of a sea (four standard deviations), or the height of a regular wave (8^0.5 of them)."""
+    return (4.0 if irregular else 8**0.5) * float(np.std(elevation))
+
+
 def peak_frequency(wave: np.ndarray, step: float) -> float:
     """Frequency (Hz) of a wave record's highest peak, by Welch's estimate; `step` in s."""
     frequency, density = signal.welch(wave, 1 / step, nperseg=min(len(wave), max(round(SEGMENT / step), 8)))

@@ -3,7 +3,7 @@
 import equinox as eqx
 from jaxtyping import Array, Float
 
-STANDARD_GRAVITY = 9.80665
+STANDARD_GRAVITY = 9.80665  # m/s2
 
 DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 """Degrees of freedom of the reference point, always in this order on the last axis."""

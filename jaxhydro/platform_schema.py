@@ -11,6 +11,7 @@ from jaxtyping import Float
 from pydantic import AfterValidator, Discriminator, Field, RootModel, Tag, model_validator
 
 from jaxhydro.body_schema import Coefficients, Inertia, Member, Part, RigidBody
+from jaxhydro.environment import STANDARD_GRAVITY
 from jaxhydro.problems import (
     Consistent,
     Faults,
@@ -30,7 +31,6 @@ from jaxhydro.problems import (
 
 __all__ = ["Coefficients", "Inertia", "Member", "Part", "Platform", "RigidBody", "builtin_platforms", "load_platform"]
 
-STANDARD_GRAVITY = 9.80665  # m/s2
 Matrix6 = Float[np.ndarray, "6 6"]
 Exponent = Annotated[float, Field(strict=True, ge=-3, le=3)]
 

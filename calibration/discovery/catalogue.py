@@ -11,7 +11,7 @@ from calibration.discovery.candidates import COMPUTED, Candidate, sought
 from calibration.discovery.returning import AT_ONCE, delays
 from calibration.parameters import Free
 from calibration.transforms import LogInterval, Scaled
-from jaxhydro.environment import DOFS
+from jaxhydro.environment import DOFS, STANDARD_GRAVITY
 from jaxhydro.loads import (
     ChangingDrag,
     CoulombFriction,
@@ -257,7 +257,7 @@ def _of_the_whole(known: _Listed, scales: Mapping[str, Scales]) -> None:
             [
                 known.linear("umbilical.stiffness", stiff),
                 known.linear("umbilical.pull", s.force),
-                known.linear("umbilical.mass", 0.1 * s.force / 9.81),
+                known.linear("umbilical.mass", 0.1 * s.force / STANDARD_GRAVITY),
             ],
             shapes=(known.linear("umbilical.height", 5.0, 12.0),),
             positive=("umbilical.stiffness",),

@@ -11,8 +11,8 @@ from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Diagnosis
 from calibration.discovery.saved import SavedDiagnosis, read_diagnosis
 from calibration.folder import DIAGNOSIS
+from calibration.manifest import IN_WAVES
 from calibration.outputs import NotFinite
-from calibration.runs import KINDS
 from calibration.seas import Diverged
 from jaxhydro.console import complain, progress, say, table
 
@@ -26,7 +26,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     """
     from calibration.discovery.search import diagnose
 
-    campaign = load(path, out, lambda c: calibrations.counted(c, ("decay", *KINDS)))
+    campaign = load(path, out, lambda c: calibrations.counted(c, ("decay", *IN_WAVES)))
     try:
         with progress() as show:
             result = diagnose(campaign.model, campaign, progress=show, kept=out / FILE)

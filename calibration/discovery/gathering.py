@@ -10,10 +10,11 @@ from calibration.discovery.bands import Bands, Rows, bands_of, powers
 from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.study import FLOOR, Series, Study
 from calibration.fit import STEPS_PER_PERIOD
+from calibration.manifest import IN_WAVES
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem, dominant_period, gather
-from calibration.runs import KINDS, Run
+from calibration.runs import Run
 from calibration.seas import Options, sea_step, seas_of
 from calibration.stretches import window
 from jaxhydro.environment import DOFS
@@ -44,7 +45,7 @@ def study_of(
     """The records of a campaign, against a model with every candidate at its null. Raises InputError."""
     records = [r for r in campaign.records if r.use in ("fit", "holdout")]
     decaying = tuple(r for r in records if r.kind == "decay")
-    waving = {r.id for r in records if r.kind in KINDS}
+    waving = {r.id for r in records if r.kind in IN_WAVES}
     highest = highest_of(model)
     from_rest = campaign.manifest.zero is not None
     series: list[Series] = []

@@ -13,8 +13,8 @@ from calibration.discovery.gathering import study_of
 from calibration.discovery.study import Prior, Study
 from calibration.fit import labels_of, space_of
 from calibration.identifiability import VAGUE
+from calibration.manifest import IN_WAVES
 from calibration.parameters import Free, ParameterSpace
-from calibration.runs import KINDS
 from calibration.seas import Options, moving_channels, with_diffraction
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.environment import DOFS
@@ -53,7 +53,7 @@ def motions_of(campaign: Campaign) -> dict[str, float]:
             continue
         if record.kind == "decay":
             names = [str(record.degree_of_freedom)]
-        elif record.kind in KINDS:
+        elif record.kind in IN_WAVES:
             names = moving_channels({k: record.values[k] for k in DOFS if k in record.values})
         else:
             continue
@@ -66,10 +66,10 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     """Everything that a diagnosis needs. Raises InputError where a campaign has nothing to diagnose."""
     source = str(campaign.folder / "campaign.yaml")
     motions = motions_of(campaign)
-    used = [r for r in campaign.records if r.use == "fit" and (r.kind == "decay" or r.kind in KINDS)]
+    used = [r for r in campaign.records if r.use == "fit" and (r.kind == "decay" or r.kind in IN_WAVES)]
     if not used:
         raise InputError(source, [Problem("tests", "at least one decay or test in waves marked `use: fit`", "none")])
-    waves = [r for r in campaign.records if r.kind in KINDS and r.use != "ignore"]
+    waves = [r for r in campaign.records if r.kind in IN_WAVES and r.use != "ignore"]
     declared = with_diffraction(campaign.model, options)
     labels = labels_of(campaign, declared, sorted(motions), None)
     mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.runs import KINDS, Run
+from calibration.manifest import IN_WAVES
+from calibration.runs import Run
 from calibration.seas import Options, sea_of
 from jaxhydro.environment import Environment
 
@@ -21,7 +22,7 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
     where there are no first-order waves: a numerical tank's record may hold differences only, or be linear.
     """
     options = Options() if options is None else options
-    if not any(r.kind in KINDS and r.use != "ignore" for r in campaign.records):
+    if not any(r.kind in IN_WAVES and r.use != "ignore" for r in campaign.records):
         return options, ()
     from calibration.runs import runs
 

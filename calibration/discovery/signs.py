@@ -16,9 +16,8 @@ from calibration.campaign import Campaign
 from calibration.discovery.conclusion import tests_of
 from calibration.discovery.result import Effect, Evidence
 from calibration.discovery.words import several
-from calibration.manifest import WAVE
+from calibration.manifest import IN_WAVES, WAVE
 from calibration.result import Estimate
-from calibration.runs import KINDS
 from calibration.seas_results import bands_of
 from calibration.signals import peak_frequency
 
@@ -80,7 +79,7 @@ def _met(campaign: Campaign, search: Search) -> list[Met]:
     found = []
     for test in tests_of(campaign, search, search.start):
         wave = campaign.record(test.id).wave
-        if test.kind not in KINDS or wave is None:
+        if test.kind not in IN_WAVES or wave is None:
             continue
         step, taper = float(test.time[1] - test.time[0]), np.hanning(len(test.time))
         low, high = bands_of(WAVE, 1 / peak_frequency(wave, step))["wave_frequency"]
