@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from calibration.formatting import number
 from calibration.seas import SeaTest
 from calibration.seas_results import bands_of, channels, density, moving
+from calibration.signals import wave_height
 from jaxhydro.files import safe_name
 from jaxhydro.plot import MEASURED, SIMULATED, header, stack, unit_of
 
@@ -30,7 +31,7 @@ def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
 def _title(test: SeaTest) -> str:
     if test.fit.kind == "regular":
         return f"{test.fit.id}: regular, {number(test.peak_period, 3)} s"
-    height = f"Hs {number(4 * float(np.std(test.wave)), 2)} m"
+    height = f"Hs {number(wave_height(test.wave, irregular=True), 2)} m"
     return f"{test.fit.id}: {height}, Tp {number(test.peak_period, 3)} s"
 
 

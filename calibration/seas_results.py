@@ -12,6 +12,7 @@ from calibration.campaign import Campaign
 from calibration.formatting import number, percent
 from calibration.manifest import IN_WAVES
 from calibration.seas import Compared, Options, SeaTest, moving_channels
+from calibration.signals import wave_height
 from calibration.tables import Rows
 from jaxhydro.analysis import BANDS, LONG, SEGMENT, PowerSpectrum, band_integral, bands, power_spectrum
 from jaxhydro.environment import DOFS
@@ -128,7 +129,7 @@ def _about(test: SeaTest) -> dict[str, Any]:
         },
     }  # fmt: skip
     if test.fit.kind == "irregular":
-        heights = {key: 4 * float(np.std(x)) for key, x in zip(("measured", "simulated"), both["wave"])}
+        heights = {key: wave_height(x, irregular=True) for key, x in zip(("measured", "simulated"), both["wave"])}
         about["significant_wave_height"] = heights
         about["bands"] = {
             name: {k: {"band": [b.low, b.high], "measured": b.measured, "simulated": b.simulated} for k, b in row.items()}
@@ -152,8 +153,8 @@ def seas_table(found: Compared) -> Rows:
     """Height of every sea as stated, measured and simulated at the gauge."""
     rows = []
     for test in found.tests:
-        scale = 4.0 if test.fit.kind == "irregular" else 8**0.5
-        heights = [number(scale * float(np.std(x)), 3) for x in (test.wave, test.simulated_wave)]
+        irregular = test.fit.kind == "irregular"
+        heights = [number(wave_height(x, irregular), 3) for x in (test.wave, test.simulated_wave)]
         stated = number(test.stated_height, 3)
         rows.append((test.fit.id, test.fit.kind, test.fit.use, stated, *heights, number(test.peak_period, 3)))
     return ("Test", "Waves", "Use", "Height stated (m)", "measured", "simulated", "Period (s)"), rows

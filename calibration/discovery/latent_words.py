@@ -14,7 +14,7 @@ from calibration.discovery.result import Followed, LatentForce, Law, Shown
 from calibration.discovery.words import pretty, quantity, several
 from calibration.formatting import number, percent
 from calibration.seas_results import bands_of
-from calibration.signals import SEGMENT, peak_frequency
+from calibration.signals import SEGMENT, peak_frequency, wave_height
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ def growth_of(forces: Sequence[Force]) -> dict[str, float]:
         cycles += [row for row in rows if row[1] > CLEAR * one.noise and row[0] > 0]
     if len(cycles) >= FEWEST and (power := _power(cycles, SIMILAR["decay"])) is not None:
         found["amplitude"] = power
-    seas = [(4 * float(np.std(one.test.wave)), in_bands(one)) for one in forces if one.test.kind == "irregular"
+    seas = [(wave_height(one.test.wave, irregular=True), in_bands(one)) for one in forces if one.test.kind == "irregular"
             and one.test.wave is not None]  # fmt: skip
     for band in seas[0][1] if seas else ():
         pairs = [(height, row[band] ** 0.5) for height, row in seas if row[band] > 0 and height > 0]
