@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -15,6 +14,7 @@ import numpy as np
 from jaxtyping import Array, Float
 from scipy.linalg import cholesky, eigh
 
+from calibration.cores import cores
 from calibration.likelihood import LEVEL, Likelihood, coordinates
 from calibration.residuals import Problem, Unknowns
 
@@ -158,7 +158,7 @@ def _walked(
                 rows[k].append((np.asarray(state.z), bool(state.diverging)))
             done[k] = i + 1
 
-    with ThreadPoolExecutor(min(len(begun), len(os.sched_getaffinity(0)))) as pool:
+    with ThreadPoolExecutor(min(len(begun), cores())) as pool:
         under_way = {pool.submit(walk, k) for k in range(len(begun))}
         try:
             while under_way:

@@ -1,5 +1,6 @@
 """Diagnosis in waves: a buoy whose heave is known in closed form, excited as a table says and strips do not."""
 
+import dataclasses
 import json
 import re
 from pathlib import Path
@@ -13,8 +14,11 @@ from calibration import load_campaign
 from calibration.applied import applied
 from calibration.campaign import Campaign
 from calibration.discovery.outputs import write_diagnosis
+from calibration.discovery.pose import pose
+from calibration.discovery.records import options_for
 from calibration.discovery.search import diagnose
 from calibration.discovery.signs import turned
+from calibration.discovery.study import Place
 from calibration.report import write_report
 from calibration.runs import runs
 
@@ -180,3 +184,26 @@ def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     assert force.motion == "heave" and not force.law.terms
     assert np.corrcoef(force.shown.force, acted)[0, 1] > 0.998
     assert_allclose(np.std(force.shown.force), np.std(acted), rtol=0.02)
+
+
+def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
+    """Of one run with two tests, the second held out: all that is fitted as of the whole run, and zeros of what is not; the
+    same however many directions are looked along at a time."""
+    campaign = campaign_of(tmp_path, pressure)
+    manifest = json.loads((tmp_path / "campaign.yaml").read_text())
+    sea = {"kind": "irregular", "file": "sea-0.csv", "transient": TRANSIENT, "peak_period": 9.7}
+    windows = {"fit": [0, 0.4 * DURATION], "holdout": [0.4 * DURATION, DURATION - STEP]}
+    manifest["tests"] = [{"id": use, "window": window, "use": use, **sea} for use, window in windows.items()]
+    (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
+    study = pose(campaign := load_campaign(tmp_path), options_for(campaign)[0]).study
+    (record,) = study.seas
+    assert record.fitted < 0.45 * record.steps
+    place = Place(np.asarray(study.space.start), np.zeros((0, 0)))
+    every, some, fitted = study.residual(place, "all"), study.residual(place), study.used[study.row_series]
+    assert_allclose(some[fitted], every[fitted], rtol=0, atol=1e-12)
+    assert np.abs(every[~fitted]).max() > 1e-3 and not some[~fitted].any()
+    active = range(study.width + 5)
+    looks = [one.look(place, active) for one in (study, dataclasses.replace(study, width=study.width + 8))]
+    assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)
+    assert not looks[0].slopes[~fitted].any() and np.abs(looks[0].slopes[fitted]).max() > 1e-3
+    assert_allclose(looks[0].slopes, looks[1].slopes, rtol=0, atol=1e-9 * np.abs(looks[1].slopes).max())

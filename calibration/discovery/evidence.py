@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+import numpy as np
+from jaxtyping import Array, Float, Int
 
 from calibration.parameters import ParameterSpace
 from calibration.residuals import Data, Problem
@@ -16,6 +17,8 @@ from jaxhydro.integrate import Grid, integrate
 from jaxhydro.model import Model, State
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.support_sea import SupportSea
+
+ROUNDING = 1e-6  # of a step
 
 
 class Frame(NamedTuple):
@@ -57,7 +60,8 @@ def decay_slopes(
 
 class SeaRecord(eqx.Module):
     """One run in waves: its sea, and the tests in it, each from sample `begins` on for as many samples of the run's clock as
-    are measured. Slower than `slow` (Hz) the sea has no first order."""
+    are measured. After `fitted` of the `steps` all fitted tests have ended. Slower than `slow` (Hz) the sea has no first
+    order."""
 
     model: Model
     sea: SupportSea
@@ -67,40 +71,43 @@ class SeaRecord(eqx.Module):
     space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
     steps: int = eqx.field(static=True)
+    fitted: int = eqx.field(static=True)
     begins: tuple[int, ...] = eqx.field(static=True)
     dofs: tuple[int, ...] = eqx.field(static=True)
     tests: tuple[str, ...] = eqx.field(static=True)
     slow: float = eqx.field(static=True)
 
-    def simulated(self, x: Float[Array, " p"]) -> tuple[Model, Float[Array, "6"], Grid]:
-        """The model with these parameters, where it rests, and its motion from there on."""
+    def simulated(self, x: Float[Array, " p"], count: Int[Array, ""] | None = None) -> tuple[Model, Float[Array, "6"], Grid]:
+        """The model with these parameters, where it rests, and its motion from there on, over `count` steps or all."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model)
         start = State(rest, jnp.zeros(6), model.rest().memory)
-        return model, rest, integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4")
+        return model, rest, integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4", count=count)
 
-    def residual(self, x: Float[Array, " p"]) -> Float[Array, "w c n"]:
-        """Simulated less measured, test by test."""
-        model, rest, grid = self.simulated(x)
+    def residual(self, x: Float[Array, " p"], count: Int[Array, ""]) -> Float[Array, "w c n"]:
+        """Simulated over `count` steps less measured, test by test; zeros of tests that have not ended then."""
+        model, rest, grid = self.simulated(x, count)
         late = model.clock_lag()
         position = grid.at(self.times if late is None else self.times - late)[0]
         motion = model.seen(position) - (model.seen(rest) if self.from_rest else jnp.zeros(6))
         n = self.measured.shape[-1]
-        return jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
+        found = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
+        ended = self.times[np.array(self.begins) + n - 1] <= self.times[0] + (count + ROUNDING) * self.step
+        return jnp.where(ended[:, None, None], found, 0.0)
 
 
 @eqx.filter_jit
-def sea_residuals(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "w c n"]:
-    """Simulated less measured, test by test."""
-    return record.residual(x)
+def sea_residuals(record: SeaRecord, x: Float[Array, " p"], count: Int[Array, ""]) -> Float[Array, "w c n"]:
+    """Simulated less measured, test by test, over `count` steps."""
+    return record.residual(x, count)
 
 
 @eqx.filter_jit
-def sea_slopes(record: SeaRecord, frame: Frame) -> tuple[Float[Array, "w c n"], Any]:
-    """Residuals, and their slopes along the directions."""
+def sea_slopes(record: SeaRecord, frame: Frame, count: Int[Array, ""]) -> tuple[Float[Array, "w c n"], Any]:
+    """Residuals over `count` steps, and their slopes along the directions."""
 
     def residual(z):
-        r = record.residual(frame.origin + frame.basis @ z)
+        r = record.residual(frame.origin + frame.basis @ z, count)
         return r, r
 
     slopes, r = jax.jacfwd(residual, has_aux=True)(jnp.zeros(frame.basis.shape[1]))

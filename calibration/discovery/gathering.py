@@ -30,6 +30,7 @@ EXCURSIONS = 1.5  # of EXCURSION: how far a sea is prepared for
 OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
 TAPERED = 0.1  # of a test in waves, at its two ends together
 FIRST = 0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
+ALONE = 0.7  # of all steps, in one sea or the decays: its directions are looked along side by side
 HIGHEST = 6.0  # times the highest natural frequency: what is looked at
 
 
@@ -42,7 +43,10 @@ def study_of(
     options: Options,
     width: int,
 ) -> Study:
-    """The records of a campaign, against a model with every candidate at its null. Raises InputError."""
+    """The records of a campaign, against a model with every candidate at its null. Raises InputError.
+
+    `width` directions are looked along at a time, or half as many where there is little that could be simulated beside them.
+    """
     records = [r for r in campaign.records if r.use in ("fit", "holdout")]
     decaying = tuple(r for r in records if r.kind == "decay")
     waving = {r.id for r in records if r.kind in IN_WAVES}
@@ -71,6 +75,9 @@ def study_of(
             series += found
             cuts.append(rows)
             seas.append(sea)
+    steps = [sea.fitted for sea in seas] + ([] if decays is None else [int(np.sum(decays.data.count))])
+    if max(steps) > ALONE * sum(steps):
+        width = -(-width // 2)
     return Study(
         space, model, tuple(names), directions, width, decays, tuple(seas), tuple(linear), tuple(series), decaying, own_width,
         tuple(cuts),
@@ -171,9 +178,11 @@ def _sea_record(
     order = np.argsort(np.asarray(made.components.omega))
     first = order[np.searchsorted(np.cumsum(power[order]), FIRST * power.sum())]
     slow = float(np.asarray(made.components.omega)[first]) / (2 * np.pi)
+    fitted = [w[n - 1] for r, w in zip(tests, windows) if r.use == "fit"]
+    last = int(np.ceil((times[max(fitted)] - times[0]) / dt - 1e-9)) if fitted else 0
     measured = [[np.interp(w[:n], run.samples(r), r.values[c]) for c in channels] for r, w in zip(tests, windows)]
     return SeaRecord(
         model, sea, jnp.asarray(times), jnp.asarray(dt), jnp.asarray(np.array(measured)), space, from_rest, count,
-        tuple(int(w[0]) for w in windows), tuple(DOFS.index(c) for c in channels), tuple(r.id for r in tests),
+        last, tuple(int(w[0]) for w in windows), tuple(DOFS.index(c) for c in channels), tuple(r.id for r in tests),
         slow,
     )  # fmt: skip

@@ -1,7 +1,7 @@
 """A campaign's records and a model with every candidate at its null: looked at from any place along any few parameters."""
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -10,6 +10,7 @@ from typing import Any, Literal
 import jax.numpy as jnp
 import numpy as np
 
+from calibration.cores import cores
 from calibration.discovery.bands import Rows
 from calibration.discovery.evidence import (
     Frame,
@@ -250,13 +251,9 @@ class Study:
         uses = {one.test: one.use for one in self.series}
         return [seas == "all" or any(uses[test] == "fit" for test in record.tests) for record in self.seas]
 
-    def _parts(self, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: Seen) -> list[Any]:
-        """What is found of the decays and of every sea; None where there is nothing to be seen. XLA runs a loop on one core, so
-        they run side by side."""
-        with ThreadPoolExecutor(2) as pool:
-            jobs: list[Any] = [pool.submit(decays)] if self.decays is not None else []
-            jobs += [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.seen(seas))]
-            return [None if job is None else job.result() for job in jobs]
+    def _steps(self, record: SeaRecord, seas: Seen) -> Any:
+        """Over how many steps a sea is simulated: to the end of what is looked at."""
+        return jnp.asarray(record.steps if seas == "all" else record.fitted)
 
     def motions(self, place: Place, seas: Seen = "all") -> list[np.ndarray | None]:
         """Simulated less measured in time (s, t), of the decays' motions and of every sea's."""
@@ -268,9 +265,17 @@ class Study:
             return found.reshape(-1, found.shape[-1])
 
         def of_sea(record: SeaRecord) -> np.ndarray:
-            return np.asarray(sea_residuals(record, x)).reshape(-1, record.measured.shape[-1])
+            found = np.asarray(sea_residuals(record, x, self._steps(record, seas)))
+            return found.reshape(-1, record.measured.shape[-1])
 
-        return self._parts(of_decays, of_sea, seas)
+        with ThreadPoolExecutor(cores()) as pool:
+            return [None if job is None else job.result() for job in self._parts(pool, of_decays, of_sea, seas)]
+
+    def _parts(self, pool: Executor, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: Seen) -> list[Any]:
+        """Work on the decays and on every sea, begun side by side, as XLA runs a loop on one core; None where there is nothing
+        to be seen."""
+        jobs: list[Any] = [pool.submit(decays)] if self.decays is not None else []
+        return jobs + [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.seen(seas))]
 
     def residual(self, place: Place, seas: Seen = "fit") -> np.ndarray:
         """Rows of the residual at a place; zeros of tests in waves that are not looked at."""
@@ -279,19 +284,21 @@ class Study:
 
     def look(self, place: Place, active: Sequence[int]) -> Look:
         """Residual and slopes at a place, of the decays and the seas with a fitted test."""
-        x, looks = jnp.asarray(place.x), []
-        for begin in range(0, max(len(active), 1), self.width):
-            some = list(active[begin : begin + self.width])
-            basis = np.zeros((len(place.x), self.width))
-            basis[:, : len(some)] = self.directions[some].T
-            looks.append(self._look(place, some, Frame(x, jnp.asarray(basis))))
+        some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
+        with ThreadPoolExecutor(cores()) as pool:
+            jobs = [self._slopes(pool, place, mine) for mine in some]
+            looks = [self._look(place, mine, [None if job is None else job.result() for job in one])
+                     for mine, one in zip(some, jobs)]  # fmt: skip
         whole = looks[0]
         for one in looks[1:]:
             whole = whole.beside(one)
         return whole
 
-    def _look(self, place: Place, active: Sequence[int], frame: Frame) -> Look:
-        q = len(active)
+    def _slopes(self, pool: Executor, place: Place, active: tuple[int, ...]) -> list[Any]:
+        """Work on a place's residual and slopes along at most `width` directions."""
+        basis = np.zeros((len(place.x), self.width))
+        basis[:, : len(active)] = self.directions[list(active)].T
+        frame, own = Frame(jnp.asarray(place.x), jnp.asarray(basis)), jnp.asarray(place.own)
 
         def flat(found: Any) -> tuple[np.ndarray, np.ndarray]:
             residual, slopes = (np.asarray(one) for one in found)
@@ -299,9 +306,12 @@ class Study:
 
         def of_decays() -> tuple[np.ndarray, np.ndarray]:
             assert self.decays is not None
-            return flat(decay_slopes(self.decays, frame, jnp.asarray(place.own)))
+            return flat(decay_slopes(self.decays, frame, own))
 
-        parts = self._parts(of_decays, lambda record: flat(sea_slopes(record, frame)), "fit")
+        return self._parts(pool, of_decays, lambda one: flat(sea_slopes(one, frame, self._steps(one, "fit"))), "fit")
+
+    def _look(self, place: Place, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]) -> Look:
+        q = len(active)
         residual, slopes, own = [], [], np.zeros((0, 0))
         for i, (cut, part) in enumerate(zip(self.cuts, parts)):
             if part is None:
@@ -312,7 +322,7 @@ class Study:
             slopes.append(cut(part[1][..., :q]))
             if i == 0 and self.decays is not None:
                 own = cut(part[1][..., self.width :])
-        return Look(place, tuple(active), np.concatenate(residual), np.concatenate(slopes), own)
+        return Look(place, active, np.concatenate(residual), np.concatenate(slopes), own)
 
     def levels(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by series and pool (s, b), rows by their `share`."""

@@ -1,0 +1,9 @@
+"""How much work goes side by side."""
+
+import os
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    mine = getattr(os, "sched_getaffinity", None)  # not on macOS
+    return len(mine(0)) if mine else os.cpu_count() or 1
