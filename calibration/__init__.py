@@ -1,10 +1,14 @@
-"""Fits a jaxhydro model to measurements: `load_campaign`, then `calibrate`, `calibrate_in_waves`, or `search` first."""
+"""Fits a jaxhydro model to measurements: `load_campaign`, then `calibrate`, `calibrate_in_waves`, or `search` first; and
+finds what the model lacks: `diagnose`."""
 
 from calibration.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
 from calibration.campaign import Campaign, load_campaign
 from calibration.candidates import decay_information, effective_noise, expected_information, rank_tests
 from calibration.classical import classical, equivalent_damping
 from calibration.directions import Identifiability, identifiability_of
+from calibration.discovery.candidates import Candidate
+from calibration.discovery.diagnose import diagnose
+from calibration.discovery.result import Diagnosis
 from calibration.fit import Interrupted, Progress, calibrate
 from calibration.joint import calibrate_jointly
 from calibration.likelihood import Likelihood, likelihood
@@ -18,10 +22,10 @@ from calibration.search import Found, SearchInterrupted, search
 from calibration.searches import Budget
 
 __all__ = [
-    "Bootstrap", "Budget", "Calibration", "Campaign", "Estimate", "Found", "Identifiability", "Interrupted",
-    "Likelihood", "Profile", "Progress", "Samples", "SeaLaws", "SearchInterrupted", "Series", "TestFit",
-    "bootstrap_blocks", "bootstrap_repeats", "calibrate", "calibrate_in_waves", "calibrate_jointly", "choose_law",
-    "classical", "decay_information", "drag_coefficient", "effective_noise", "equivalent_damping",
-    "expected_information", "identifiability_of", "likelihood", "load_campaign", "model_damping", "motion_shape",
-    "profile", "rank_tests", "sample", "search",
+    "Bootstrap", "Budget", "Calibration", "Campaign", "Candidate", "Diagnosis", "Estimate", "Found",
+    "Identifiability", "Interrupted", "Likelihood", "Profile", "Progress", "Samples", "SeaLaws",
+    "SearchInterrupted", "Series", "TestFit", "bootstrap_blocks", "bootstrap_repeats", "calibrate",
+    "calibrate_in_waves", "calibrate_jointly", "choose_law", "classical", "decay_information", "diagnose",
+    "drag_coefficient", "effective_noise", "equivalent_damping", "expected_information", "identifiability_of",
+    "likelihood", "load_campaign", "model_damping", "motion_shape", "profile", "rank_tests", "sample", "search",
 ]  # fmt: skip

@@ -13,10 +13,10 @@ from numpy.testing import assert_allclose
 from calibration import load_campaign
 from calibration.applied import applied
 from calibration.campaign import Campaign
+from calibration.discovery.diagnose import diagnose
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.pose import pose
 from calibration.discovery.records import options_for
-from calibration.discovery.search import diagnose
 from calibration.discovery.signs import turned
 from calibration.discovery.study import Place
 from calibration.report import write_report

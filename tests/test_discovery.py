@@ -15,11 +15,13 @@ from calibration.campaign import load_campaign
 from calibration.discovery import kept
 from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.candidates import Candidate, with_effects
-from calibration.discovery.catalogue import catalogue, scales_of
+from calibration.discovery.catalogue import catalogue
+from calibration.discovery.diagnose import diagnose
 from calibration.discovery.judgement import Left, given_up
 from calibration.discovery.linear import Predicted
+from calibration.discovery.listed import scales_of
 from calibration.discovery.pose import pose
-from calibration.discovery.search import Search, diagnose
+from calibration.discovery.search import Search
 from calibration.discovery.trials import Scored
 from calibration.seas import Options
 from jaxhydro.environment import DOFS

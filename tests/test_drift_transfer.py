@@ -14,7 +14,8 @@ from test_water_effects import HULL, WATER, acts, irregular
 
 import jaxhydro as jh
 from calibration.discovery.candidates import sought
-from calibration.discovery.catalogue import Scales, catalogue
+from calibration.discovery.catalogue import catalogue
+from calibration.discovery.listed import Scales
 from jaxhydro.interop.quadratic_transfer import COLUMNS, read_transfer
 from jaxhydro.loads import DriftTransfer
 from jaxhydro.problems import InputError

@@ -13,7 +13,8 @@ from test_water_effects import HULL, WATER, acts, irregular, with_values
 
 import jaxhydro as jh
 from calibration.discovery.candidates import sought
-from calibration.discovery.catalogue import Scales, catalogue
+from calibration.discovery.catalogue import catalogue
+from calibration.discovery.listed import Scales
 from jaxhydro.interop.excitation import read_excitation
 from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia, WaveGaugePosition
 from jaxhydro.problems import InputError

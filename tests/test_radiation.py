@@ -17,7 +17,8 @@ from test_loads import BODY, COEFFICIENTS, COLUMN, build, model_of, only
 
 import jaxhydro as jh
 from calibration.discovery.candidates import sought, with_candidates
-from calibration.discovery.catalogue import Scales, catalogue
+from calibration.discovery.catalogue import catalogue
+from calibration.discovery.listed import Scales
 from jaxhydro.interop.capytaine import read_capytaine
 from jaxhydro.interop.coefficients import RadiationCoefficients
 from jaxhydro.interop.wamit import read_wamit

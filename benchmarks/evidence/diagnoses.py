@@ -82,7 +82,7 @@ def made(names: Sequence[str]) -> None:
 def of_case(name: str) -> dict[str, Any]:
     """What a diagnosis says of one campaign."""
     from calibration.campaign import load_campaign
-    from calibration.discovery.search import diagnose
+    from calibration.discovery.diagnose import diagnose
 
     campaign = load_campaign(folder_of(name))
     result = diagnose(campaign.model, campaign)

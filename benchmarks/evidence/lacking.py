@@ -57,9 +57,9 @@ def written_to(name: str) -> Path:
 def work(name: str) -> dict[str, Any]:
     """A campaign diagnosed, as the command line does it, and what its files say."""
     from calibration.campaign import load_campaign
+    from calibration.discovery.diagnose import diagnose
     from calibration.discovery.kept import FILE
     from calibration.discovery.outputs import write_diagnosis
-    from calibration.discovery.search import diagnose
     from calibration.folder import DIAGNOSIS
 
     folder = written_to(name)

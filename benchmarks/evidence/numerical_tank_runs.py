@@ -167,7 +167,7 @@ def diagnosed(which: str) -> dict[str, Any]:
     """What `diagnose` says: of `all`, of the `decays` alone, of which blocks are left out in turn, or of all with `tables`
     among the candidates. Killed, it goes on."""
     from calibration.campaign import load_campaign
-    from calibration.discovery.search import diagnose
+    from calibration.discovery.diagnose import diagnose
 
     campaign = load_campaign(WITH_TABLES if which == "tables" else CAMPAIGN)
     if which == "decays":

@@ -24,7 +24,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     False where a fit did not converge: the result is marked so, or there is none. Raises InputError, and KeyboardInterrupt
     where nothing was reached.
     """
-    from calibration.discovery.search import diagnose
+    from calibration.discovery.diagnose import diagnose
 
     campaign = load(path, out, lambda c: calibrations.counted(c, ("decay", *IN_WAVES)))
     try:

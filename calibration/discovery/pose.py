@@ -8,8 +8,9 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.candidates import Candidate, sought, with_candidates, with_drag
-from calibration.discovery.catalogue import catalogue, scales_of
+from calibration.discovery.catalogue import catalogue
 from calibration.discovery.gathering import study_of
+from calibration.discovery.listed import scales_of
 from calibration.discovery.study import Prior, Study
 from calibration.fit import labels_of, space_of
 from calibration.identifiability import VAGUE

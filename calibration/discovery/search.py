@@ -1,90 +1,38 @@
 """The loop: fit, score every candidate at its null, refit a shortlist, decide on what was not fitted; until none is left."""
 
 import math
-import time as clock
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cached_property
 from itertools import count
-from pathlib import Path
 
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.discovery.blocks import Blocks
 from calibration.discovery.candidates import Candidate
-from calibration.discovery.conclusion import conclude
-from calibration.discovery.descent import Reached, fit
-from calibration.discovery.expected import expected
-from calibration.discovery.judgement import LEAST_TOGETHER, Grounds, Left, State, Verdict, given_up, judge
-from calibration.discovery.kept import keep, resumed
-from calibration.discovery.linear import Predicted, likelihoods, predict
-from calibration.discovery.pose import WIDE, Posed, pose
-from calibration.discovery.records import options_for
-from calibration.discovery.result import Diagnosis, Rejected, Score
-from calibration.discovery.signs import in_words, reversed_channels, turned
-from calibration.discovery.study import Look, Place, Prior
+from calibration.discovery.fits import Fits
+from calibration.discovery.judgement import LEAST_TOGETHER, Left, State
+from calibration.discovery.linear import Predicted, predict
+from calibration.discovery.pose import Posed
+from calibration.discovery.result import Rejected, Score
+from calibration.discovery.study import Look
 from calibration.discovery.trials import Found, Scored, Tried, in_order
-from calibration.fit import Progress, prepare, run
-from calibration.residuals import first_guess
-from calibration.seas import NO_ZERO, Options
-from jaxhydro.model import Model
 
 ROUNDS = 6  # effects at most
 SHORTLIST = 5
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
 ITERATIONS = 8  # of a refit
-LAST = 50  # ... of what is let in
-LOOKS = 8  # slopes taken anew in that
-ABSOLUTE = f"{NO_ZERO}, and a sensor whose zero is elsewhere for ballast or a force"
 
 
-class Search:
+class Search(Fits):
     """A diagnosis under way: the study, and what was seen of the candidates."""
 
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
-        self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
+        super().__init__(campaign, posed, say)
         self.notes: list[str] = []
         self.alone: Left | None = None  # of a calibration to the decays, where there are seas, too
-        self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
-        self.linear = False  # whether seas are those without the second order that their records have
-        self.base = self.study.index([*posed.base, *posed.nuisances])
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
         self.found: dict[str, Found] = {}
-        # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only
-        self.count = max(2.0, float(self.study.dof[self.study.used].sum()) / 4)
-
-    def active(self, chosen: Sequence[Candidate]) -> list[int]:
-        """Directions that are free with some effects in the model."""
-        return list(dict.fromkeys([*self.base, *self.study.index([label for one in chosen for label in one.labels])]))
-
-    def prior(self, chosen: Sequence[Candidate]) -> Prior:
-        """What is nearly known, mass properties or draught, is not where it is what is looked for."""
-        width = self.posed.prior.width.copy()
-        for one in chosen:
-            width[self.study.index(one.amplitudes)] = WIDE
-        return Prior(self.posed.prior.mean, width)
-
-    @cached_property
-    def start(self) -> Place:
-        """Coefficients and releases of an ordinary calibration to the decays, which finds them from far away."""
-        study = self.study
-        x = np.asarray(study.space.start).copy()
-        if study.decays is None:
-            return Place(x, np.zeros((0, 0)))
-        own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
-        if study.fitted_decays.any():
-            plain = prepare(self.campaign)
-            run(plain, near=True)
-            for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
-                x[study.labels.index(label)] = value
-            rows = [r.id for r in study.decay_records]
-            mine, theirs = np.asarray(study.decays.data.unit), np.asarray(plain.problem.data.unit)
-            for k, (record, values) in enumerate(zip(plain.records, np.asarray(plain.unknowns.own))):
-                i = rows.index(record.id)
-                own[i] = (values.reshape(3, -1) * theirs[k] / mine[i]).ravel()
-        return Place(x, own)
 
     def declared(self) -> State:
         """The declared model, fitted."""
@@ -113,46 +61,6 @@ class Search:
             f"are followed worse (by {better:.0f} in -2 ln L)"
         )
         return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
-
-    def anchor(self, x: np.ndarray) -> None:
-        """The search begins at these coordinates; in waves coefficients are known from there: what the declared model lacks
-        would else move them to where they stand for it, linear damping for radiation, and slow motion is damped away."""
-        self.begun = x
-        if not self.study.seas:
-            return
-        stated = {one.label for one in self.study.space.free if math.isfinite(one.prior_deviation)}
-        mine = self.study.index([name for name in self.posed.base if name not in stated])
-        mean = self.posed.prior.mean.copy()
-        mean[mine] = self.study.steps(x)[mine]
-        self.posed = self.posed._replace(prior=Prior(mean, self.posed.prior.width))
-
-    def expect(self, place: Place) -> None:
-        """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
-        self.study = replace(self.study, expected=expected(self.study, place))
-
-    def take_linear_seas(self) -> None:
-        """Seas without the second order that their records have, from now on."""
-        self.study, self.linear = replace(self.study, seas=self.study.linear_seas), True
-
-    def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
-        """All directions of a look, until nothing is gained."""
-        return self.state(chosen, self.fit(look, chosen, LAST, LOOKS, name, fraction))
-
-    def fit(self, look: Look, chosen: Sequence[Candidate], iterations: int, looks: int, name: str, fraction: float) -> Reached:
-        def report(i: int, cost: float) -> None:
-            self.say(f"{name}: iteration {i}, -2 ln L {cost:.0f}", fraction)
-
-        prior = self.prior(chosen)
-        return fit(self.study, look, self.study.used, prior, iterations=iterations, looks=looks, tolerance=1.0, say=report)
-
-    def state(self, chosen: Sequence[Candidate], reached: Reached) -> State:
-        """What a fit has reached; the held-out decays' own unknowns are fitted to them, the parameters as they are."""
-        study, look = self.study, reached.look
-        if study.decays is not None and not study.fitted_decays.all():
-            alone = fit(study, look.along(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
-            look = replace(alone, active=look.active, slopes=look.slopes)
-        residual, settled, taken = study.residual(look.place, "all"), reached.settled, reached.iterations
-        return State(tuple(chosen), look, residual, settled, taken, likelihoods(study, residual), Left.of(study, residual))
 
     def score(self, state: State, number: int, fraction: float) -> list[Scored]:
         """Every candidate that is not in the model, at its null, the fitted directions projected out; the best first."""
@@ -185,14 +93,6 @@ class Search:
             self.scores.append(Score(number, one.effect, one.dof, found.fitted, len(one.amplitudes), found.held, None, None))
         return ranked
 
-    def shaped(self, place: Place, values: Mapping[str, float]) -> Place:
-        """A place with some parameters as given."""
-        x = place.x.copy()
-        for label, value in values.items():
-            i = self.study.labels.index(label)
-            x[i] = self.study.space.free[i].transform.inverse(value)
-        return Place(x, place.own)
-
     def wrong_sign(self, one: Candidate, look: Look, found: Predicted) -> bool:
         """Whether what physics wants above zero goes below it, and clearly so."""
         for label in one.positive:
@@ -200,26 +100,6 @@ class Search:
             if found.step[i] < 0 and (len(one.amplitudes) == 1 or found.step[i] < -2 * found.deviation[i]):
                 return True
         return False
-
-    def judge(self, before: State, after: State, one: Candidate, last: bool = False) -> Verdict:
-        """Whether an effect is believed: by the tests held out; where there are none by the fitted ones, and at `last` by their
-        blocks left out in turn."""
-        study, prior = self.study, self.prior(after.chosen)
-        grounds = Grounds(study, ~study.used, before.left, after.left, True)
-        if study.used.all():
-            grounds = grounds._replace(asked=study.used, unseen=False)
-            if last and self.blocks is not None:
-                without, with_it = (self.blocks.left(state, self.prior(state.chosen)) for state in (before, after))
-                grounds = Grounds(self.blocks.study, np.ones(len(without.error), bool), without, with_it, True)
-        return judge(study, before, after, one, prior, self.count, grounds)
-
-    @cached_property
-    def blocks(self) -> Blocks | None:
-        """The fitted tests in blocks; None where none can be cut."""
-        try:
-            return Blocks(self.study, self.campaign.records)
-        except ValueError:
-            return None
 
     def grow(self, state: State, number: int) -> tuple[State, State | None]:
         """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
@@ -286,10 +166,6 @@ class Search:
             return state, after
         return state, None
 
-    def likeliest(self, *states: State) -> State:
-        """The one that follows the fitted tests best."""
-        return min(states, key=lambda state: float(state.likelihood[self.study.used].sum()))
-
     def challenged(self, without: State, after: State, one: Candidate, fraction: float) -> State:
         """A model without an effect; where that is better by far, fitted from where it is with it: any effect may help a fit
         over what held it up, and is not to be believed for that."""
@@ -297,11 +173,6 @@ class Search:
         other = self.refit(self.study.look(place, without.look.active), without.chosen, f"without {one.name}", fraction)
         gain = float((without.likelihood - other.likelihood)[self.study.used].sum())
         return other if gain > LEAST_TOGETHER else without
-
-    def renewed(self, place: Place, names: Sequence[str]) -> Place:
-        """A place where some directions are as they were where the search began."""
-        at = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
-        return replace(place, x=np.where(at, self.begun, place.x))
 
     def pruned(self, state: State) -> State:
         """The model without what later effects have made needless: every effect but the last is tried to be taken out."""
@@ -345,69 +216,3 @@ class Search:
                 self.scores[i] = replace(score, refitted=fitted, refitted_holdout=held_out, verdict=verdict)
         worth = fitted + max(held, -1e3) - len(one.labels) * math.log(self.count)
         return Tried(one, scored.predicted.fitted, after, verdict, worth)
-
-
-def diagnose(
-    model: Model,
-    campaign: Campaign,
-    *,
-    candidates: Sequence[Candidate] = (),
-    progress: Callable[[Progress], None] | None = None,
-    options: Options | None = None,
-    kept: Path | None = None,
-) -> Diagnosis:
-    """What a model of a campaign (that declared: `campaign.model`) lacks: found, added, judged by the tests marked `holdout`.
-
-    `candidates` of one's own take part beside the catalogue's. `kept` is a file that has what was reached by round; where it is
-    there, of the same campaign, the search goes on from it. Raises InputError where a campaign has nothing to diagnose,
-    and KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
-    """
-    begun, campaign = clock.monotonic(), campaign.with_model(model)
-
-    def say(stage: str, fraction: float) -> None:
-        if progress is not None:
-            progress(Progress(stage, 0, math.nan, fraction, "-2 ln L"))
-
-    states: list[State] = []
-
-    def reach(state: State) -> None:
-        states.append(state)
-        if kept is not None:
-            keep(kept, search, states)
-
-    say("reading the records", 0.0)
-
-    def begun_with(campaign: Campaign) -> tuple[Search, tuple[str, ...]]:
-        how, notes = options_for(campaign) if options is None else (options, ())
-        search = Search(campaign, pose(campaign, how, candidates), say)
-        states.extend([] if kept is None else resumed(kept, search))
-        return search, notes
-
-    search, notes = begun_with(campaign)
-    wrong = {} if states else reversed_channels(campaign, search)
-    if wrong:
-        search, notes = begun_with(campaign := turned(campaign, list(wrong)))
-        notes = (in_words(list(wrong)), *notes)
-    if states:
-        say(f"going on from what was reached before: round {len(states)}", 0.15)
-    else:
-        reach(search.declared())
-
-    def concluded() -> Diagnosis:
-        lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
-        unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
-        every, seconds = (*notes, *search.notes, *lost, *unknown), clock.monotonic() - begun
-        return conclude(campaign, search, states[0], states[-1], every, seconds, tuple(wrong.values()))
-
-    try:
-        for again in range(2 * ROUNDS):
-            states[-1], after = search.grow(fitted := states[-1], len(states))
-            if after is not None:
-                reach(after)
-            if len(states) > ROUNDS or (after is None and (states[-1] is fitted or again >= ROUNDS)):
-                break
-        states.append(search.pruned(states[-1]))
-    except KeyboardInterrupt as stopped:
-        stopped.partial = concluded()  # type: ignore[attr-defined]
-        raise
-    return concluded()

@@ -1,0 +1,88 @@
+"""What a model of a campaign lacks, from the records to the conclusion: the search, kept as it goes."""
+
+import math
+import time as clock
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from calibration.campaign import Campaign
+from calibration.discovery.candidates import Candidate
+from calibration.discovery.conclusion import conclude
+from calibration.discovery.judgement import State, given_up
+from calibration.discovery.kept import keep, resumed
+from calibration.discovery.pose import pose
+from calibration.discovery.records import options_for
+from calibration.discovery.result import Diagnosis
+from calibration.discovery.search import ROUNDS, Search
+from calibration.discovery.signs import in_words, reversed_channels, turned
+from calibration.fit import Progress
+from calibration.seas import NO_ZERO, Options
+from jaxhydro.model import Model
+
+ABSOLUTE = f"{NO_ZERO}, and a sensor whose zero is elsewhere for ballast or a force"
+
+
+def diagnose(
+    model: Model,
+    campaign: Campaign,
+    *,
+    candidates: Sequence[Candidate] = (),
+    progress: Callable[[Progress], None] | None = None,
+    options: Options | None = None,
+    kept: Path | None = None,
+) -> Diagnosis:
+    """What a model of a campaign (that declared: `campaign.model`) lacks: found, added, judged by the tests marked `holdout`.
+
+    `candidates` of one's own take part beside the catalogue's. `kept` is a file that has what was reached by round; where it is
+    there, of the same campaign, the search goes on from it. Raises InputError where a campaign has nothing to diagnose,
+    and KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
+    """
+    begun, campaign = clock.monotonic(), campaign.with_model(model)
+
+    def say(stage: str, fraction: float) -> None:
+        if progress is not None:
+            progress(Progress(stage, 0, math.nan, fraction, "-2 ln L"))
+
+    states: list[State] = []
+
+    def reach(state: State) -> None:
+        states.append(state)
+        if kept is not None:
+            keep(kept, search, states)
+
+    say("reading the records", 0.0)
+
+    def begun_with(campaign: Campaign) -> tuple[Search, tuple[str, ...]]:
+        how, notes = options_for(campaign) if options is None else (options, ())
+        search = Search(campaign, pose(campaign, how, candidates), say)
+        states.extend([] if kept is None else resumed(kept, search))
+        return search, notes
+
+    search, notes = begun_with(campaign)
+    wrong = {} if states else reversed_channels(campaign, search)
+    if wrong:
+        search, notes = begun_with(campaign := turned(campaign, list(wrong)))
+        notes = (in_words(list(wrong)), *notes)
+    if states:
+        say(f"going on from what was reached before: round {len(states)}", 0.15)
+    else:
+        reach(search.declared())
+
+    def concluded() -> Diagnosis:
+        lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
+        unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
+        every, seconds = (*notes, *search.notes, *lost, *unknown), clock.monotonic() - begun
+        return conclude(campaign, search, states[0], states[-1], every, seconds, tuple(wrong.values()))
+
+    try:
+        for again in range(2 * ROUNDS):
+            states[-1], after = search.grow(fitted := states[-1], len(states))
+            if after is not None:
+                reach(after)
+            if len(states) > ROUNDS or (after is None and (states[-1] is fitted or again >= ROUNDS)):
+                break
+        states.append(search.pruned(states[-1]))
+    except KeyboardInterrupt as stopped:
+        stopped.partial = concluded()  # type: ignore[attr-defined]
+        raise
+    return concluded()
