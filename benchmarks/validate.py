@@ -1,11 +1,12 @@
 """Makes docs/validation.md and its figures: every number on the page comes from a run of this program.
 
-    python -m benchmarks.validate [--seeds 20] [--starts 20] [--diagnoses 200] [--processes 2]
+    python -m benchmarks.validate [--seeds 20] [--starts 20] [--diagnoses 224] [--processes 2]
                                   [--only SECTION ...] [--fresh] [--stale]
 
 Finished parts are kept in .venv/validate-cache under a hash of the sources and files that they depend on; what has not
 changed is not done again, and a run that was stopped goes on where it was. `--fresh` forgets them first. `--stale`
-takes what earlier sources gave rather than running anything long, and says so on the page.
+takes what earlier sources gave rather than running anything long, and says so on the page; what was said of the campaigns of
+`diagnoses`, too many for one day, is kept in docs/diagnoses.jsonl for it.
 """
 
 import argparse
@@ -92,7 +93,7 @@ def written(name: str, found: Section, options: argparse.Namespace) -> str:
     """A section as it stands on the page, its figures copied beside it."""
     lines = [f"## {found.title}", "", f"`{command(name, options)}`", ""]
     if name in common.stale:
-        lines += ["*From a run of earlier sources.*", ""]
+        lines += ["*From runs of earlier sources, wholly or in part.*", ""]
     lines += [wrapped(found.text.strip()), ""]
     folder = PAGE.parent / "figures"
     folder.mkdir(parents=True, exist_ok=True)
@@ -138,7 +139,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seeds", type=int, default=20, help="seeds of noise (default 20)")
     parser.add_argument("--starts", type=int, default=20, help="far starts (default 20)")
-    parser.add_argument("--diagnoses", type=int, default=200, help="campaigns to diagnose at most (default 200: all)")
+    every = len(list(diagnoses.cases()))
+    parser.add_argument("--diagnoses", type=int, default=every, help="campaigns to diagnose at most (default: all)")
     parser.add_argument("--processes", type=int, default=2, help="at work at once (default 2)")
     parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, help="sections to make; others stay")
     parser.add_argument("--fresh", action="store_true", help="forget finished parts first")
