@@ -11,7 +11,8 @@ from scipy.optimize import minimize
 from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.descent import fit, mended
 from calibration.discovery.linear import cost_of, likelihoods, linearly, predict
-from calibration.discovery.study import Look, Place, Prior, Series, Study
+from calibration.discovery.looks import Look, Place, Prior, Series
+from calibration.discovery.study import Study
 
 SAMPLES, NOISE = 201, 0.05
 TIME = np.linspace(0.0, 20.0, SAMPLES)

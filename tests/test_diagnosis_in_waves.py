@@ -14,11 +14,11 @@ from calibration import load_campaign
 from calibration.applied import applied
 from calibration.campaign import Campaign
 from calibration.discovery.diagnose import diagnose
+from calibration.discovery.looks import Place
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.pose import pose
 from calibration.discovery.records import options_for
 from calibration.discovery.signs import turned
-from calibration.discovery.study import Place
 from calibration.report import write_report
 from calibration.runs import runs
 

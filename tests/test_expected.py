@@ -15,9 +15,10 @@ from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.expected import beside, impedance, spectrum
 from calibration.discovery.linear import deviances, weights
+from calibration.discovery.looks import Prior, Series
 from calibration.discovery.pose import ANCHORED, ANCHORED_DAMPING, Posed, width_of
 from calibration.discovery.search import Search
-from calibration.discovery.study import Prior, Series, Study
+from calibration.discovery.study import Study
 from calibration.identifiability import VAGUE
 from calibration.parameters import Free, ParameterSpace
 from calibration.transforms import Scaled

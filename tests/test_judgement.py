@@ -11,7 +11,8 @@ from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, refusal
-from calibration.discovery.study import Series, Study
+from calibration.discovery.looks import Series
+from calibration.discovery.study import Study
 from calibration.discovery.trials import Tried, in_order
 from calibration.records import Record
 

@@ -14,7 +14,8 @@ from calibration.discovery.descent import fit
 from calibration.discovery.expected import expected
 from calibration.discovery.gathering import highest_of, of_decays, series_of_sea
 from calibration.discovery.judgement import Left, State
-from calibration.discovery.study import Place, Prior, Study
+from calibration.discovery.looks import Place, Prior
+from calibration.discovery.study import Study
 from calibration.records import Record
 from calibration.residuals import dominant_period, first_guess
 

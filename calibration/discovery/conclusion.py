@@ -25,8 +25,8 @@ from jaxhydro.model import Model
 
 if TYPE_CHECKING:
     from calibration.discovery.judgement import State
+    from calibration.discovery.looks import Place
     from calibration.discovery.search import Search
-    from calibration.discovery.study import Place
 
 # of a motion: what is left beyond it is not for noise, nor for a model's last digits. Fitted seas of the tank's campaigns with
 # nothing missing leave up to 0.1, where mass and moorings are declared a little wrong

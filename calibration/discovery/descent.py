@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.discovery.linear import cost_of, linearly, solve, weights
-from calibration.discovery.study import Look, Place, Prior, Study
+from calibration.discovery.looks import Look, Place, Prior
+from calibration.discovery.study import Study
 
 LONGEST = 0.7  # largest step of a coordinate that is a logarithm
 LEAST = 1e-4  # of what is minimised: a step that gains less is one too many, however many samples there are

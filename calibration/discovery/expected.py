@@ -22,7 +22,8 @@ from jaxtyping import Array, Float
 
 from calibration.discovery.bands import Rows
 from calibration.discovery.evidence import SeaRecord
-from calibration.discovery.study import Place, Study
+from calibration.discovery.looks import Place
+from calibration.discovery.study import Study
 from jaxhydro.model import State
 
 INSTANTS = 256  # at which a model's forces are looked at

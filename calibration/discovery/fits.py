@@ -14,8 +14,8 @@ from calibration.discovery.descent import Reached, fit
 from calibration.discovery.expected import expected
 from calibration.discovery.judgement import Grounds, Left, State, Verdict, judge
 from calibration.discovery.linear import likelihoods
+from calibration.discovery.looks import Look, Place, Prior
 from calibration.discovery.pose import WIDE, Posed
-from calibration.discovery.study import Look, Place, Prior
 from calibration.fit import prepare, run
 from calibration.residuals import first_guess
 

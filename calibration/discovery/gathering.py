@@ -8,7 +8,8 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.bands import Bands, Rows, bands_of, powers
 from calibration.discovery.evidence import SeaRecord
-from calibration.discovery.study import FLOOR, Series, Study
+from calibration.discovery.looks import FLOOR, Series
+from calibration.discovery.study import Study
 from calibration.fit import STEPS_PER_PERIOD
 from calibration.manifest import IN_WAVES
 from calibration.parameters import ParameterSpace

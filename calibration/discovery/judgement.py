@@ -8,7 +8,8 @@ import numpy as np
 
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.linear import likelihoods, predict
-from calibration.discovery.study import FLOOR, Look, Prior, Study
+from calibration.discovery.looks import FLOOR, Look, Prior
+from calibration.discovery.study import Study
 from calibration.formatting import percent
 
 # thresholds, set by what they do on campaigns with nothing missing

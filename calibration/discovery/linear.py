@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import boxcox
 
-from calibration.discovery.study import Look, Place, Prior, Study
+from calibration.discovery.looks import Look, Place, Prior
+from calibration.discovery.study import Study
 
 POWER = 0.2  # p: 0 is the logarithm
 FAR = 3.0  # standard deviations of a prior: beyond them it is steep

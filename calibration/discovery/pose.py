@@ -11,7 +11,8 @@ from calibration.discovery.candidates import Candidate, sought, with_candidates,
 from calibration.discovery.catalogue import catalogue
 from calibration.discovery.gathering import study_of
 from calibration.discovery.listed import scales_of
-from calibration.discovery.study import Prior, Study
+from calibration.discovery.looks import Prior
+from calibration.discovery.study import Study
 from calibration.fit import labels_of, space_of
 from calibration.identifiability import VAGUE
 from calibration.manifest import IN_WAVES

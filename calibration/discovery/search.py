@@ -12,9 +12,9 @@ from calibration.discovery.candidates import Candidate
 from calibration.discovery.fits import Fits
 from calibration.discovery.judgement import LEAST_TOGETHER, Left, State
 from calibration.discovery.linear import Predicted, predict
+from calibration.discovery.looks import Look
 from calibration.discovery.pose import Posed
 from calibration.discovery.result import Rejected, Score
-from calibration.discovery.study import Look
 from calibration.discovery.trials import Found, Scored, Tried, in_order
 
 ROUNDS = 6  # effects at most

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.judgement import State, Verdict
 from calibration.discovery.linear import Predicted
-from calibration.discovery.study import Look
+from calibration.discovery.looks import Look
 
 ALIKE = 0.1  # of the best one's gain: what comes as near cannot be told from it
 SENSORS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
