@@ -159,6 +159,11 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
     assert not any(stage.startswith(("calibrating", "round 1")) for stage in seen)
     assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
     assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
+    with monkeypatch.context() as limited:
+        limited.setattr("calibration.discovery.diagnose.ROUNDS", 1)
+        seen.clear()
+        again = found_in(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
+    assert not any(stage.startswith("round") for stage in seen) and len(again.effects) == 1
     search = SimpleNamespace()
     monkeypatch.setattr(kept, "fingerprint", lambda search: "of another campaign")
     assert kept.resumed(path, search) == []

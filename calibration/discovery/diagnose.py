@@ -76,10 +76,12 @@ def diagnose(
 
     try:
         for again in range(2 * ROUNDS):
+            if len(states) > ROUNDS:  # an earlier run may have reached them
+                break
             states[-1], after = search.grow(fitted := states[-1], len(states))
             if after is not None:
                 reach(after)
-            if len(states) > ROUNDS or (after is None and (states[-1] is fitted or again >= ROUNDS)):
+            elif states[-1] is fitted or again >= ROUNDS:
                 break
         states.append(search.pruned(states[-1]))
     except KeyboardInterrupt as stopped:
