@@ -64,7 +64,7 @@ def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
     if (rows := tables.anatomy(saved))[1]:
         table("What the declared model, fitted, leaves over", *rows, left=4)
     table("Coefficients, fitted before and after", *tables.coefficients(saved))
-    if (rows := tables.coefficients(saved, nearly_known=True))[1]:
+    if (rows := tables.nearly_known(saved))[1]:
         table(tables.VARIED, *rows)
     if (rows := tables.rejected(saved))[1]:
         table("Tried and rejected", *rows, left=2)

@@ -68,7 +68,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
     yield "<h2>Fitted coefficients</h2>"
     yield _COEFFICIENTS
     yield _table(tables.coefficients(saved), 1, 4)
-    if (rows := tables.coefficients(saved, nearly_known=True))[1]:
+    if (rows := tables.nearly_known(saved))[1]:
         yield f"<p>{tables.VARIED}.</p>"
         yield _table(rows, 1, 4)
     yield "<h2>What was rejected, and why</h2>"

@@ -61,21 +61,32 @@ def bands(saved: SavedDiagnosis) -> Rows:
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
-def coefficients(saved: SavedDiagnosis, nearly_known: bool = False) -> Rows:
-    """Every fitted parameter as declared, before and after, the effects' own among those after; or those that are let vary
-    though nobody declared them."""
-    before, after = saved.baseline.parameters, saved.augmented.parameters
+def coefficients(saved: SavedDiagnosis) -> Rows:
+    """Every fitted parameter as declared, before and after, the effects' own among those after."""
     rows = []
-    for label in dict.fromkeys([*before, *after]):
-        was, now = before.get(label), after.get(label)
-        one = now or was
-        if one is None or label.startswith(NEARLY_KNOWN) != nearly_known:
-            continue
-        start = was.start if was is not None else None
+    for label, was, now in _parameters(saved, nearly_known=False):
         known = was is not None and now is not None and was.identifiable and now.identifiable and was.value != 0
         moved = f"{100 * (now.value / was.value - 1):+.2g} %" if known and was and now else ""
-        rows.append((label, number(start, 3), _value(was), _value(now), pretty(one.unit), *([] if nearly_known else [moved])))
-    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", *([] if nearly_known else ["Moved by"])), rows
+        rows.append((*_of_parameter(label, was, now), moved))
+    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
+
+
+def nearly_known(saved: SavedDiagnosis) -> Rows:
+    """The same of those that are let vary though nobody declared them."""
+    rows = [_of_parameter(*one) for one in _parameters(saved, nearly_known=True)]
+    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit"), rows
+
+
+def _parameters(saved: SavedDiagnosis, nearly_known: bool) -> list[tuple[str, Parameter | None, Parameter | None]]:
+    """Labels, and what is fitted of them before and after."""
+    before, after = saved.baseline.parameters, saved.augmented.parameters
+    labels = [label for label in dict.fromkeys([*before, *after]) if label.startswith(NEARLY_KNOWN) == nearly_known]
+    return [(label, before.get(label), after.get(label)) for label in labels]
+
+
+def _of_parameter(label: str, was: Parameter | None, now: Parameter | None) -> tuple[str, ...]:
+    unit = next((one.unit for one in (now, was) if one is not None), "")
+    return label, number(was.start if was is not None else None, 3), _value(was), _value(now), pretty(unit)
 
 
 def rejected(saved: SavedDiagnosis) -> Rows:
