@@ -63,7 +63,7 @@ def searching(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPath
             raise outcome["it"]
         return outcome["it"]
 
-    monkeypatch.setitem(sys.modules, "calibration.discovery.search", SimpleNamespace(diagnose=diagnose))
+    monkeypatch.setitem(sys.modules, "calibration.discovery.diagnose", SimpleNamespace(diagnose=diagnose))
     return outcome
 
 
