@@ -16,7 +16,7 @@ import numpy as np
 
 from calibration.manifest import DOFS, IN_WAVES, WAVE, Manifest
 from calibration.records import Series, factors, read_series, there
-from calibration.signals import constant_stretches, dominant_period, flanks, line, resolution, spikes, wave_height
+from calibration.signals import constant_stretches, dominant_period, flanks, line, missing_code, resolution, spikes, wave_height
 from jaxhydro.problems import Problem
 
 REPAIRABLE = 0.02                 # of a window's rows
@@ -163,7 +163,9 @@ class _Check:
                 before = before[there(before)]
                 when = float(before[-1]) if len(before) else None
                 place = "at the start" if when is None else f"the first near {self.at(when)}"
-                yield self.dropped(len(bad), channel, when, f"{len(bad)} values missing or infinite, {place}")
+                code = missing_code(values)
+                what = "missing or infinite" if code is None else f"missing, as {code:g} seems to say"
+                yield self.dropped(len(bad), channel, when, f"{len(bad)} values {what}, {place}")
 
     def dropped(self, count: int, channel: str, time: float | None, message: str) -> Finding:
         if count < REPAIRABLE * len(self.series.time):
@@ -220,7 +222,8 @@ class _Check:
             if (count := int(lengths[flat].sum())) >= 6:
                 yield self.found("warning", channel, float(time[starts[flat][0]]), f"clipped: {count} samples at its "
                                  f"{name} value, {extreme:.5g}, up to {lengths[flat].max()} in a row")
-        if len(off := spikes(values, grain)):
+        off = spikes(values, grain)
+        if len(off := off[time[off + 2] - time[off - 2] < 4.5 * self.step]):  # none beside a gap
             i, more = int(off[0]), f", and {len(off) - 1} more" if len(off) > 1 else ""
             yield self.found("warning", channel, float(time[i]), f"a spike at {self.at(time[i])}, {values[i]:.5g} "
                              f"between {values[i - 1]:.5g} and {values[i + 1]:.5g}{more}")

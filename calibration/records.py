@@ -17,7 +17,7 @@ import pandas as pd
 
 from calibration.manifest import IN_WAVES, SI, WAVE, Channel, Manifest, Test, quantity
 from calibration.readers import read_table
-from calibration.signals import noise_level
+from calibration.signals import missing_code, noise_level
 from jaxhydro.problems import InputError, Problem, suggest
 
 _LEAST_NOISE = 1e-6                              # m at the scale of the file, or rad: finer than any basin's sensor
@@ -67,8 +67,10 @@ class Record:
 
 
 def there(values: np.ndarray) -> np.ndarray:
-    """(n,) bool: neither missing nor infinite, nor so large that it stands for that."""
-    return np.abs(values) < _BEYOND              # False for nan
+    """(n,) bool: neither missing nor infinite, nor so large that it stands for that, nor a logger's number for it."""
+    good = np.abs(values) < _BEYOND              # False for nan
+    code = missing_code(values[good])
+    return good if code is None else good & (values != code)
 
 
 def factors(manifest: Manifest, channels: dict[str, Channel]) -> dict[str, float]:

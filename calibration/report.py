@@ -15,7 +15,7 @@ from calibration.tables import USE
 from jaxhydro.files import write_whole
 from jaxhydro.problems import InputError, Problem
 
-SWEEP = "sweep.json"
+SWEEP, RESULTS = "sweep.json", "results.zarr"
 _PNG = b"\x89PNG\r\n\x1a\n"
 UNCONVERGED = '<p class="warning">The fit did not converge: what follows is where it stopped, not {}.</p>'
 
@@ -27,6 +27,9 @@ def write_report(folder: str | PathLike[str]) -> Path:
         there = [name for name in (DIAGNOSIS, RESULT, UNCERTAINTY, SWEEP) if folder.is_dir() and (folder / name).is_file()]
     except (OSError, ValueError):
         there = []
+    if not there and (folder / RESULTS).is_dir():
+        found = "one that was stopped: the same `jaxhydro sweep` goes on"
+        raise InputError(str(folder), [Problem("", "a sweep that is done", found)])
     if not there:
         found = f"no {RESULT}, {DIAGNOSIS}, {UNCERTAINTY} or {SWEEP}" if folder.is_dir() else "no such folder"
         expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"

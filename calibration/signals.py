@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pandas as pd
 from scipy import signal
 
 SPIKE = 8.0               # robust standard deviations
+CODE = 10.0               # times all else: what is no measurement
 SEGMENT = 1000.0          # s of a record in waves, or an eighth of it
 
 
@@ -94,6 +97,15 @@ def flanks(values: np.ndarray, starts: np.ndarray, lengths: np.ndarray) -> np.nd
     """
     before, after = np.maximum(starts - lengths, 0), np.minimum(starts + 2 * lengths - 1, len(values) - 1)
     return np.minimum(np.abs(values[before] - values[starts]), np.abs(values[after] - values[starts]))
+
+
+def missing_code(values: np.ndarray) -> float | None:
+    """The number of nines alone (-9999) that a logger has written where it had none; None where there is no such number."""
+    known = values[np.isfinite(values)]
+    extreme = float(known[np.argmax(np.abs(known))]) if len(known) else 0.0
+    rest = np.abs(known[known != extreme])
+    nines = re.fullmatch(r"9{3,}|9+\.9+", f"{abs(extreme):.10g}")
+    return extreme if nines and len(rest) and abs(extreme) > CODE * float(rest.max()) else None
 
 
 def spikes(values: np.ndarray, grain: float) -> np.ndarray:

@@ -32,8 +32,8 @@ class Guarded(TyperGroup):
         except InputError as error:
             complain(str(error))
             raise typer.Exit(BAD_INPUT) from None
-        except KeyboardInterrupt:
-            complain("stopped; nothing was written")
+        except KeyboardInterrupt as stopped:
+            complain(str(stopped) or "stopped; nothing was written")
             raise typer.Exit(STOPPED) from None
         except RuntimeError as error:
             from jaxhydro.statics import EquilibriumError

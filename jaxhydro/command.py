@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -106,7 +107,7 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
         ramp = min(GROWTH * wave[1], 0.25 * job.duration)
         sea = _sea(model, wave, heading, ramp, stretching)
         step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
-    print_rest(model, job.platform)
+    print_rest(model, job.platform, DOFS if wave is not None else list(job.offset))
     times = job.times
     position = np.asarray(free_decay(model, job.offset, times, sea=sea, step=step).position)
     if not finite(times, position):
@@ -130,9 +131,12 @@ def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, s
         raise InputError("--wave-height", [Problem("", expected, f"one too steep ({error})")]) from None
 
 
-def print_rest(model: Model, platform: str) -> None:
-    """Print where the platform rests, and its natural periods. Raises EquilibriumError where it does not stay there."""
-    rest, modes = np.asarray(equilibrium(model)), stable_modes(model)
+def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> None:
+    """Print where the platform rests, and its natural periods. Raises EquilibriumError where it does not stay there once it is
+    `moved`."""
+    rest, modes = np.asarray(equilibrium(model)), stable_modes(model, moved)
+    if modes.unstable:
+        complain(f"warning: the platform is unstable in {' and '.join(modes.unstable)}, which nothing moves here")
     rest = rest.round(8) + 0.0  # no -0.0000
     rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q)):.4f}") for dof, q in zip(DOFS, rest)]
     table(f"{platform}: at rest", ("Motion", "Position"), rows)

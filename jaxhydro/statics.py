@@ -1,5 +1,6 @@
 """Static equilibrium, and natural periods of small motion about it."""
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 import equinox as eqx
@@ -14,6 +15,7 @@ from jaxhydro.waves.sea import StillWater
 
 CLOSE = 1e-12  # of the position: the last step
 ITERATIONS = 64
+UNCOUPLED = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
 FREE = 1e-12  # of the stiffest motion's restoring: what is below is none
 
 
@@ -163,10 +165,20 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable))
 
 
-def stable_modes(model: Model) -> Modes:
-    """Natural modes about the equilibrium. Raises EquilibriumError where the platform does not stay there."""
+def _coupled(model: Model, moved: Collection[str]) -> set[str]:
+    """Motions that go with some in small motion: by mass or stiffness, or through others that do."""
+    both = [np.abs(np.asarray(matrix)) for matrix in linearised(model, equilibrium(model))]
+    scales = [np.sqrt(np.maximum(np.diag(matrix), UNCOUPLED * matrix.max())) for matrix in both]
+    goes = np.any([matrix > UNCOUPLED * np.outer(s, s) for matrix, s in zip(both, scales)], axis=0)
+    reached = np.linalg.matrix_power(goes | np.eye(6, dtype=bool), 6)
+    return {dof for i, dof in enumerate(DOFS) if any(reached[DOFS.index(name), i] for name in moved)}
+
+
+def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
+    """Natural modes about the equilibrium. Raises EquilibriumError where the platform does not stay there, once it is `moved`:
+    a motion that goes with none of these may be unstable."""
     modes = natural_modes(model)
-    if modes.unstable:
+    if set(modes.unstable) & (set(DOFS) if set(moved) == set(DOFS) else _coupled(model, moved)):
         motions = " and ".join(modes.unstable)
         raise EquilibriumError(f"the platform is unstable in {motions}: check mass, centre of mass, volume and mooring")
     return modes

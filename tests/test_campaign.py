@@ -399,6 +399,7 @@ def spoilt(**changes):
     (spoilt(x={(50, 53): np.nan}), "surge: 3 values missing or infinite, the first near 5 s: these rows are dropped"),
     (spoilt(x={(50, 53): np.inf}), "channel surge: 3 values missing or infinite"),
     (spoilt(x={(50, 53): 1e30}), "channel surge: 3 values missing or infinite"),
+    (spoilt(x={(50, 53): -9999}), "surge: 3 values missing, as -9999 seems to say, the first near 5 s: these rows are dropped"),
     (spoilt(t={(50, 52): np.nan}), "channel time: 2 values missing or infinite, the first near 4.9 s"),
     (spoilt(x={(100, 140): SURGE[100]}), "channel surge: frozen from 10 s to 13.9 s, 40 samples"),
     (table(x=np.clip(SURGE, -9, 2.2)), "channel surge: clipped: "),
@@ -436,6 +437,12 @@ def test_what_is_held_out_is_not_fitted_too(tmp_path):
 ])
 def test_no_false_alarm(tmp_path, csv):
     assert messages(write(tmp_path, files={"d.csv": csv})) == []
+
+
+def test_a_gap_is_no_spike(tmp_path):
+    """A signal goes on elsewhere after one: that is said once."""
+    found = messages(write(tmp_path, files={"d.csv": spoilt(x={(50, 64): np.nan})}))
+    assert len(found) == 2 and "14 values missing" in found[1] and "a gap of" in found[0]
 
 
 def change(document, path, value):

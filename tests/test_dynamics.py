@@ -20,6 +20,7 @@ from jaxhydro.integrate import Grid, integrate
 from jaxhydro.response import Response
 from jaxhydro.rotations import angular_velocity, attitude_rates, rotation
 from jaxhydro.solve6 import accelerate, inverse6
+from jaxhydro.statics import stable_modes
 
 RHO, G = 1025.0, 9.81
 STILL = jh.StillWater()
@@ -426,6 +427,17 @@ def test_a_platform_that_falls_over() -> None:
     assert jh.natural_modes(model).unstable == ("roll",)
     with pytest.raises(jh.EquilibriumError, match="unstable in roll"):
         print_rest(model, "made")
+
+
+def test_a_motion_that_nothing_moves_may_be_unstable() -> None:
+    """Of a platform file that says how it pitches, and not how it rolls: pitch does not bring roll with it, sway does."""
+    body = {"mass": 8e6, "centre_of_mass": [0, 0, -3], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}
+    declared = platform(rigid_body=body, hydrostatics={"C33": 4e6, "C44": -4e8, "C55": 9e8}, added_mass={"A33": 2e6})
+    model = jh.build(declared)
+    assert stable_modes(model, ["pitch"]).unstable == stable_modes(model, ["heave", "surge"]).unstable == ("roll",)
+    for moved in (["roll"], ["pitch", "sway"]):
+        with pytest.raises(jh.EquilibriumError, match="unstable in roll"):
+            stable_modes(model, moved)
 
 
 # errors

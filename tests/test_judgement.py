@@ -106,8 +106,8 @@ def test_what_matters_of_a_decay(channel, least):
 
 @pytest.mark.parametrize(("numbers", "where", "said"), [
     ({"bic": 9, "net": 60}, HELD_OUT, ""),
-    ({"bic": 9, "net": 60}, FITTED, "too little in the fitted tests (BIC +9, 30 are asked)"),
-    ({"bic": 9, "net": 60}, BLOCKS, "too little in the fitted tests (BIC +9, 30 are asked)"),
+    ({"bic": 9, "net": 60}, FITTED, "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)"),
+    ({"bic": 9, "net": 60}, BLOCKS, "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)"),
     ({"bic": 5, "net": 60}, HELD_OUT, "too little in the fitted tests (BIC +5, 6 are asked)"),
     ({"bic": 9, "net": 15}, HELD_OUT, "too little in fitted and held-out tests together (BIC +9, -2 ln L -15)"),
     ({"bic": 43, "net": -197}, HELD_OUT, "becomes worse"),

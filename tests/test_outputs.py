@@ -357,6 +357,9 @@ def test_no_report_without_results(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=words):
             write_report(folder)
     assert not list(tmp_path.iterdir())
+    (tmp_path / "results.zarr").mkdir()
+    with pytest.raises(InputError, match="the same `jaxhydro sweep` goes on"):
+        write_report(tmp_path)
 
 
 # --- numbers

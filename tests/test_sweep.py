@@ -52,6 +52,8 @@ def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
     sweep = load_sweep(file)
     assert [(row.hs, row.tp, row.probability, row.gamma) for row in sweep.scatter] == [(1.5, 7, 0.6, None), (3, 9, 0.4, 2.5)]
     assert Path(sweep.platform) == tmp_path / "buoy.yaml"
+    (tmp_path / "table.csv").write_text("Tp; Hs; Probability; gamma\n7; 1,5; 0,6;\n9; 3; 0,4; 2,5\n")  # as spreadsheets do
+    assert load_sweep(file).scatter == sweep.scatter
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calibration.discovery.result import Finding
+from calibration.formatting import number
 
 if TYPE_CHECKING:
     from calibration.discovery.judgement import State
@@ -32,18 +34,18 @@ def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
         bands = tuple(
             (float(a), float(b), float(math.sqrt(s))) for a, b, s, f in zip(one.low, one.high, squares, freedom) if f > 0
         )
-        found.append(
-            Finding(one.test, one.use, one.channel, rms, one.noise, rms / one.spread, bands, _words(one, ratio, bands))
-        )
+        said = _words(ratio, rms / one.noise, bands)
+        found.append(Finding(one.test, one.use, one.channel, rms, one.noise, rms / one.spread, bands, said))
     return tuple(found)
 
 
-def _words(one, ratio: float, bands) -> str:
-    if ratio < QUIET:
+def _words(within: float, over: float, bands: Sequence[tuple[float, float, float]]) -> str:
+    """`within` the bands that are looked at, and `over` all: rms over noise."""
+    if within < QUIET:
         return "at the noise"
     worst = max(bands, key=lambda b: b[2])
     where = "in the mean" if worst[0] == 0 else f"from {worst[0]:.3g} to {worst[1]:.3g} Hz"
-    return f"{ratio:.1f} times the noise, most of it {where}"
+    return f"{number(over, 2)} times the noise, most of it {where}"
 
 
 def signature(search: Search, before: State, after: State) -> tuple[float, str]:
@@ -55,7 +57,8 @@ def signature(search: Search, before: State, after: State) -> tuple[float, str]:
     total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = left / total if total > 0 else 0.0
     if not (after.left.squares.sum(axis=1) > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
-        return share, "white at the declared noise level"
+        declared = all(record.noise_declared for record in search.campaign.records if record.use == "fit")
+        return share, f"white at the {'declared noise level' if declared else 'level of the noise, which was estimated'}"
     by_motion: dict[tuple[str, str], float] = {}
     for one, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):
         key = (one.channel, "decays" if one.kind == "decay" else "waves")

@@ -7,6 +7,7 @@ import numpy as np
 from calibration.discovery.candidates import COMPUTED, Candidate, sought
 from calibration.discovery.catalogue_of_motions import of_motion
 from calibration.discovery.listed import Listed, Scales
+from calibration.discovery.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS
 from calibration.discovery.returning import AT_ONCE, delays
 from calibration.parameters import Free
 from jaxhydro.environment import DOFS, STANDARD_GRAVITY
@@ -113,14 +114,14 @@ def _of_mass(known: Listed, model: Model, scales: Mapping[str, Scales]) -> None:
     """What was weighed wrongly."""
     mass = float(model.body.mass)
     turning = np.asarray(model.body.inertia)
-    labels = [known.linear("mass_properties.mass", 0.005 * mass)]
+    labels = [known.linear("mass_properties.mass", MASS * mass)]
     for dof, name, scale in (("roll", "inertia_roll", turning[0, 0]), ("pitch", "inertia_pitch", turning[1, 1])):
         if dof in scales:
-            labels.append(known.linear(f"mass_properties.{name}", 0.01 * float(scale)))
+            labels.append(known.linear(f"mass_properties.{name}", INERTIA * float(scale)))
     if {"pitch", "roll"} & set(scales):
-        labels.append(known.linear("mass_properties.centre_z", 0.1))
+        labels.append(known.linear("mass_properties.centre_z", CENTRE_UP))
     if "pitch" in scales:
-        labels.append(known.linear("mass_properties.centre_x", 0.02))
+        labels.append(known.linear("mass_properties.centre_x", CENTRE_ALONG))
     known.add("mass_properties", None, labels, telling="weigh the model and swing it in air", source=MassError.source)
 
 

@@ -36,6 +36,8 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     except KeyboardInterrupt as stopped:
         partial = getattr(stopped, "partial", None)
         if not isinstance(partial, Diagnosis):
+            if (out / FILE).exists():
+                raise KeyboardInterrupt(f"stopped; the same command goes on from what was reached, which is in {out}") from None
             raise
         result = unfinished(partial)
     try:

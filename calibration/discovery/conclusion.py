@@ -16,6 +16,7 @@ from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence
 from calibration.discovery.words import called
+from calibration.formatting import number
 from calibration.records import Record
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from calibration.seas_results import bands_of
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 # of a motion: what is left beyond it is not for noise, nor for a model's last digits. Fitted seas of the tank's campaigns with
 # nothing missing leave up to 0.1, where mass and moorings are declared a little wrong
 LEFT = {"decay": 0.03, "waves": 0.25}
+FAR_OFF = 3.0  # times what is declared, or a third of it
 
 
 def conclude(
@@ -52,9 +54,20 @@ def conclude(
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
-        anatomy(search, before), left, share, words, next_test(search, after, verdict), (*lost, *notes), seconds,
+        anatomy(search, before), left, share, words, next_test(search, after, verdict),
+        (*lost, *far_off(search, augmented), *notes), seconds,
         latent,
     )  # fmt: skip
+
+
+def far_off(search: Search, fitted: Calibration) -> list[str]:
+    """In words, the coefficients that end far from what was declared."""
+    some = [fitted.parameters[label] for label in search.posed.base if label in fitted.parameters]
+    far = [one for one in some if one.identifiable and one.start > 0 and not 1 / FAR_OFF < one.value / one.start < FAR_OFF]
+    if not far:
+        return []
+    named = ", ".join(f"{one.label} {number(one.value, 2)} ({number(one.start, 2)})" for one in far)
+    return [f"far from what was declared (in brackets): {named}; they may stand for something that the model lacks"]
 
 
 def next_test(search: Search, after: State, verdict: str) -> str:
@@ -198,11 +211,11 @@ def effect_of(search: Search, one: Candidate, after: State) -> Effect:
     """An effect that is in the model at the end, with its evidence."""
     found, used = search.found[one.name], search.study.used
     left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
-    about = search.study.model.about(one.amplitudes[0])
+    meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)
     held = found.verdict.held if found.verdict.unseen else float("nan")
     parameters = estimates_of(search, after, one.labels) | _as_given(search, after, one.choices)
     return Effect(
-        one.effect, one.dof, about.meaning, one.source, parameters,
+        one.effect, one.dof, "; ".join(meanings), one.source, parameters,
         Evidence(found.score, found.verdict.bic, held, found.verdict.clear), max(0.0, 1 - now / left) if left > 0 else 0.0,
         found.alike, one.telling or None,
     )  # fmt: skip

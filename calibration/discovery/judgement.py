@@ -140,11 +140,12 @@ def refusal(bic: float, held: float | None, net: float, clear: float, matters: f
     """Why numbers are not enough to believe an effect, `held` and `net` of what is `where` (None: nothing to tell); else ""."""
     apart = held is not None and where == HELD_OUT
     if bic < (least := LEAST_BIC if apart else LEAST_TOGETHER):
-        return f"it gains too little in the fitted tests (BIC {bic:+.0f}, {least:.0f} are asked)"
+        asked = f"{least:.0f} are asked" if apart else f"{least:.0f} are asked where nothing held out can tell"
+        return f"it gains too little in the fitted tests (BIC {bic:+.0f}, {asked})"
     if held is not None and held < LEAST_GAIN:
         return f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
     if held is not None and net < LEAST_NET:
-        return "elsewhere the model becomes worse by it"
+        return f"all in all the {where} do not gain by it (-2 ln L {-net:+.0f})"
     if apart and bic + net < LEAST_TOGETHER:
         return f"it gains too little in fitted and held-out tests together (BIC {bic:+.0f}, -2 ln L {-net:+.0f})"
     if clear < LEAST_CLEAR:

@@ -86,11 +86,12 @@ def _measured(saved: SavedDiagnosis) -> str:
     """How many tests of which kind, and how long together."""
     each = Counter((tables.KINDS.get(one.kind, one.kind), one.use) for one in saved.tests.values())
     kinds = {kind: [f"{n} {USE.get(use, use)}" for (other, use), n in each.items() if other == kind] for kind, _ in each}
-    hours = sum(one.duration or 0.0 for one in saved.tests.values()) / 3600
+    seconds = sum(one.duration or 0.0 for one in saved.tests.values())
+    span, unit = next((s, u) for s, u in ((3600, "hours"), (60, "minutes"), (1, "s")) if seconds >= 2 * s or s == 1)
     said = "; ".join(f"{kind}: {', '.join(counts)}" for kind, counts in kinds.items())
     platform = f" of {saved.platform}" if saved.platform else ""
     tests = f"{len(saved.tests)} {'test' if len(saved.tests) == 1 else 'tests'}"
-    return f"{tests}{platform}, {number(hours, 2)} hours together at full scale ({said})."
+    return f"{tests}{platform}, {number(seconds / span, 2)} {unit} together at the platform file's scale ({said})."
 
 
 def _effect(saved: SavedDiagnosis, one: Found) -> Iterator[str]:

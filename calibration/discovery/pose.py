@@ -12,6 +12,7 @@ from calibration.discovery.catalogue import catalogue
 from calibration.discovery.gathering import study_of
 from calibration.discovery.listed import scales_of
 from calibration.discovery.looks import Prior
+from calibration.discovery.nearly_known import PRETENSION, STIFFNESS
 from calibration.discovery.study import Study
 from calibration.fit import labels_of, space_of
 from calibration.identifiability import VAGUE
@@ -26,9 +27,8 @@ from jaxhydro.statics import equilibrium, linearised
 
 WIDTH = 32  # directions at a time
 WIDE = 30.0  # what a candidate's coordinate may be, in noticeable units
-STIFFNESS, PRETENSION = 0.02, 0.02  # by which a declared mooring may be off, one standard deviation
-OF_MASS = 1.0  # ... and mass properties, in noticeable units (0.5 % of mass, 1 % of inertia, 0.1 m)
-TRIM = 3.0  # of draught and trim, in noticeable units
+OF_MASS = 1.0  # by which mass properties may be off, in noticeable units: those of `nearly_known`
+TRIM = 3.0  # ... draught and trim, in noticeable units
 ENDS = 0.7
 # by which seas may move a coefficient from where decays, or the platform file, have it, in its logarithm: a standard deviation
 # of a prior that is steep beyond three. Drag changes with a sea; linear damping does not, and stands for nothing else

@@ -142,7 +142,7 @@ class Search(Fits):
         good = in_order([one for one in tried if not one.verdict.refused])
         for best in good:
             new, chosen = best.candidate, best.state.chosen
-            name = f"round {number}: {new.name} it is"
+            name = f"round {number}: {new.name}, to the end"
             # what is only nearly known was bent by what the model lacked
             effects = {label for one in chosen for label in one.labels}
             bent = [nuisance for nuisance in self.posed.nuisances if nuisance not in effects]

@@ -1,5 +1,6 @@
 """Heads and rows of the tables of a diagnosis, for the terminal and the page."""
 
+from calibration.discovery.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.discovery.saved import SavedDiagnosis
 from calibration.discovery.words import called, plain, pretty, quantity, strength
 from calibration.formatting import number, percent, with_deviation
@@ -9,7 +10,10 @@ from calibration.tables import USE, Rows
 KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
 ORDER = list(USE)
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
-VARIED = "Let vary, as it is only nearly known: mass, trim, moorings"
+VARIED = (
+    f"Let vary, as it is only nearly known (one standard deviation: mass {percent(MASS)}, inertia {percent(INERTIA)}, centre "
+    f"of mass {CENTRE_UP:g} m up and {CENTRE_ALONG:g} m along, moorings {percent(STIFFNESS)}; trim)"
+)
 
 
 def tests(saved: SavedDiagnosis) -> Rows:

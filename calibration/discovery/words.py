@@ -24,7 +24,8 @@ NAMES = {
     "wave_excitation": "another wave excitation",
     "potential_flow": "what the platform's tables of potential flow have",
 }
-WHERE = "in the motion, and the frequencies, where it acts most"
+WHERE = "In the motion and at the frequencies where the error falls most"
+CLEAR = 2.0  # standard deviations from none: below, one of several parameters says nothing alone
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 STRENGTHS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "positive"), (0.0, "weak"))  # Kass and Raftery 1995, table in 3.2
 
@@ -68,7 +69,7 @@ def _readable(largest: float, unit: str) -> tuple[float, str]:
 
 def pretty(unit: str) -> str:
     """m2 as m²; nothing for "-"."""
-    return "" if unit == "-" else re.sub(r"(?<=[a-z])([2-4])\b", lambda found: "²³⁴"[int(found[1]) - 2], unit)
+    return "" if unit == "-" else re.sub(r"(?<=[a-z])([2-6])\b", lambda found: "²³⁴⁵⁶"[int(found[1]) - 2], unit)
 
 
 def plain(name: str) -> str:
@@ -80,6 +81,8 @@ def size(name: str, one: Parameter) -> str:
     """A parameter of an effect: its name, value, deviation and unit."""
     text = quantity(one.value, one.standard_deviation, one.unit)
     more = ", which the records do not determine" if not one.identifiable else ", at its bound" if one.at_bound else ""
+    if one.identifiable and one.standard_deviation and abs(one.value) < CLEAR * one.standard_deviation:
+        more += ", which alone could be none"
     return f"{plain(name)} {text}{more}"
 
 
@@ -135,9 +138,9 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     if gain is None:
         said.append("No test was held out to check it.")
     elif not held:
-        said.append(f"Of blocks of the tests, left out in turn, it takes away {percent(gain)} of the squared error {WHERE}.")
+        said.append(f"{WHERE}, {percent(gain)} of the squared error of blocks of the tests, each left out in turn, go.")
     elif gain >= 0:
-        said.append(f"It takes away {percent(gain)} of the squared error of tests that were not fitted {WHERE}.")
+        said.append(f"{WHERE}, {percent(gain)} of the squared error of tests that were not fitted go.")
     else:
         said.append(f"The squared error of tests that were not fitted grows by {percent(-gain)}.")
     said.append(f"It explains {percent(one.share_of_residual_explained)} of what the fitted tests left unexplained.")

@@ -94,9 +94,10 @@ def _print_results(summary: Summary, exponents) -> None:
         shown = ("-" if value != value else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in (*numbers, *one.ranges))
         rows.append((f"{channel} ({summary.units[channel]})", *shown))
     heads = ("Channel", "Mean", "Standard deviation", "over seeds", "Maximum of a seed", "over seeds")
-    table("Over the life", (*heads, *(f"Equivalent range m = {m:g}" for m in exponents)), rows)
+    if summary.failed < summary.total:
+        table("Over the life", (*heads, *(f"Equivalent range m = {m:g}" for m in exponents)), rows)
     if summary.failed:
-        share = f"; {summary.missing:.2%} of the time has no run that did not" if summary.missing else ""
+        share = f"; sea states of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
         complain(f"{summary.failed} of {summary.total} runs failed{share}")
         for run in summary.failures[:LISTED]:
             where = f"Hs {run['hs']:g} m, Tp {run['tp']:g} s, heading {run['heading']:g} deg, seed {run['seed']}"

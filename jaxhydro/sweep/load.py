@@ -42,7 +42,12 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     except (OSError, ValueError) as error:
         said = str(getattr(error, "strerror", None) or error)
         raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({said})")]) from None
-    rows = [(number, row) for number, row in enumerate(csv.reader(text.splitlines()), 1) if any(cell.strip() for cell in row)]
+    lines = text.splitlines()
+    delimiter = next((mark for mark in ";\t" if lines and mark in lines[0]), ",")
+    rows = [
+        (number, row if delimiter == "," else [cell.replace(",", ".") for cell in row])  # decimal commas
+        for number, row in enumerate(csv.reader(lines, delimiter=delimiter), 1) if any(cell.strip() for cell in row)
+    ]  # fmt: skip
     if not rows:
         raise InputError(str(path), [Problem("", f"a header {','.join(COLUMNS[:3])} and rows", "an empty file")])
     names = [cell.strip().lower() for cell in rows[0][1]]
