@@ -45,7 +45,7 @@ class Interrupted(KeyboardInterrupt):
     """Ctrl-C during a calibration; `partial` holds what was reached, None if nothing was."""
 
     def __init__(self, partial: Calibration | None):
-        super().__init__("calibration interrupted")
+        super().__init__("stopped; nothing was written")
         self.partial = partial
 
 
