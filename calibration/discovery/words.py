@@ -115,6 +115,8 @@ def change(before: float, after: float) -> str:
     if not before > 0:
         return f"is {number(after, 3)} (J)"
     share = 1 - after / before
+    if abs(share) < 0.005:
+        return f"stays as it was (J {number(before, 3)})"
     word = "falls" if share >= 0 else "grows"
     return f"{word} by {percent(abs(share))} (J from {number(before, 3)} to {number(after, 3)})"
 
