@@ -178,8 +178,8 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
     assert not {"script", "link", "iframe", "object"} & set(page.tags)
     told = ("The declared model lacks Coulomb friction in surge", "falls by 69 %", "What was measured",
             "free decay: 4 fitted, 1 held out", "What the model missed", "in phase with velocity", "What was found",
-            "force (81.0 ± 2.1) kN", "Very strong evidence", "61 % of the squared error of tests that were not", "cannot tell it from hysteresis in surge",
-            "A test that would tell: a static pull-out",
+            "force (81.0 ± 2.1) kN", "Very strong evidence", "61 % of the squared error of tests that were not",
+            "cannot tell it from hysteresis in surge", "A test that would tell: a static pull-out",
             "left unexplained: white", "The test to run next", "Error before and after", "RMSE after", "low frequency", "-24 %",
             "Fitted coefficients", "91000 ± 3000", "44000 ± 1500", "-52 %", "What was rejected", "held-out error grew", "Notes",
             "surge-2 repeats surge-1", "321 s")  # fmt: skip
