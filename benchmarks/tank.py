@@ -8,7 +8,7 @@ reference point, and what effects remember; a leading axis over runs: all tests 
 
 Laws as in benchmarks/reference_model.py and reference_waves.py, whose kernels of second order, dispersion and diffraction are
 used here; discretised another way. Columns carry `column_strips` strips over what is wet of them at the moment (up to the
-surface in waves), pontoons strips of about `pontoon_strip` m. Water: first order and difference frequencies up to 0.1 Hz
+surface in waves), pontoons strips of about `pontoon_strip` m. Water: first order and all that it binds at second order
 (without set-down), vertical stretching, MacCamy-Fuchs with phase on columns; Fourier sums at every step on a grid over x and
 depth (3 m, cubic in x; ten levels, cubic in the logarithm of the depth). Adams-Bashforth of fourth order, 0.2 s.
 
@@ -79,7 +79,7 @@ RANGES = {"column": {"Ca_t": (1.0, 1.6), "Ca_z": (0.1, 0.5), "Cd_t": (1.5, 2.5),
 DAMPING = {"B11": (4e4, 7e4), "B33": (1.5e5, 2.2e5), "B55": (3.3e8, 5e8)}
 ERRORS = {"mass": 0.002, "inertia": 0.005, "line_stiffness": 0.01, "pretension": 0.01}   # one standard deviation, of one
 PEAKEDNESS = 2.0                                                         # of JONSWAP
-LOW, CUTOFF, DIFFERENCE = 0.03, 0.3, 0.1                                 # Hz
+LOW, CUTOFF = 0.03, 0.3                                                  # Hz, of the free waves
 CYCLE = 1638.4                                                           # s, after which a sea repeats itself
 REACH = 20.0                                                             # m, excursion of the hull that the grid covers
 SPACING, LEVELS, DEEPEST, STRETCH = 3.0, 10, 28.0, 2.5                   # m, -, m, -
@@ -157,13 +157,12 @@ class Sea:
         self.first_omega = 2 * np.pi / CYCLE * self.bins
         self.k = wavenumber(self.first_omega, depth, gravity)
         self.half_steps = round(DURATIONS["sea"] / HALF) + 1
-        self.difference = None
-        if order == 2 and self.bins.size > 1:
-            found = bound(self.first_omega, self.k, 0.0 * self.k, np.angle(first), np.abs(first), depth, gravity, False)[1]
+        self.bound = None
+        if order == 2:
+            found = np.hstack(bound(self.first_omega, self.k, 0.0 * self.k, np.angle(first), np.abs(first), depth, gravity, False))
             number = np.rint(found[0] * CYCLE / (2 * np.pi)).astype(int)
-            kept = np.flatnonzero((number > 0) & (number <= DIFFERENCE * CYCLE))
-            kept = kept[np.argsort(number[kept], kind="stable")]
-            self.difference = number[kept], *found[[1, 3, 4, 5]][:, kept]          # k, phase, elevation, potential
+            kept = np.argsort(number, kind="stable")
+            self.bound = number[kept], *found[[1, 3, 4, 5]][:, kept]               # k, phase, elevation, potential
 
     @classmethod
     def jonswap(cls, hs, tp, random, **more):
@@ -177,7 +176,7 @@ class Sea:
     @property
     def size(self):
         """Frequencies 1 ... size have coefficients."""
-        return int(max(self.bins.max(), DIFFERENCE * CYCLE))
+        return int(self.bins.max() if self.bound is None else 2 * self.bins.max())
 
     def sum_of(self, coefficients, t):
         """Complex sum of coefficients (n,) on the first-order frequencies at even times from 0 (HALF s)."""
@@ -192,8 +191,8 @@ class Sea:
         found = np.zeros((self.size + 1, x.size), complex)
         for sign, amplitude in self.trains(reflected):
             found[self.bins] += amplitude[:, None] * np.exp(-1j * sign * np.outer(self.k, x))
-        for number, part, wave in self.differences(x):
-            found[number] += self.difference[3][part] @ wave
+        for number, part, wave in self.pairs(x):
+            found[number] += self.bound[3][part] @ wave
         return found[1:]
 
     def series(self, coefficients, t):
@@ -208,11 +207,11 @@ class Sea:
         if share and reflected:
             yield -1, share * self.first_amplitude * np.exp(-1j * self.first_omega * delay)
 
-    def differences(self, x):
-        """Number, slice of the pairs and exp(i (phase - k x)) of every difference frequency."""
-        if self.difference is None:
+    def pairs(self, x):
+        """Number, slice of the pairs and exp(i (phase - k x)) of every frequency that pairs bind."""
+        if self.bound is None:
             return
-        number, k, phase = self.difference[:3]
+        number, k, phase = self.bound[:3]
         edges = np.flatnonzero(np.diff(number, prepend=-1, append=-1))
         wave = np.exp(1j * (phase[:, None] - np.outer(k, x)))
         for begin, end in pairwise(edges):
@@ -231,13 +230,13 @@ class Sea:
             parts += [parts[2] * diffraction(k * radius) for radius in radii]
             for q, part in enumerate(parts):
                 found[self.bins, ..., q] += part
-        if self.difference is not None:
-            k, potential = self.difference[1], self.difference[4]
+        if self.bound is not None:
+            k, potential = self.bound[1], self.bound[4]
             cosh, sinh = self.profiles(np.abs(k), z)
             push, rise, level = potential * k, 1j * potential * np.abs(k), potential
             weights = [push[:, None] * cosh, rise[:, None] * sinh, level[:, None] * cosh]
             weights += [weights[0] * diffraction(np.abs(k) * radius)[:, None] for radius in radii]
-            for number, part, wave in self.differences(x):
+            for number, part, wave in self.pairs(x):
                 u, w, p, *diffracted = (wave.T @ weight[part] for weight in weights)
                 omega = 2 * np.pi / CYCLE * number
                 for q, value in enumerate((u, w, *(1j * omega * part for part in (u, w)), omega * p,

@@ -69,7 +69,7 @@ def test_waves_are_the_reference_models():
     setup, bins, amplitude = Setup(Spec(seed=SEED)), np.array([120, 164]), np.array([0.9 + 0.3j, -0.4 + 0.8j])
     omega = 2 * np.pi / CYCLE * bins
     free = np.abs(amplitude), omega, 0.0, np.angle(amplitude)
-    waves = Waves(*free, order=2, set_down=False, sum_band=(9.0, 9.1), stretching="vertical")
+    waves = Waves(*free, order=2, set_down=False, stretching="vertical")
     sea = Sea(bins, amplitude)
     one = Tank([setup], [(0, "", sea, 3.0, 9.0)])
     points = np.array([[-50.3, -10.0, 5.5, 24.0], [0.0] * 4, [-19.0, -0.7, -5.0, 0.4]])
