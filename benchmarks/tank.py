@@ -159,7 +159,8 @@ class Sea:
         self.half_steps = round(DURATIONS["sea"] / HALF) + 1
         self.bound = None
         if order == 2:
-            found = np.hstack(bound(self.first_omega, self.k, 0.0 * self.k, np.angle(first), np.abs(first), depth, gravity, False))
+            amplitude, phase = np.abs(first), np.angle(first)
+            found = np.hstack(bound(self.first_omega, self.k, 0.0 * self.k, phase, amplitude, depth, gravity, False))
             number = np.rint(found[0] * CYCLE / (2 * np.pi)).astype(int)
             kept = np.argsort(number, kind="stable")
             self.bound = number[kept], *found[[1, 3, 4, 5]][:, kept]               # k, phase, elevation, potential

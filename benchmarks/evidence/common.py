@@ -84,12 +84,9 @@ def keep(section: str, key: str, name: str, result: Any) -> Any:
 
 def begin() -> None:
     """What every process does first."""
-    from jaxhydro.start import quick_compilation
+    from jaxhydro.start import start
 
-    quick_compilation()
-    import jax
-
-    jax.config.update("jax_enable_x64", True)
+    start()
 
 
 def parallel(

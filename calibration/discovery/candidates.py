@@ -41,14 +41,15 @@ from jaxhydro.loads import (
 from jaxhydro.model import Model
 
 if TYPE_CHECKING:
+    from calibration.discovery.looks import Look
     from calibration.discovery.study import Study
 
 
 @dataclass(frozen=True)
 class Candidate:
     """An effect that may be missing. `amplitudes` are the labels that are null where it is not; `shapes` those that mean
-    nothing then, freed with it, and tried at the values of `grid` first, then at those that `places` finds in a residual
-    and its slopes along the first amplitude, of each of the grid; `positive`, amplitudes that physics wants above zero;
+    nothing then, freed with it, and tried at the values of `grid` first, then at those that `places` finds in a look
+    and slopes along the first amplitude, of each of the grid; `positive`, amplitudes that physics wants above zero;
     `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without the
     effect may stand in its way. `telling`: the test that would tell it from others. One's own law comes with its `load` at
     null and, by label, `sizes` of its amplitudes that are noticeable."""
@@ -58,7 +59,7 @@ class Candidate:
     amplitudes: tuple[str, ...]
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
-    places: Callable[["Study", np.ndarray, np.ndarray], tuple[Mapping[str, float], ...]] | None = None
+    places: Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]] | None = None
     positive: tuple[str, ...] = ()
     begin: Mapping[str, float] = field(default_factory=dict)
     telling: str = ""

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 
 from calibration.discovery.listed import Listed, Scales
+from calibration.discovery.swinging import RATIO, SHORTEST, periods
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     CoulombFriction,
@@ -19,7 +20,6 @@ from jaxhydro.loads import (
     WaveDriftDamping,
 )
 
-PERIODS = (8.0, 16.0, 32.0, 64.0)  # s: of hidden oscillators, tried in turn
 RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
 LONG = ("surge", "sway")
 SHARP = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
@@ -71,9 +71,10 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         [known.linear(f"hidden_oscillator{of}mass", 0.02 * s.mass)],
         shapes=(
             known.shape(f"hidden_oscillator{of}period", 16.0, 2.0, 200.0),
-            known.shape(f"hidden_oscillator{of}damping_ratio", 0.03, 0.002, 0.5),
+            known.shape(f"hidden_oscillator{of}damping_ratio", RATIO, 0.002, 0.5),
         ),
-        grid=tuple({f"hidden_oscillator{of}period": period} for period in PERIODS),
+        grid=({f"hidden_oscillator{of}period": SHORTEST},),
+        places=periods(dof),
         passive=True,
         telling=f"a longer decay in {dof}, and a hammer test of what may be loose in the hull",
         source=HiddenOscillator.source,
@@ -131,10 +132,12 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
             telling="the same irregular sea at another height: drift goes as Hs^2",
             source=WaveDrift.source,
         )
+        steady = known.linear(f"wave_drift_damping{of}steady", 1.0, 1.0)
         known.add(
             "wave_drift_damping",
             dof,
             [known.linear(f"wave_drift_damping{of}coefficient", s.force / s.rate / wave_variance)],
+            grid=({steady: 1.0}, {steady: 0.0}),
             passive=True,
             telling=f"a {dof} decay in regular waves of two heights",
             source=WaveDriftDamping.source,

@@ -14,7 +14,7 @@ from calibration.discovery.anatomy import anatomy, signature
 from calibration.discovery.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
-from calibration.discovery.result import Diagnosis, Effect, Evidence
+from calibration.discovery.result import Diagnosis, Effect, Evidence, Finding
 from calibration.discovery.words import called
 from calibration.formatting import number
 from calibration.records import Record
@@ -45,11 +45,7 @@ def conclude(
     effects = (*first, *(effect_of(search, one, after) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
-    kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
-    main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
-    told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
-    much = any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
-    verdict = "found" if effects else ("unexplained" if much else "nothing_missing")
+    verdict = "found" if effects else ("unexplained" if much(search, left) else "nothing_missing")
     lost = strays([test for test in baseline.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
@@ -58,6 +54,14 @@ def conclude(
         (*lost, *far_off(search, augmented), *notes), seconds,
         latent,
     )  # fmt: skip
+
+
+def much(search: Search, left: Sequence[Finding]) -> bool:
+    """Whether more of a motion is left in the fitted tests than noise and a model's last digits leave."""
+    kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
+    main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
+    told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
+    return any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
 
 
 def far_off(search: Search, fitted: Calibration) -> list[str]:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from calibration.campaign import Campaign
+from calibration.discovery.anatomy import anatomy
 from calibration.discovery.candidates import Candidate
-from calibration.discovery.conclusion import conclude
+from calibration.discovery.conclusion import conclude, much
 from calibration.discovery.judgement import State, given_up
 from calibration.discovery.kept import keep, resumed
 from calibration.discovery.pose import pose
@@ -84,6 +85,8 @@ def diagnose(
             elif states[-1] is fitted or again >= ROUNDS:
                 break
         states.append(search.pruned(states[-1]))
+        if not much(search, anatomy(search, states[-1])):  # what is unexplained may have bent them
+            states.append(search.weighed(states[-1]))
     except KeyboardInterrupt as stopped:
         stopped.partial = concluded()  # type: ignore[attr-defined]
         raise

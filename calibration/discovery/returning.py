@@ -6,6 +6,7 @@ import numpy as np
 from scipy.signal import find_peaks
 
 from calibration.discovery.linear import weights
+from calibration.discovery.looks import Look
 from calibration.discovery.study import Study
 from jaxhydro.loads.wave_reflection import DELAY, LATEST, SEEN
 
@@ -14,18 +15,18 @@ STEP = 0.05  # s between those that are looked at
 AT_ONCE: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0))  # the gauge did not, or did
 
 
-def delays(study: Study, residual: np.ndarray, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+def delays(study: Study, look: Look, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
     """The likeliest ones (s) for `WaveReflection`: where its `slopes` (n,) at no delay, so much later, correlate most with a
-    residual (n,), weighed as a fit does, at frequencies of first-order waves.
+    look's residual, weighed as a fit does, at frequencies of first-order waves.
 
     Were the platform linear that is what it does in waves that come back; which of these delays it is a refit tells.
     """
     later = np.arange(0.0, LATEST, STEP)
-    weight = weights(study, residual) * study.used[study.row_series]
+    weight = weights(study, look.residual) * study.used[study.row_series]
     product, power, begin = np.zeros(later.size), 0.0, sum(2 * len(cut.take) for cut in study.cuts[: -len(study.seas)])
     for record, cut in zip(study.seas, study.cuts[-len(study.seas) :]):
         rows = slice(begin, begin := begin + 2 * len(cut.take))
-        left, there = (one[rows].reshape(-1, 2) @ [1, 1j] for one in (residual, slopes))
+        left, there = (one[rows].reshape(-1, 2) @ [1, 1j] for one in (look.residual, slopes))
         duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
         line = cut.take % cut.lines
         share = np.where(line / duration > record.slow, weight[rows][::2], 0.0)

@@ -10,8 +10,8 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.fits import Fits
-from calibration.discovery.judgement import LEAST_TOGETHER, Left, State
-from calibration.discovery.linear import Predicted, predict
+from calibration.discovery.judgement import LEAST_BIC, LEAST_CLEAR, LEAST_NET, LEAST_TOGETHER, Left, State
+from calibration.discovery.linear import Predicted, away, predict
 from calibration.discovery.looks import Look
 from calibration.discovery.pose import Posed
 from calibration.discovery.result import Rejected, Score
@@ -19,6 +19,7 @@ from calibration.discovery.trials import Found, Scored, Tried, in_order
 
 ROUNDS = 6  # effects at most
 SHORTLIST = 5
+BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
 ITERATIONS = 8  # of a refit
 
@@ -82,7 +83,7 @@ class Search(Fits):
                 look = replace(state.look.beside(seen.along(mine)), place=self.shaped(state.look.place, grids[one.name][g]))
                 found = predict(self.study, look, self.prior([*state.chosen, one]))
                 if one.places is not None and g < len(one.grid):
-                    found_at = one.places(self.study, state.residual, seen.along(mine[:1]).slopes[:, 0])
+                    found_at = one.places(self.study, state.look, seen.along(mine[:1]).slopes[:, 0])
                     grids[one.name] += tuple({**one.grid[g], **shape} for shape in found_at)
                 if self.wrong_sign(one, look, found):
                     found = found._replace(gain=0 * found.gain)
@@ -187,6 +188,37 @@ class Search(Fits):
             else:
                 self.found[one.name] = self.found[one.name]._replace(verdict=verdict)
         return state
+
+    def weighed(self, state: State) -> State:
+        """The model with mass properties among the effects, where records put one further from what is declared than
+        laboratories are wrong by: they move with every fit, nearly known, so that no error tells that they are not known."""
+        one = next((one for one in self.posed.candidates if one.effect == "mass_properties"), None)
+        if one is None or one in state.chosen:
+            return state
+        mine, width = self.study.index(one.amplitudes), self.posed.prior.width[self.study.index(one.amplitudes)]
+        if np.abs(self.study.steps(state.look.place.x)[mine] / width).max() < 1:
+            return state
+        chosen = (*state.chosen, one)
+        after = self.refit(self.study.look(state.look.place, self.active(chosen)), chosen, "mass properties let go", 0.98)
+        prior = self.prior(chosen)
+        deviation = predict(self.study, after.look, prior).deviation[[after.look.active.index(i) for i in mine]]
+        far = (np.abs(self.study.steps(after.look.place.x)[mine]) - BEYOND * width) / deviation
+        squares = [float((away(self.study, at.look.place, by)[0][mine] ** 2).sum())
+                   for at, by in ((state, self.prior(state.chosen)), (after, prior))]  # fmt: skip
+        gain = float((state.likelihood - after.likelihood)[self.study.used].sum()) + squares[0] - squares[1]
+        verdict = self.judge(state, after, one, last=True)
+        bic = gain - int((far > LEAST_CLEAR).sum()) * math.log(self.count)
+        if far.max() < LEAST_CLEAR or bic < LEAST_BIC or verdict.net < -LEAST_NET:
+            return state
+        self.found[one.name] = Found(gain, state, after, verdict._replace(bic=bic, clear=float(far.max()), refused=""), ())
+        self.rejected.pop(one.name, None)
+        off = [label for label, one in zip(one.amplitudes, far) if one > LEAST_CLEAR]
+        names = " and ".join(label.split(".")[1].replace("_", " ") for label in off)
+        self.notes.append(
+            f"{names} {'are' if len(off) > 1 else 'is'} further from what is declared than what was weighed usually is; the "
+            "records are followed no better for it, as mass properties are free to move a little in every fit"
+        )
+        return after
 
     def refuse(self, one: Candidate, why: str) -> None:
         """Keep why a candidate is not in the model; "": nothing to keep."""

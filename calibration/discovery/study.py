@@ -92,6 +92,19 @@ class Study:
         return self.row_series * self.dof.shape[1] + np.concatenate([one.band for one in self.cuts])
 
     @cached_property
+    def frequency(self) -> np.ndarray:
+        """Frequency (Hz) of every pair of rows, a Fourier line's real and imaginary part."""
+        found = []
+        if self.decays is not None:
+            times = np.asarray(self.decays.data.time)
+            steps = np.repeat([one.time[1] - one.time[0] for one in self.decay_records], len(self.decays.data.dofs))
+            found.append((self.cuts[0], times.shape[1] * steps))
+        for record, cut in zip(self.seas, self.cuts[len(found) :]):
+            length = record.measured.shape[-1] * float(record.times[1] - record.times[0])
+            found.append((cut, np.full(cut.members, length)))
+        return np.concatenate([cut.take % cut.lines / length[cut.take // cut.lines] for cut, length in found])
+
+    @cached_property
     def pooled(self) -> np.ndarray:
         """Degrees of freedom by pool (s, b), zeros where a band is no pool's first."""
         found = np.zeros_like(self.dof)
@@ -138,9 +151,14 @@ class Study:
         """Numbers of directions."""
         return [self.names.index(name) for name in names]
 
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Coordinates where the study starts."""
+        return np.asarray(self.space.start)
+
     def steps(self, x: np.ndarray) -> np.ndarray:
         """How far coordinates are from where the study starts, along every direction."""
-        return self.directions @ (x - np.asarray(self.space.start)) / (self.directions**2).sum(axis=1)
+        return self.directions @ (x - self.start) / (self.directions**2).sum(axis=1)
 
     @cached_property
     def limits(self) -> np.ndarray:
@@ -152,7 +170,7 @@ class Study:
             if len(moved) == 1 and isinstance(by := self.space.free[k := int(moved[0])].transform, Scaled):
                 about = self.model.about(self.labels[k])
                 ends = np.array([by.inverse(end) for end in (about.lower, about.upper)])
-                at[:] = np.sort((ends - float(self.space.start[k])) / row[k])
+                at[:] = np.sort((ends - self.start[k]) / row[k])
         return found
 
     def value(self, label: str, x: np.ndarray) -> float:

@@ -8,10 +8,8 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.waves.irregular_sea import IrregularSea
-from jaxhydro.waves.sea import AbstractSea, WaveSea
+from jaxhydro.waves.sea import DRIFTS, AbstractSea, WaveSea
 from jaxhydro.waves.transfer import Transfer
-
-PLAIN = 3  # entries of `AbstractSea.drift` without a transfer function
 
 
 class DriftTransfer(AbstractLoad):
@@ -46,6 +44,6 @@ class DriftTransfer(AbstractLoad):
     def act(self, now: Instant, memory: Any) -> Action:
         if now.drift is None:
             return Action()
-        if now.drift.shape[0] == PLAIN:
+        if now.drift.shape[0] == DRIFTS:
             raise ValueError("the sea was made without the platform's transfer function: prepare it with `Model.transfer`")
-        return Action(force=self.values["drift_transfer.share"] * now.drift[PLAIN:])
+        return Action(force=self.values["drift_transfer.share"] * now.drift[DRIFTS:])

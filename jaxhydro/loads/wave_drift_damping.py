@@ -1,42 +1,48 @@
-"""Damping of slow motion that goes with the waves' squared envelope."""
+"""Damping of slow motion that goes with the square of the waves' height."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+
+PARAMETERS = {
+    "coefficient": both("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0),
+    "steady": both("-", "-", "share of it in {dof} that goes with the waves' mean square, not their envelope", 0.0, 1.0, 1.0),
+}
 
 
 class WaveDriftDamping(AbstractLoad):
-    """F_i = -alpha_i |a|^2 v_i along body axes, a the complex elevation of the undisturbed waves at the origin, eta = Re a.
+    """F_i = -alpha_i (s_i Hs^2/8 + (1 - s_i) |a|^2) v_i along body axes, a the complex elevation of the undisturbed waves at
+    the origin, eta = Re a, and Hs^2/8 the mean of |a|^2.
 
     A slow velocity changes the mean second-order force, to first order in it a damping that goes with the square of the
-    wave's amplitude (Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 5, section on viscous and
-    wave-drift damping). Here one number per degree of freedom, whatever the frequency of the waves, and on the whole
-    velocity where theory has the slow one: what it takes from wave-frequency motion is counted in alpha. |a|^2 holds
-    differences of frequencies only; in an irregular sea its mean is Hs^2/8. Passive.
+    wave's amplitude (Wichers 1982, On the low-frequency surge motions of vessels moored in high seas, OTC 4437; Faltinsen
+    1990, Sea Loads on Ships and Offshore Structures, chapter 5, section on viscous and wave-drift damping). Here one number
+    per degree of freedom, whatever the frequency of the waves, and on the whole velocity where theory has the slow one: what
+    it takes from wave-frequency motion is counted in alpha. `steady` (s) is 1 where the damping is that of the sea state, as
+    it is used in practice, and 0 where it comes and goes with groups of waves, as Newman's argument for slow drift would have
+    it. |a|^2 holds differences of frequencies only. Passive.
+
+    Labels are `wave_drift_damping.surge.coefficient` (alpha; N s/m3, N s/(m rad)) and `.steady` (s; -).
     """
 
     values: dict[str, Float[Array, ""]]
-    source: ClassVar[str] = "Faltinsen 1990, chapter 5"
+    source: ClassVar[str] = "Wichers 1982, OTC 4437; Faltinsen 1990, chapter 5"
 
     @classmethod
     def null(cls, dofs: Sequence[str] = ("surge", "heave", "pitch")) -> "WaveDriftDamping":
         """No such damping, in some degrees of freedom."""
-        return cls({f"wave_drift_damping.{dof}.coefficient": jnp.zeros(()) for dof in dofs})
+        return cls(nulls("wave_drift_damping", dofs, PARAMETERS, {"steady": 1.0}))
 
     def about(self, label: str) -> Parameter:
-        dof = label.split(".")[1]
-        unit = "N s/m3" if DOFS.index(dof) < 3 else "N s/(m rad)"
-        return Parameter(unit, f"damping in {dof} per squared wave envelope", 0.0)
+        return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
         if now.drift is None or not self.values:
             return Action()
-        dofs = np.array([DOFS.index(label.split(".")[1]) for label in self.values])
-        coefficients = jnp.stack([jnp.asarray(value) for value in self.values.values()])
-        return Action(body_force=(-coefficients * now.drift[0] * now.velocity[dofs]) @ np.eye(6)[dofs])
+        coefficient, steady = (entries(self.values, name) for name in PARAMETERS)
+        square = steady * now.drift[3] + (1 - steady) * now.drift[0]
+        return Action(body_force=on_six(-coefficient * square * those(now.velocity, self.values), self.values))

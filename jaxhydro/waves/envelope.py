@@ -47,9 +47,9 @@ def envelope(
     start: Float[Array, ""],
     transfer: Transfer | None = None,
 ) -> Envelope:
-    """|a|^2, its Hilbert transform and Re(a_w conj(a)), a the complex elevation at the origin and a_w that with components
-    times `weight`, and the six forces of a `transfer`, times `share`, at steps from `start` (s) on of which `size` are a
-    period.
+    """|a|^2, its Hilbert transform, Re(a_w conj(a)) and the mean of |a|^2, a the complex elevation at the origin and a_w that
+    with components times `weight`, and the six forces of a `transfer`, times `share`, at steps from `start` (s) on of which
+    `size` are a period.
 
     By products over one period at so many times that every difference of frequencies has a place of its own.
     """
@@ -62,9 +62,10 @@ def envelope(
         products = jnp.concatenate([products, transfer.force(filtered)])
     found = jnp.fft.rfft(products)[:, :n] / count
     beats = found * jnp.where(jnp.arange(n) > 0, 2.0, 1.0)
-    shifted = (-1j * beats[0]).at[0].set(0.0)
+    shifted, mean = (-1j * beats[0]).at[0].set(0.0), (0.0 * beats[0]).at[0].set(beats[0, 0])
     turn = jnp.exp(1j * 2 * math.pi / waves.period * jnp.arange(n) * start)
-    series = (jnp.fft.ifft(jnp.concatenate([jnp.stack([beats[0], shifted]), beats[1:]]) * turn, n=size) * size).real
+    rows = jnp.concatenate([jnp.stack([beats[0], shifted, beats[1], mean]), beats[2:]])
+    series = (jnp.fft.ifft(rows * turn, n=size) * size).real
     depths = waves.wavenumber * environment.depth
     tanh = jnp.tanh(depths)
     slow = 2 * waves.omega / (environment.gravity * (tanh + depths * (1 - tanh**2)))

@@ -19,6 +19,7 @@ from jaxhydro.waves.transfer import Transfer
 
 Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
 MIDDLE = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
+DRIFTS = 4  # entries of `AbstractSea.drift` without a transfer function
 
 
 class AbstractSea(eqx.Module):
@@ -43,9 +44,9 @@ class AbstractSea(eqx.Module):
         """What slow second-order forces go with (m2), of first-order waves at the origin; None: nothing is known of it.
 
         With a the complex elevation, eta = Re a: the squared envelope |a|^2; its Hilbert transform, which turns cos into sin
-        and a mean into nothing; and Re(a_w conj(a)), a_w the waves weighted by (omega / `MIDDLE`)^2. Differences of
-        frequencies only: there are no sums to be filtered out. Where the sea was made with a platform's transfer function, its
-        six forces (N, N m) come after these three.
+        and a mean into nothing; Re(a_w conj(a)), a_w the waves weighted by (omega / `MIDDLE`)^2; and the mean of |a|^2, Hs^2/8.
+        Differences of frequencies only: there are no sums to be filtered out. Where the sea was made with a platform's transfer
+        function, its six forces (N, N m) come after these `DRIFTS`.
         """
         return None
 
@@ -147,7 +148,8 @@ class WaveSea(AbstractSea):
         every = one.sum().conj()
         sooner = jnp.sign(omega[:, None] - omega)
         pairs = (sooner * (one[:, None] * one.conj()).imag).sum()
-        plain = jnp.stack([(every * every.conj()).real, pairs, (((omega / MIDDLE) ** 2 * one).sum() * every).real])
+        mean = (one * one.conj()).real.sum()
+        plain = jnp.stack([(every * every.conj()).real, pairs, (((omega / MIDDLE) ** 2 * one).sum() * every).real, mean])
         if self.transfer is None:
             return plain
         return jnp.concatenate([plain, self.transfer.force(self.transfer.at(omega) @ one)])

@@ -1,0 +1,47 @@
+"""At which periods something may swing in a hull, from a residual and from what it would do at one period."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from calibration.discovery.linear import beyond
+
+if TYPE_CHECKING:
+    from calibration.discovery.looks import Look
+    from calibration.discovery.study import Study
+
+SHORTEST, LONGEST, FINENESS = 8.0, 160.0, 1.03  # s, s, of one period to the next: a third of a resonance's width
+RATIO = 0.03  # damping ratio at null
+TRIED = 2  # periods
+
+
+def response(omega: np.ndarray, period: float) -> np.ndarray:
+    """Force (N) of a unit mass on a spring on what accelerates it by 1 m/s2 (Den Hartog 1956, chapter 3), less its sign."""
+    own = 2 * math.pi / period
+    spring = own**2 + 2j * RATIO * own * omega
+    return spring / (spring - omega**2)
+
+
+def periods(dof: str) -> Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]]:
+    """A search for the likeliest ones (s) of `HiddenOscillator` in a motion.
+
+    What a mass that swings at T does to a record is, of a linear hull, what one at `SHORTEST` does, times the ratio of their
+    responses at every frequency: one look tells of all periods. Each is weighed by how much of the residual lies along it
+    beyond what the fitted directions can do; which is right a refit tells.
+    """
+
+    def found(study: "Study", look: "Look", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+        tried = SHORTEST * FINENESS ** np.arange(int(math.log(LONGEST / SHORTEST, FINENESS)) + 1)
+        omega = 2 * math.pi * study.frequency
+        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, SHORTEST)
+        columns = np.stack([there * response(omega, period) for period in tried], axis=1)
+        rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
+        along, size = beyond(study, look, rows)
+        gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
+        peaks = find_peaks(np.pad(gain, 1))[0] - 1
+        return tuple({f"hidden_oscillator.{dof}.period": float(tried[i])} for i in peaks[np.argsort(-gain[peaks])][:TRIED])
+
+    return found
