@@ -91,12 +91,11 @@ def of_case(name: str) -> dict[str, Any]:
 
     campaign = load_campaign(folder_of(name))
     result = diagnose(campaign.model, campaign)
-    first = result.effects[0] if result.effects else None
     return {
         "verdict": result.verdict,
         "effects": [one.effect for one in result.effects],
         "motions": [one.degree_of_freedom for one in result.effects],
-        "alike": [text.split(" ")[0] for text in first.indistinguishable] if first else [],
+        "alike": [[text.split(" ")[0] for text in one.indistinguishable] for one in result.effects],
         "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (one.evidence for one in result.effects)],
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
         "refused": {f"{one.effect} {one.degree_of_freedom or ''}".strip(): one.reason for one in result.rejected},
@@ -125,17 +124,19 @@ def keep_all(results: dict[str, dict[str, Any]]) -> None:
 
 def outcome(case: Case, result: dict[str, Any]) -> str:
     """named: the right one first, or both of two; in the set: among those that cannot be told from the first, or found after
-    it, or one of two; else what was said."""
+    it; of two, each named or among those that cannot be told from one that is; part: one of two; else what was said."""
     if not result["effects"]:
         return "nothing" if result["verdict"] == "nothing_missing" else "unexplained"
     if not case.effect:
         return "false alarm"
+    alike = {one for some in result["alike"] for one in some}
     if len(case.effects) == 2:
-        found = sum(one in result["effects"] for one in case.effects)
-        return ("another", "in the set", "named")[found]
+        if (named := sum(one in result["effects"] for one in case.effects)) == 2:
+            return "named"
+        return "in the set" if set(case.effects) <= alike | set(result["effects"]) else "part" if named else "another"
     if result["effects"][0] == case.effect:
         return "named"
-    return "in the set" if case.effect in result["alike"] or case.effect in result["effects"] else "another"
+    return "in the set" if case.effect in [*result["alike"][0], *result["effects"]] else "another"
 
 
 def run(figures: Path, processes: int, most: int) -> Section:
@@ -188,7 +189,9 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     held = [ratio[case] for case in middle if case in ratio]
     near = sum(one <= FACTOR for one in held)
     total = sum(1 for _ in cases())
-    two = f"; of two effects at once both were found in {share(both, len(pairs))}" if pairs else ""
+    in_sets = both + pairs.count("in the set")
+    listed_both = f"and with those that they cannot be told from in {share(in_sets, len(pairs))}"
+    two = f"; of two effects at once both were found in {share(both, len(pairs))}, {listed_both}" if pairs else ""
     by = f", {earlier} of them by earlier sources" if earlier else ""
     text = (
         f"Nine decays and two seas of 1600 s each, from `benchmarks/tank.py`, a plain NumPy tank that shares no code with the "
@@ -290,7 +293,7 @@ def draw(results: dict[Case, dict[str, Any]], path: Path) -> Path:
             ax.axvline(len(columns) - 2.5, color=GREY, lw=0.6)
             ax.grid(visible=False)
             ax.set_xlabel("said first")
-            ax.set_title(f"{STRENGTHS[strength]} effects", loc="left")
+            ax.set_title(f"{STRENGTHS[strength]} strength", loc="left")
         figure.axes[0].set_ylabel("missing in the tank")
         header(figure, f"{len(one)} campaigns: what is missing, and what a diagnosis says first")
         save(figure, path)
@@ -306,7 +309,10 @@ def _words(case: Case, said: str, result: dict[str, Any], ratio: float | None = 
     right = [one for one in effects if one in case.effects]
     first, left = effects[0], effects[1:]
     if len(case.effects) == 2 and right:
-        first, left = "both" if len(right) == 2 else f"{right[0]} alone", [one for one in effects if one not in right]
+        left = [one for one in effects if one not in right]
+        first = "both" if len(right) == 2 else f"{right[0]} alone"
+        if said == "in the set":
+            first = f"{right[0]}, {left.pop(0)} or the other"
     elif said in ("named", "in the set"):
         first = "named" if said == "named" else f"{first} or it"
     return first + (f" [{', '.join(left)}]" if left else "") + number

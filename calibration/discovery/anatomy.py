@@ -10,6 +10,7 @@ import numpy as np
 
 from calibration.discovery.result import Finding
 from calibration.formatting import number
+from calibration.manifest import WAVE
 
 if TYPE_CHECKING:
     from calibration.discovery.judgement import State
@@ -57,7 +58,8 @@ def signature(search: Search, before: State, after: State) -> tuple[float, str]:
     total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = left / total if total > 0 else 0.0
     if not (after.left.squares.sum(axis=1) > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
-        declared = all(record.noise_declared for record in search.campaign.records if record.use == "fit")
+        fitted = [record for record in search.campaign.records if record.use == "fit"]
+        declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
         return share, f"white at the {'declared noise level' if declared else 'level of the noise, which was estimated'}"
     by_motion: dict[tuple[str, str], float] = {}
     for one, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from calibration.discovery.looks import Place
     from calibration.discovery.search import Search
 
-# of a motion: what is left beyond it is not for noise, nor for a model's last digits. Fitted seas of the tank's campaigns with
-# nothing missing leave up to 0.1, where mass and moorings are declared a little wrong
-LEFT = {"decay": 0.03, "waves": 0.25}
+# of a motion: what is left beyond it, and twice the noise, is not for noise, nor for a model's last digits. Fitted seas of the
+# tank's campaigns with nothing missing leave up to 0.04
+LEFT = {"decay": 0.03, "waves": 0.05}
 FAR_OFF = 3.0  # times what is declared, or a third of it
 
 

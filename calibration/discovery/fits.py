@@ -21,6 +21,7 @@ from calibration.residuals import first_guess
 
 LAST = 50  # iterations of what is let in
 LOOKS = 8  # slopes taken anew in that
+BETTER = 1.0  # of -2 ln L: what another fit has to gain to be gone on with
 
 
 class Fits:
@@ -88,6 +89,17 @@ class Fits:
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""
         return self.state(chosen, self.fit(look, chosen, LAST, LOOKS, name, fraction))
+
+    def tried_from(self, place: Place, state: State, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
+        """A state; where a fit of some effects from another place follows the fitted tests better, that one. It is looked for
+        with the state's slopes, and fitted anew only where it seems to be there."""
+        look = state.look.along(self.active(chosen))
+        there = replace(look, place=place, residual=self.study.residual(place))
+        reached = self.fit(there, chosen, LAST, 0, name, fraction).look
+        gain = float((state.likelihood - likelihoods(self.study, reached.residual))[self.study.used].sum())
+        if gain < BETTER:
+            return state
+        return self.likeliest(state, self.refit(self.study.look(reached.place, look.active), chosen, name, fraction))
 
     def fit(self, look: Look, chosen: Sequence[Candidate], iterations: int, looks: int, name: str, fraction: float) -> Reached:
         def report(i: int, cost: float) -> None:

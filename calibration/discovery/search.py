@@ -11,7 +11,7 @@ from calibration.campaign import Campaign
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.fits import Fits
 from calibration.discovery.judgement import LEAST_BIC, LEAST_CLEAR, LEAST_NET, LEAST_TOGETHER, Left, State
-from calibration.discovery.linear import Predicted, away, predict
+from calibration.discovery.linear import Predicted, away, likelihoods, predict
 from calibration.discovery.looks import Look
 from calibration.discovery.pose import Posed
 from calibration.discovery.result import Rejected, Score
@@ -19,6 +19,7 @@ from calibration.discovery.trials import Found, Scored, Tried, in_order
 
 ROUNDS = 6  # effects at most
 SHORTLIST = 5
+HOPELESS = 300.0  # of -2 ln L, by which waves of first order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
 ITERATIONS = 8  # of a refit
@@ -48,9 +49,12 @@ class Search(Fits):
         state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
         if not self.study.linear_seas:
             return state
-        study = self.study
+        study, name = self.study, "declared model in waves of first order"
         self.take_linear_seas()
-        name = "declared model in waves of first order"
+        there = likelihoods(self.study, self.study.residual(state.look.place))
+        if float((there - state.likelihood)[study.used].sum()) > HOPELESS:
+            self.study, self.linear = study, False
+            return state
         reached = self.fit(self.study.look(state.look.place, self.base), (), ITERATIONS, 0, name, 0.12)
         first = self.state((), reached)
         better = float((state.likelihood - first.likelihood)[self.study.used].sum())
@@ -147,11 +151,10 @@ class Search(Fits):
             # what is only nearly known was bent by what the model lacked
             effects = {label for one in chosen for label in one.labels}
             bent = [nuisance for nuisance in self.posed.nuisances if nuisance not in effects]
-            places = [best.state.look.place, self.renewed(best.state.look.place, bent)]
+            after = self.refit(self.study.look(place := best.state.look.place, self.active(chosen)), chosen, name, done + 0.15)
+            after = self.tried_from(place := self.renewed(place, bent), after, chosen, name, done + 0.15)
             if self.study.seas:  # ... and so were coefficients
-                places.append(self.renewed(places[-1], self.posed.base))
-            every = [self.refit(self.study.look(place, self.active(chosen)), chosen, name, done + 0.15) for place in places]
-            after = self.likeliest(*every)
+                after = self.tried_from(self.renewed(place, self.posed.base), after, chosen, name, done + 0.15)
             state = self.challenged(state, after, new, done + 0.16)
             self.say(f"{name}: blocks left out in turn" if self.study.used.all() else name, done + 0.17)
             verdict = self.judge(state, after, new, last=True)
@@ -170,8 +173,8 @@ class Search(Fits):
     def challenged(self, without: State, after: State, one: Candidate, fraction: float) -> State:
         """A model without an effect; where that is better by far, fitted from where it is with it: any effect may help a fit
         over what held it up, and is not to be believed for that."""
-        place = self.renewed(after.look.place, one.labels)
-        other = self.refit(self.study.look(place, without.look.active), without.chosen, f"without {one.name}", fraction)
+        place, name = self.renewed(after.look.place, one.labels), f"without {one.name}"
+        other = self.tried_from(place, without, without.chosen, name, fraction)
         gain = float((without.likelihood - other.likelihood)[self.study.used].sum())
         return other if gain > LEAST_TOGETHER else without
 

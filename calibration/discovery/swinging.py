@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 SHORTEST, LONGEST, FINENESS = 8.0, 160.0, 1.03  # s, s, of one period to the next: a third of a resonance's width
 RATIO = 0.03  # damping ratio at null
 TRIED = 2  # periods
+WORTH = 10.0  # of -2 ln L: a period that promises less is not tried
 
 
 def response(omega: np.ndarray, period: float) -> np.ndarray:
@@ -41,7 +42,7 @@ def periods(dof: str) -> Callable[["Study", "Look", np.ndarray], tuple[Mapping[s
         rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
         along, size = beyond(study, look, rows)
         gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
-        peaks = find_peaks(np.pad(gain, 1))[0] - 1
+        peaks = find_peaks(np.pad(gain, 1), height=WORTH)[0] - 1
         return tuple({f"hidden_oscillator.{dof}.period": float(tried[i])} for i in peaks[np.argsort(-gain[peaks])][:TRIED])
 
     return found
