@@ -42,22 +42,28 @@ PLATFORM = {
 NOISE = 2e-4  # rad
 
 
-def release(amplitude: float, torque, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Roll of a body released at rest, with a torque (N m) of angle and rate beside what the platform file has; and noise."""
+def release(amplitude: float, torque, seed: int, swinging=None) -> tuple[np.ndarray, np.ndarray]:
+    """Roll of a body released at rest, with a torque (N m) of angle and rate beside what the platform file has; and noise.
+    `swinging` in it: inertia, period and damping ratio of what is on a spring."""
     time = np.arange(0.0, 60.0, 0.05)
+    inertia, period, ratio = swinging or (1.0, 1.0, 0.0)
+    own = 2 * np.pi / period
 
     def rate(_, y):
-        return [y[1], (-822.0 * np.sin(y[0]) - 2.4 * y[1] + torque(*y)) / (115.7 + 23.0)]
+        roll, speed, apart, moved = y
+        pull = own**2 * apart + 2 * ratio * own * (moved - speed) if swinging else 0.0
+        turn = -822.0 * np.sin(roll) - 2.4 * speed + torque(roll, speed) + inertia * pull
+        return [speed, turn / (115.7 + 23.0), moved - speed, -pull]
 
-    found = solve_ivp(rate, (0, 60), [amplitude, 0.0], t_eval=time, rtol=1e-9, atol=1e-11)
+    found = solve_ivp(rate, (0, 60), [amplitude, 0.0, 0.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-11)
     return time, found.y[0] + np.random.default_rng(seed).normal(0, NOISE, time.size)
 
 
-def campaign_of(folder, torque):
+def campaign_of(folder, torque, swinging=None):
     """Three decays of one body: two to fit, one held out."""
     tests = []
     for i, (amplitude, use) in enumerate([(0.10, "fit"), (0.30, "fit"), (0.22, "holdout")]):
-        time, roll = release(amplitude, torque, i)
+        time, roll = release(amplitude, torque, i, swinging)
         columns = np.column_stack([time, roll])
         np.savetxt(folder / f"roll-{i}.csv", columns, "%.6f", ",", header="time_s,roll_rad", comments="")
         tests.append({"id": f"roll-{i}", "kind": "decay", "degree_of_freedom": "roll", "file": f"roll-{i}.csv", "use": use})
@@ -139,6 +145,17 @@ def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
     held = [one for one in found.anatomy_after if one.use == "holdout"]
     before = [one for one in found.anatomy_before if one.use == "holdout"]
     assert held[0].rms < left * before[0].rms
+
+
+@pytest.mark.parametrize("period", [2.35, 3.1])
+def test_what_swings_in_a_rolling_body(tmp_path, period):
+    """Named, with its period, wherever that is between those that a coarse search would try; natural period 2.58 s."""
+    found = found_in(campaign_of(tmp_path, lambda roll, speed: 0.0, (0.4, period, 0.02)))
+    assert [one.effect for one in found.effects] == ["hidden_oscillator"]
+    said = {label.split(".")[-1]: one for label, one in found.effects[0].parameters.items()}
+    for name, true in {"mass": 0.4, "period": period, "damping_ratio": 0.02}.items():
+        assert said[name].value == pytest.approx(true, rel=0.01, abs=4 * said[name].standard_deviation), name
+    assert said["period"].standard_deviation < 0.01
 
 
 def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch):

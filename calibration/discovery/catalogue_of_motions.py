@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 
 from calibration.discovery.listed import Listed, Scales
-from calibration.discovery.swinging import RATIO, SHORTEST, periods
+from calibration.discovery.swinging import RATIO, periods
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     CoulombFriction,
@@ -20,6 +20,7 @@ from jaxhydro.loads import (
     WaveDriftDamping,
 )
 
+SHORT, LONGER = 0.4, 1.5  # of the shortest natural period, and of the motion's own: between them hidden oscillators are sought
 RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
 LONG = ("surge", "sway")
 SHARP = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
@@ -65,16 +66,17 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         telling=f"forced oscillation in {dof} at three periods",
         source=RadiationMemory.source,
     )
+    shortest, longest = SHORT * min(one.period for one in scales.values()), LONGER * s.period
     known.add(
         "hidden_oscillator",
         dof,
         [known.linear(f"hidden_oscillator{of}mass", 0.02 * s.mass)],
         shapes=(
-            known.shape(f"hidden_oscillator{of}period", 16.0, 2.0, 200.0),
+            known.shape(f"hidden_oscillator{of}period", s.period, 0.5 * shortest, 2 * longest),
             known.shape(f"hidden_oscillator{of}damping_ratio", RATIO, 0.002, 0.5),
         ),
-        grid=({f"hidden_oscillator{of}period": SHORTEST},),
-        places=periods(dof),
+        grid=({f"hidden_oscillator{of}period": shortest},),
+        places=periods(dof, shortest, longest),
         passive=True,
         telling=f"a longer decay in {dof}, and a hammer test of what may be loose in the hull",
         source=HiddenOscillator.source,

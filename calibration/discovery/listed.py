@@ -22,6 +22,11 @@ class Scales:
     force: float
     mass: float
 
+    @property
+    def period(self) -> float:
+        """Natural period (s) of the motion alone, to a tenth of its octave: programs compiled for one campaign serve others."""
+        return 2.0 ** (round(10 * math.log2(2 * math.pi * self.amplitude / self.rate)) / 10)
+
 
 def scales_of(
     mass: np.ndarray, stiffness: np.ndarray, spread: Mapping[str, float], fraction: float = 0.02

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from calibration.discovery.looks import Look
     from calibration.discovery.study import Study
 
-SHORTEST, LONGEST, FINENESS = 8.0, 160.0, 1.03  # s, s, of one period to the next: a third of a resonance's width
+Search = Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]]
+
+FINENESS = 1.03  # of one period to the next: half a resonance's width
 RATIO = 0.03  # damping ratio at null
 TRIED = 2  # periods
 WORTH = 10.0  # of -2 ln L: a period that promises less is not tried
@@ -26,18 +28,18 @@ def response(omega: np.ndarray, period: float) -> np.ndarray:
     return spring / (spring - omega**2)
 
 
-def periods(dof: str) -> Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]]:
-    """A search for the likeliest ones (s) of `HiddenOscillator` in a motion.
+def periods(dof: str, shortest: float, longest: float) -> Search:
+    """A search for the likeliest ones (s) of `HiddenOscillator` in a motion, from the `shortest` to the `longest`.
 
-    What a mass that swings at T does to a record is, of a linear hull, what one at `SHORTEST` does, times the ratio of their
+    What a mass that swings at T does to a record is, of a linear hull, what one at the shortest does, times the ratio of their
     responses at every frequency: one look tells of all periods. Each is weighed by how much of the residual lies along it
     beyond what the fitted directions can do; which is right a refit tells.
     """
 
     def found(study: "Study", look: "Look", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
-        tried = SHORTEST * FINENESS ** np.arange(int(math.log(LONGEST / SHORTEST, FINENESS)) + 1)
+        tried = shortest * FINENESS ** np.arange(int(math.log(longest / shortest, FINENESS)) + 1)
         omega = 2 * math.pi * study.frequency
-        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, SHORTEST)
+        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest)
         columns = np.stack([there * response(omega, period) for period in tried], axis=1)
         rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
         along, size = beyond(study, look, rows)
