@@ -12,14 +12,15 @@ from scipy.integrate import solve_ivp
 import jaxhydro as jh
 from calibration import calibrate
 from calibration.campaign import load_campaign
-from calibration.discovery import kept
+from calibration.discovery import kept, search
 from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.candidates import Candidate, with_effects
 from calibration.discovery.catalogue import catalogue
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.judgement import Left, given_up
+from calibration.discovery.judgement import Left, Verdict, given_up
 from calibration.discovery.linear import Predicted
 from calibration.discovery.listed import scales_of
+from calibration.discovery.looks import Place, Prior
 from calibration.discovery.pose import pose
 from calibration.discovery.search import Search
 from calibration.discovery.trials import Scored
@@ -237,6 +238,40 @@ def test_the_best_of_every_motion_is_tried_where_the_best_of_all_do_not_last():
     assert [one.candidate.effect for one in found] == ["b", "c"]
     assert (rest[0].predicted.fitted, rest[0].predicted.held) == (39.0, 99.0)
     assert Search.by_motion(SimpleNamespace(study=study), [], 5.0) == []
+
+
+@pytest.mark.parametrize(
+    ("inertia", "deviation", "told"), [(2.6, 0.17, True), (1.6, 0.17, False), (2.6, 0.9, False), (2.1, 0.17, False)]
+)
+def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told):
+    """Where it is beyond two of the deviations by which laboratories are wrong, clearly: an error that every fit may make up
+    for shows in none. Named as what it is, whatever the other rules say of an effect that takes no error away."""
+    one = Candidate("mass_properties", None, ("mass", "mass_properties.inertia_pitch"))
+    nearly, free = (Prior(np.zeros(2), np.full(2, width)) for width in (1.0, 30.0))
+
+    def away(study, place, prior):
+        z = place.x / prior.width
+        return z * (1 + (z / 3) ** 2), 0
+
+    def state(x, chosen=()):
+        look = SimpleNamespace(place=Place(np.array(x), None), active=(0, 1))
+        return SimpleNamespace(look=look, chosen=chosen, likelihood=np.zeros(1))
+
+    monkeypatch.setattr(search, "predict", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
+    monkeypatch.setattr(search, "away", away)
+    after = state([0.1, inertia], (one,))
+    under_way = SimpleNamespace(
+        posed=SimpleNamespace(candidates=[one], prior=nearly), found={}, rejected={}, notes=[], count=500.0,
+        study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], look=lambda *_: None, steps=lambda x: x),
+        active=lambda chosen: [0, 1], refit=lambda *_: after, prior=lambda chosen: free if chosen else nearly,
+        judge=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
+    )  # fmt: skip
+    found = Search.weighed(under_way, state([0.1, 0.9 * inertia]))
+    assert (found is after) == told == ("mass_properties" in under_way.found)
+    if told:
+        evidence = under_way.found["mass_properties"].verdict
+        assert evidence.refused == "" and evidence.clear == pytest.approx((2.6 - 2) / 0.17)
+        assert under_way.notes[0].startswith("inertia pitch is further from what is declared")
 
 
 def test_a_decay_that_the_seas_take_away_is_said():
