@@ -74,7 +74,10 @@ def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     from calibration.discovery.candidates import with_effects
 
     try:
-        return with_effects(model, added)
+        model = with_effects(model, added)
+        # files of before that parameter have the law of the envelope
+        groups = [label for label in model.values if label.startswith("wave_drift_damping.") and label.endswith(".steady")]
+        return model.with_values({label: 0.0 for label in groups if label not in saved.values()})
     except (KeyError, ValueError) as error:
         said = str(error.args[0] if error.args else error)
         expected = "parameters that the platform declares, or of effects that this version knows"

@@ -311,8 +311,11 @@ def _words(case: Case, said: str, result: dict[str, Any], ratio: float | None = 
     if len(case.effects) == 2 and right:
         left = [one for one in effects if one not in right]
         first = "both" if len(right) == 2 else f"{right[0]} alone"
-        if said == "in the set":
-            first = f"{right[0]}, {left.pop(0)} or the other"
+        if said == "in the set":  # the other is among those that one of these cannot be told from
+            (missing,) = set(case.effects) - set(right)
+            partner = next(name for name, alike in zip(effects, result["alike"]) if missing in alike)
+            first = f"{right[0]}, {partner} or {missing}"
+            left = [one for one in left if one != partner]
     elif said in ("named", "in the set"):
         first = "named" if said == "named" else f"{first} or it"
     return first + (f" [{', '.join(left)}]" if left else "") + number

@@ -11,6 +11,11 @@ GROWTH = 1.4  # of the edge of one band to the next
 LINES = 4  # Fourier lines in a band at least
 
 
+def step_of(time: np.ndarray) -> float:
+    """Step (s) of a record's times (n,), which need not be quite even."""
+    return float(time[-1] - time[0]) / (len(time) - 1)
+
+
 class Bands(NamedTuple):
     """Which Fourier line of a record belongs to which band.
 

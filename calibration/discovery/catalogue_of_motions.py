@@ -20,7 +20,8 @@ from jaxhydro.loads import (
     WaveDriftDamping,
 )
 
-SHORT, LONGER = 0.4, 1.5  # of the shortest natural period, and of the motion's own: between them hidden oscillators are sought
+SHORT, LONGER = 0.4, 1.5  # of the shortest and the longest natural period: between them hidden oscillators are sought
+BRIEF, LASTING = 1.0, 250.0  # s: ... half and twice of which are the least and the most that they can have
 RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
 LONG = ("surge", "sway")
 SHARP = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
@@ -66,13 +67,14 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         telling=f"forced oscillation in {dof} at three periods",
         source=RadiationMemory.source,
     )
-    shortest, longest = SHORT * min(one.period for one in scales.values()), LONGER * s.period
+    natural = [one.period for one in scales.values()]
+    shortest, longest = max(SHORT * min(natural), BRIEF), min(LONGER * max(natural), LASTING)
     known.add(
         "hidden_oscillator",
         dof,
         [known.linear(f"hidden_oscillator{of}mass", 0.02 * s.mass)],
         shapes=(
-            known.shape(f"hidden_oscillator{of}period", s.period, 0.5 * shortest, 2 * longest),
+            known.shape(f"hidden_oscillator{of}period", min(max(s.period, shortest), longest), 0.5 * shortest, 2 * longest),
             known.shape(f"hidden_oscillator{of}damping_ratio", RATIO, 0.002, 0.5),
         ),
         grid=({f"hidden_oscillator{of}period": shortest},),

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
-from calibration.discovery.bands import Bands, Rows, bands_of, powers
+from calibration.discovery.bands import Bands, Rows, bands_of, powers, step_of
 from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.looks import FLOOR, Series
 from calibration.discovery.study import Study
@@ -136,7 +136,7 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
     found = []
     width = np.full((len(records), 3, len(data.dofs)), np.inf)
     for i, record in enumerate(records):
-        n, dt = len(record.time), float(np.median(np.diff(record.time)))
+        n, dt = len(record.time), step_of(record.time)
         cut = bands_of(n * dt, dt, data.time.shape[1], BANDS, highest)
         main = data.dofs.index(DOFS.index(record.degree_of_freedom))
         motion = powers(cut, np.asarray(data.measured[i, main])) / float(data.unit[i, main]) ** 2

@@ -138,14 +138,15 @@ def linearly(study: Study, look: Look, step: np.ndarray, own: np.ndarray) -> np.
 
 def beyond(study: Study, look: Look, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of columns (n, k): their products (k,) with a look's residual, and their squares (k,), when what its directions and the
-    decays' unknowns can do instead is projected out; weighed as a fit of the used tests does."""
+    decays' unknowns can do instead, without limit, is projected out; weighed as a fit of the used tests does."""
     root = np.sqrt(weights(study, look.residual) * study.used[study.row_series])[:, None]
     base, columns, residual = (root * one for one in (look.slopes, columns, look.residual[:, None]))
     for span in study.spans:
-        own = np.linalg.qr(root[span] * look.own[span])[0]
+        own = np.linalg.qr(root[span] * look.own[span][:, look.own[span].any(axis=0)])[0]
         for part in (base, columns, residual):
             part[span] -= own @ (own.T @ part[span])
-    own = np.linalg.qr(base / np.maximum(np.linalg.norm(base, axis=0), 1e-300))[0]
+    size = np.linalg.norm(base, axis=0)
+    own = np.linalg.qr(base[:, size > 0] / size[size > 0])[0]
     columns, residual = (part - own @ (own.T @ part) for part in (columns, residual))
     return (columns * residual).sum(axis=0), (columns**2).sum(axis=0)
 

@@ -174,7 +174,7 @@ class Search(Fits):
         """A model without an effect; where that is better by far, fitted from where it is with it: any effect may help a fit
         over what held it up, and is not to be believed for that."""
         place, name = self.renewed(after.look.place, one.labels), f"without {one.name}"
-        other = self.tried_from(place, without, without.chosen, name, fraction)
+        other = self.refit(self.study.look(place, without.look.active), without.chosen, name, fraction)
         gain = float((without.likelihood - other.likelihood)[self.study.used].sum())
         return other if gain > LEAST_TOGETHER else without
 
@@ -209,13 +209,15 @@ class Search(Fits):
         squares = [float((away(self.study, at.look.place, by)[0][mine] ** 2).sum())
                    for at, by in ((state, self.prior(state.chosen)), (after, prior))]  # fmt: skip
         gain = float((state.likelihood - after.likelihood)[self.study.used].sum()) + squares[0] - squares[1]
-        verdict = self.judge(state, after, one, last=True)
-        bic = gain - int((far > LEAST_CLEAR).sum()) * math.log(self.count)
-        if far.max() < LEAST_CLEAR or bic < LEAST_BIC or verdict.net < -LEAST_NET:
+        off = [label for label, beyond in zip(one.amplitudes, far) if beyond > LEAST_CLEAR]
+        if not off or gain - len(off) * math.log(self.count) < LEAST_BIC:
             return state
-        self.found[one.name] = Found(gain, state, after, verdict._replace(bic=bic, clear=float(far.max()), refused=""), ())
+        verdict = self.judge(state, after, one, last=True)
+        if verdict.net < -LEAST_NET:
+            return state
+        # scores and BIC are of errors, and none tells of it
+        self.found[one.name] = Found(math.nan, state, after, verdict._replace(bic=math.nan, refused=""), ())
         self.rejected.pop(one.name, None)
-        off = [label for label, one in zip(one.amplitudes, far) if one > LEAST_CLEAR]
         names = " and ".join(label.split(".")[1].replace("_", " ") for label in off)
         self.notes.append(
             f"{names} {'are' if len(off) > 1 else 'is'} further from what is declared than what was weighed usually is; the "

@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.cores import cores
-from calibration.discovery.bands import Rows
+from calibration.discovery.bands import Rows, step_of
 from calibration.discovery.evidence import (
     Frame,
     SeaRecord,
@@ -97,7 +97,7 @@ class Study:
         found = []
         if self.decays is not None:
             times = np.asarray(self.decays.data.time)
-            steps = np.repeat([one.time[1] - one.time[0] for one in self.decay_records], len(self.decays.data.dofs))
+            steps = np.repeat([step_of(one.time) for one in self.decay_records], len(self.decays.data.dofs))
             found.append((self.cuts[0], times.shape[1] * steps))
         for record, cut in zip(self.seas, self.cuts[len(found) :]):
             length = record.measured.shape[-1] * float(record.times[1] - record.times[0])

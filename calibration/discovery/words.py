@@ -157,10 +157,11 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
 def alternatives(one: Found) -> str:
     """What else it could be, and the test that would tell."""
     names = several([called(other) for other in one.indistinguishable_from])
-    said = f"These records cannot tell it from {names}." if names else "No other effect that was tried does as well."
+    compared = one.evidence.score is not None
+    said = f"These records cannot tell it from {names}." if names else "No other effect that was tried does as well." * compared
     if one.test_that_would_tell:
         said += f" A test that would tell: {one.test_that_would_tell.rstrip('.')}."
-    return said
+    return said.strip()
 
 
 def left_over(saved: SavedDiagnosis) -> str:

@@ -35,7 +35,7 @@ class WaveDriftDamping(AbstractLoad):
     @classmethod
     def null(cls, dofs: Sequence[str] = ("surge", "heave", "pitch")) -> "WaveDriftDamping":
         """No such damping, in some degrees of freedom."""
-        return cls(nulls("wave_drift_damping", dofs, PARAMETERS, {"steady": 1.0}))
+        return cls(nulls("wave_drift_damping", dofs, PARAMETERS))
 
     def about(self, label: str) -> Parameter:
         return about(label, PARAMETERS)
@@ -43,6 +43,6 @@ class WaveDriftDamping(AbstractLoad):
     def act(self, now: Instant, memory: Any) -> Action:
         if now.drift is None or not self.values:
             return Action()
-        coefficient, steady = (entries(self.values, name) for name in PARAMETERS)
+        coefficient, steady = entries(self.values, "coefficient"), entries(self.values, "steady", 1.0)
         square = steady * now.drift[3] + (1 - steady) * now.drift[0]
         return Action(body_force=on_six(-coefficient * square * those(now.velocity, self.values), self.values))

@@ -54,7 +54,7 @@ class IrregularSea(AbstractSea):
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)
 
-    def drift(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+    def drift(self, time: Float[Array, ""]) -> Float[Array, " d"]:
         return self.direct().drift(time)
 
     def direction(self) -> Float[Array, "2"]:
