@@ -33,16 +33,17 @@ SHARE = 0.1  # of computed radiation or drift that is noticeable
 
 
 def catalogue(
-    model: Model, scales: Mapping[str, Scales], waves: bool, wave_variance: float
+    model: Model, scales: Mapping[str, Scales], waves: bool, wave_variance: float, step: float = 0.0
 ) -> tuple[list[Candidate], dict[str, Free], dict[str, float]]:
     """Candidates for the motions that `scales` has, their parameters, and what is noticeable of each of these.
 
-    Coordinates are values less null, so that programs compiled for one campaign serve all of a platform.
+    `step` (s) is that of simulations in waves, which has to follow what is looked for. Coordinates are values less null, so
+    that programs compiled for one campaign serve all of a platform.
     """
     known = Listed()
     for dof in DOFS:
         if dof in scales:
-            of_motion(known, dof, scales, wave_variance if waves else None)
+            of_motion(known, dof, scales, wave_variance if waves else None, step)
     _of_tables(known, model, waves)
     _of_the_whole(known, scales)
     _of_mass(known, model, scales)

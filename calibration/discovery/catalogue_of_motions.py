@@ -21,15 +21,16 @@ from jaxhydro.loads import (
 )
 
 SHORT, LONGER = 0.4, 1.5  # of the shortest and the longest natural period: between them hidden oscillators are sought
-BRIEF, LASTING = 1.0, 250.0  # s: ... half and twice of which are the least and the most that they can have
+BRIEF, LASTING = 0.7, 250.0  # s: ... 0.8 times and twice of which they can have
+STEPS = 20  # in a period at least: Adams-Bashforth's fourth order is unstable below 15
 RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
 LONG = ("surge", "sway")
 SHARP = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
 YIELDS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hysteresis yields
 
 
-def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_variance: float | None) -> None:
-    """One motion's own; `wave_variance` (m2) is None where there are no waves."""
+def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_variance: float | None, step: float) -> None:
+    """One motion's own; `wave_variance` (m2) is None where there are no waves, `step` (s) that of simulations in waves."""
     s, i, of = scales[dof], DOFS.index(dof) + 1, f".{dof}."
     known.add(
         "coulomb_friction",
@@ -68,13 +69,14 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         source=RadiationMemory.source,
     )
     natural = [one.period for one in scales.values()]
-    shortest, longest = max(SHORT * min(natural), BRIEF), min(LONGER * max(natural), LASTING)
+    shortest = max(SHORT * min(natural), STEPS * step, BRIEF)
+    longest = max(min(LONGER * max(natural), LASTING), shortest)
     known.add(
         "hidden_oscillator",
         dof,
         [known.linear(f"hidden_oscillator{of}mass", 0.02 * s.mass)],
         shapes=(
-            known.shape(f"hidden_oscillator{of}period", min(max(s.period, shortest), longest), 0.5 * shortest, 2 * longest),
+            known.shape(f"hidden_oscillator{of}period", min(max(s.period, shortest), longest), 0.8 * shortest, 2 * longest),
             known.shape(f"hidden_oscillator{of}damping_ratio", RATIO, 0.002, 0.5),
         ),
         grid=({f"hidden_oscillator{of}period": shortest},),

@@ -18,7 +18,7 @@ from calibration.fit import labels_of, space_of
 from calibration.identifiability import VAGUE
 from calibration.manifest import IN_WAVES
 from calibration.parameters import Free, ParameterSpace
-from calibration.seas import Options, moving_channels, with_diffraction
+from calibration.seas import Options, moving_channels, sea_step, with_diffraction
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
@@ -76,7 +76,8 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     labels = labels_of(campaign, declared, sorted(motions), None)
     mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
-    candidates, scaled, units = catalogue(declared, scales_of(mass, stiffness, motions), bool(waves), variance)
+    step = sea_step(declared, options) if waves else 0.0
+    candidates, scaled, units = catalogue(declared, scales_of(mass, stiffness, motions), bool(waves), variance, step)
     for own in extra:
         if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
             raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
