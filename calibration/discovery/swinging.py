@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from calibration.discovery.looks import Look
     from calibration.discovery.study import Study
 
-Search = Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]]
+Places = Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]]
 
 FINENESS = 1.03  # of one period to the next: half a resonance's width
 RATIO = 0.03  # damping ratio at null
@@ -28,7 +28,7 @@ def response(omega: np.ndarray, period: float) -> np.ndarray:
     return spring / (spring - omega**2)
 
 
-def periods(dof: str, shortest: float, longest: float) -> Search:
+def periods(dof: str, shortest: float, longest: float) -> Places:
     """A search for the likeliest ones (s) of `HiddenOscillator` in a motion, from the `shortest` to the `longest`.
 
     What a mass that swings at T does to a record is, of a linear hull, what one at the shortest does, times the ratio of their
