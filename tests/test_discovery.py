@@ -215,6 +215,33 @@ def test_a_law_of_ones_own_takes_part(tmp_path):
     assert found.augmented.objective("holdout") < 0.1 * found.baseline.objective("holdout")
 
 
+class Runaway(AbstractLoad):
+    """A torque in roll from a memory that grows without end: silent at its null, and nothing can be said of its slopes."""
+
+    values: dict
+
+    def about(self, label):
+        return Parameter("N m s/rad", "strength of a torque that runs away", -np.inf, np.inf, 0.0)
+
+    def rest(self):
+        return jnp.zeros(())
+
+    def act(self, now, memory):
+        force = jnp.zeros(6).at[3].set(self.values["runaway.strength"] * memory)
+        return Action(force=force, memory_rate=6.0 * memory + now.earth_velocity()[3])
+
+
+def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
+    """The others are scored as ever, whatever one of them does off its null."""
+    own = Candidate(
+        "runaway", "roll", ("runaway.strength",), load=Runaway({"runaway.strength": jnp.zeros(())}),
+        sizes={"runaway.strength": 1.0},
+    )  # fmt: skip
+    found = found_in(campaign_of(tmp_path, lambda x, v: -500.0 * x**3), candidates=[own])
+    assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
+    assert "explains too little" in next(one.reason for one in found.rejected if one.effect == "runaway")
+
+
 def test_a_model_of_ones_own_is_calibrated(tmp_path):
     """With a load that no platform file has, freed by its label like any other."""
     campaign = campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x))

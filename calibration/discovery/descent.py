@@ -71,10 +71,13 @@ def fit(
     say: Callable[[int, float], None] = lambda *_: None,
 ) -> Reached:
     """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
-    `tolerance`; slopes are taken anew at most `looks` times, and once more at the end."""
+    `tolerance`; slopes are taken anew at most `looks` times, and once more at the end. It stays where
+    a simulation diverges."""
     logarithmic = study.logarithmic[list(look.active)]
     directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
+    if not np.isfinite(now):  # nothing is seen from where a simulation diverges
+        return Reached(look, 0, False)
     damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
     while taken < iterations and not settled:
         taken += 1

@@ -27,6 +27,8 @@ from calibration.residuals import Problem
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.model import Model
 
+LOST = 1e100  # slopes along which a simulation overflows: nothing is known there, and a fit stays where it is
+
 
 @dataclass(frozen=True)
 class Study:
@@ -254,7 +256,9 @@ class Study:
             slopes.append(cut(part[1][..., :q]))
             if i == 0 and self.decays is not None:
                 own = cut(part[1][..., self.width :])
-        return Look(place, active, np.concatenate(residual), np.concatenate(slopes), own)
+        along = np.concatenate(slopes)
+        along[:, ~(np.abs(along) < LOST).all(axis=0)] = 0.0
+        return Look(place, active, np.concatenate(residual), along, own)
 
     def levels(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by series and pool (s, b), rows by their `share`."""
