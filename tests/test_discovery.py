@@ -148,9 +148,10 @@ def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
     assert held[0].rms < left * before[0].rms
 
 
-def test_what_swings_in_a_rolling_body(tmp_path):
+# a body that rolls in 2.58 s: off its period, near it, where it makes two modes of one, and heavy enough for that further off
+@pytest.mark.parametrize(("inertia", "period"), [(0.4, 2.35), (0.42, 2.7), (2.8, 3.1)], ids=["off", "near", "heavy"])
+def test_what_swings_in_a_rolling_body(tmp_path, inertia, period):
     """Named, with its period, which no coarse search would meet: a resonance is some hundredths of it wide."""
-    inertia, period = 0.4, 2.35
     found = found_in(campaign_of(tmp_path, lambda roll, speed: 0.0, (inertia, period, 0.02)))
     assert [one.effect for one in found.effects] == ["hidden_oscillator"]
     said = {label.split(".")[-1]: one for label, one in found.effects[0].parameters.items()}

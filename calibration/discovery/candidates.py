@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import jax.numpy as jnp
-import numpy as np
 
+from calibration.discovery.splitting import Begins
+from calibration.discovery.swinging import Places
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
@@ -40,10 +41,6 @@ from jaxhydro.loads import (
 )
 from jaxhydro.model import Model
 
-if TYPE_CHECKING:
-    from calibration.discovery.looks import Look
-    from calibration.discovery.study import Study
-
 
 @dataclass(frozen=True)
 class Candidate:
@@ -51,17 +48,19 @@ class Candidate:
     nothing then, freed with it, and tried at the values of `grid` first, then at those that `places` finds in a look
     and slopes along the first amplitude, of each of the grid; `positive`, amplitudes that physics wants above zero;
     `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without the
-    effect may stand in its way. `telling`: the test that would tell it from others. One's own law comes with its `load` at
-    null and, by label, `sizes` of its amplitudes that are noticeable."""
+    effect may stand in its way; `begins`, the same, of coefficients too, as the records themselves say. `telling`: the test
+    that would tell it from others. One's own law comes with its `load` at null and, by label, `sizes` of its amplitudes that
+    are noticeable."""
 
     effect: str
     dof: str | None
     amplitudes: tuple[str, ...]
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
-    places: Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]] | None = None
+    places: Places | None = None
     positive: tuple[str, ...] = ()
     begin: Mapping[str, float] = field(default_factory=dict)
+    begins: Begins | None = None
     telling: str = ""
     source: str = ""
     load: AbstractLoad | None = None

@@ -2,8 +2,10 @@
 
 import math
 from collections.abc import Mapping
+from functools import partial
 
 from calibration.discovery.listed import Listed, Scales
+from calibration.discovery.splitting import beginnings
 from calibration.discovery.swinging import RATIO, periods
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
@@ -81,6 +83,7 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         ),
         grid=({f"hidden_oscillator{of}period": shortest},),
         places=periods(dof, shortest, longest),
+        begins=partial(beginnings, dof),
         passive=True,
         telling=f"a longer decay in {dof}, and a hammer test of what may be loose in the hull",
         source=HiddenOscillator.source,

@@ -1,7 +1,7 @@
 """The loop: fit, score every candidate at its null, refit a shortlist, decide on what was not fitted; until none is left."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import count
 
@@ -94,9 +94,17 @@ class Search(Fits):
                 if one.name not in best or found.fitted > best[one.name].predicted.fitted:
                     best[one.name] = Scored(one, found, look)
         ranked = sorted(best.values(), key=lambda item: -item.predicted.fitted)
-        for one, found, _ in ranked:
+        for item in ranked:
+            one, found = item.candidate, item.predicted
             self.scores.append(Score(number, one.effect, one.dof, found.fitted, len(one.amplitudes), found.held, None, None))
         return ranked
+
+    def begins(self, one: Candidate, state: State) -> tuple[Mapping[str, float], ...]:
+        """Values at which a refit begins, too: of another program, or what decays say."""
+        place = self.renewed(state.look.place, self.posed.base)
+        base, width = self.study.index(self.posed.base), self.posed.prior.width
+        said = () if one.begins is None else one.begins(self.study, place, base, width)
+        return (*([one.begin] if one.begin else ()), *said)
 
     def wrong_sign(self, one: Candidate, look: Look, found: Predicted) -> bool:
         """Whether what physics wants above zero goes below it, and clearly so."""
@@ -110,13 +118,13 @@ class Search(Fits):
         """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
         done = 0.15 + 0.8 * (number - 1) / ROUNDS
         enough = 2 * math.log(self.count)
-        ranked = self.score(state, number, done)
+        ranked = [item._replace(begins=self.begins(item.candidate, state)) for item in self.score(state, number, done)]
         some = [item for item in ranked if item.predicted.fitted > enough]
         for item in ranked:
             weak = item.predicted.fitted <= enough
             self.refuse(item.candidate, f"{'explains too little' if weak else 'others explain more'} at first order")
-        known = [item for item in ranked if item.candidate.begin]  # worth a trial whatever they are at first order
-        some = [item for item in some if not item.candidate.begin]
+        known = [item for item in ranked if item.begins]  # worth a trial whatever they are at first order
+        some = [item for item in some if not item.begins]
         state, after = self.best(state, [*known, *some[:SHORTLIST]], number, done)
         if after is None and (others := self.by_motion(some[SHORTLIST:], enough)):
             state, after = self.best(state, others, number, done + 0.1)
@@ -138,7 +146,7 @@ class Search(Fits):
         tried: list[Tried] = []
         for item in short:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
-            if item.predicted.fitted < FAR * highest and not item.candidate.begin:
+            if item.predicted.fitted < FAR * highest and not item.begins:
                 self.refuse(item.candidate, "explains far less than others")
             else:
                 tried.append(self.attempt(state, item, number, done + 0.02 * (len(tried) + 1)))
@@ -240,9 +248,9 @@ class Search(Fits):
             look = self.study.look(reached.look.place, self.active(chosen))
             reached = self.fit(look, chosen, ITERATIONS, 0, name, fraction)
         after = self.state(chosen, reached)
-        if one.begin:
-            place = self.shaped(self.renewed(state.look.place, self.posed.base), one.begin)
-            other = self.refit(self.study.look(place, self.active(chosen)), chosen, f"{name}, as computed", fraction)
+        for values in scored.begins:
+            place = self.shaped(self.renewed(state.look.place, self.posed.base), values)
+            other = self.refit(self.study.look(place, self.active(chosen)), chosen, f"{name}, from afar", fraction)
             after = self.likeliest(after, other)
         verdict = self.judge(state, after, one)
         gains = state.likelihood - after.likelihood

@@ -1,6 +1,6 @@
 """What a search makes of candidates: scored at their nulls, tried by a refit, found; and in which order they are believed."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from calibration.discovery.candidates import Candidate
@@ -13,11 +13,13 @@ SENSORS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
 
 
 class Scored(NamedTuple):
-    """A candidate at its null, at the best of its shapes: what it would gain at first order, and the look that says so."""
+    """A candidate at its null, at the best of its shapes: what it would gain at first order, and the look that says so; values
+    at which a refit begins, too, whatever is said at first order."""
 
     candidate: Candidate
     predicted: Predicted
     look: Look
+    begins: tuple[Mapping[str, float], ...] = ()
 
 
 class Tried(NamedTuple):
