@@ -174,7 +174,11 @@ MOVES = 0.2  # of the largest motion of its unit: what moves less is in the file
 
 def moving_channels(motions: Mapping[str, np.ndarray]) -> list[str]:
     """The motions that are large beside others of their unit."""
-    size = {name: float(np.std(values)) for name, values in motions.items()}
+    return moving({name: float(np.std(values)) for name, values in motions.items()})
+
+
+def moving(size: Mapping[str, float]) -> list[str]:
+    """The same, by standard deviations (m, rad)."""
     angle = {name: DOFS.index(name) > 2 for name in size}
     largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
     return [name for name in size if size[name] >= MOVES * largest[angle[name]]]

@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose
 from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
+from calibration.discovery.conclusion import much
 from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, refusal
 from calibration.discovery.looks import Series
+from calibration.discovery.result import Finding
 from calibration.discovery.study import Study
 from calibration.discovery.trials import Tried, in_order
 from calibration.records import Record
@@ -54,6 +56,23 @@ def test_a_quiet_sensor_does_not_make_a_motion_count_more():
     assert_allclose(series("surge", 0.1).least, np.sqrt(0.01**2 + share * (0.1**2 - 0.01**2)))
     assert series("surge", 0.5, noise=1e-6).weight == pytest.approx(1 / (0.5 * np.sqrt(share)))
     assert series("surge", 1e-6, noise=1e-6).weight == 50.0
+
+
+def test_a_test_is_about_what_moves_in_it():
+    """A decay about its own motion; a sea about what moves beside others of its unit, not about sway in head waves, whose
+    error may be all of it and says nothing of the model. So `much` is left of surge alone."""
+    of_decay = [series(channel, 0.01) for channel in ("surge", "heave", "sway")]
+    sizes = {"surge": 1.0, "sway": 0.1, "pitch": 0.02, "roll": 0.003, "heave": 0.3}
+    of_sea = [replace(series(name, 0.01, spread=size, use="fit"), test="sea", kind="irregular") for name, size in sizes.items()]
+    study = study_of(*of_decay, *of_sea)
+    assert list(study.main) == [True, False, False, True, False, True, False, True]
+
+    def left_of(channel: str) -> list[Finding]:
+        return [Finding("sea", "fit", channel, 0.1, 0.001, 0.9, (), "")]
+
+    under_way = SimpleNamespace(study=study)
+    assert much(under_way, left_of("surge")) and much(under_way, left_of("heave"))  # type: ignore[arg-type]
+    assert not much(under_way, [*left_of("sway"), *left_of("roll")])  # type: ignore[arg-type]
 
 
 def test_what_is_left_is_a_root_mean_square():

@@ -24,6 +24,7 @@ from calibration.discovery.looks import Look, Place, Seen, Series
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem
+from calibration.seas import moving
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.model import Model
 
@@ -78,9 +79,13 @@ class Study:
 
     @cached_property
     def main(self) -> np.ndarray:
-        """Which series are what their tests are about (s,): a decay's own motion, any in waves."""
+        """Which series are what their tests are about (s,): a decay's own motion; in waves what moves beside others of its
+        unit."""
         own = {record.id: record.degree_of_freedom for record in self.decay_records}
-        return np.array([one.channel == own.get(one.test, one.channel) for one in self.series])
+        moves = {test: moving({one.channel: one.spread for one in self.series if one.test == test})
+                  for test in {one.test for one in self.series} - set(own)}  # fmt: skip
+        return np.array([one.channel == own[one.test] if one.test in own else one.channel in moves[one.test]
+                         for one in self.series])  # fmt: skip
 
     @cached_property
     def row_series(self) -> np.ndarray:
