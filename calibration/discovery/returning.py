@@ -3,15 +3,13 @@
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from calibration.discovery.linear import weights
 from calibration.discovery.looks import Look
+from calibration.discovery.peaks import likeliest
 from calibration.discovery.study import Study
 from jaxhydro.loads.wave_reflection import DELAY, LATEST, SEEN
 
-TRIED = 2  # delays
-WORTH = 10.0  # of -2 ln L: a delay that promises less is not tried
 STEP = 0.05  # s between those that are looked at
 AT_ONCE: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0))  # the gauge did not, or did
 
@@ -37,5 +35,4 @@ def delays(study: Study, look: Look, slopes: np.ndarray) -> tuple[Mapping[str, f
             product += (both[i] * np.exp(2j * np.pi * i / duration * later)).real
         power += float(share @ np.abs(there) ** 2)
     gain = product**2 / max(power, 1e-300)
-    peaks = find_peaks(gain, height=WORTH)[0]
-    return tuple({DELAY: float(later[i])} for i in peaks[np.argsort(-gain[peaks])][:TRIED])
+    return tuple({DELAY: float(later[i])} for i in likeliest(gain))

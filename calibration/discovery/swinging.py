@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from calibration.discovery.linear import beyond
+from calibration.discovery.peaks import likeliest
 
 if TYPE_CHECKING:
     from calibration.discovery.looks import Look
@@ -17,8 +17,6 @@ Places = Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]
 
 FINENESS = 1.03  # of one period to the next: half a resonance's width
 RATIO = 0.03  # damping ratio at null
-TRIED = 2  # periods
-WORTH = 10.0  # of -2 ln L: a period that promises less is not tried
 
 
 def response(omega: np.ndarray, period: float) -> np.ndarray:
@@ -44,7 +42,6 @@ def periods(dof: str, shortest: float, longest: float) -> Places:
         rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
         along, size = beyond(study, look, rows)
         gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
-        peaks = find_peaks(np.pad(gain, 1), height=WORTH)[0] - 1
-        return tuple({f"hidden_oscillator.{dof}.period": float(tried[i])} for i in peaks[np.argsort(-gain[peaks])][:TRIED])
+        return tuple({f"hidden_oscillator.{dof}.period": float(tried[i])} for i in likeliest(np.pad(gain, 1)) - 1)
 
     return found
