@@ -183,6 +183,8 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
         seen.clear()
         again = found_in(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
     assert not any(stage.startswith("round") for stage in seen) and len(again.effects) == 1
+    assert any("ended with the effect number 1" in note for note in again.notes)
+    assert not any("ended with" in note for note in found.notes)
     search = SimpleNamespace()
     monkeypatch.setattr(kept, "fingerprint", lambda search: "of another campaign")
     assert kept.resumed(path, search) == []

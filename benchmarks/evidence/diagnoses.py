@@ -30,6 +30,12 @@ FACTOR = 1.3  # a goal: held-out error over that of a campaign with nothing miss
 TANK = [ROOT / "benchmarks" / name for name in ("tank.py", "tank_effects.py", "reference_model.py", "reference_waves.py")]
 # all campaigns take more hours than one machine is lent for: what was said of each, and by which sources, is kept with the page
 KEPT = ROOT / "docs" / "diagnoses.jsonl"
+LAWS = (
+    "Two laws of drag are not the same in both programs, so that no values of one follow the other. Where drag changes with "
+    "amplitude, in a sea the tank's goes with the surface's Keulegan-Carpenter number in all strips, the package's with every "
+    "strip's own speed; where it is apart for slow motion, the tank filters the flow relative to the strips, as HydroDyn does, "
+    "the package the platform's motion."
+)
 UNKEPT = ("refused", "left")  # long, and not on the page
 
 
@@ -200,6 +206,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
         f"apart by nothing, or found after another, in {share(listed, len(known))}; of campaigns with nothing missing "
         f"{share(alarms, len(nulls))} raised a false alarm{two}. The error of the tests that were not fitted is then within "
         f"{FACTOR} times that of the same platform in the same waves with nothing missing in {share(near, len(held))}.\n\n"
+        f"{LAWS}\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
         f"nothing missing):\n\n" + table(("effect in the tank", *STRENGTHS.values()), rows)

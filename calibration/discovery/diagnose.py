@@ -84,6 +84,8 @@ def diagnose(
                 reach(after)
             elif states[-1] is fitted or again >= ROUNDS:
                 break
+        if len(states) > ROUNDS:
+            search.notes.append(f"the search ended with the effect number {ROUNDS}, not because nothing more was found")
         states.append(search.pruned(states[-1]))
         if not much(search, anatomy(search, states[-1])):  # what is unexplained may have bent them
             states.append(search.weighed(states[-1]))

@@ -13,7 +13,7 @@ from calibration.discovery.pose import Posed
 from calibration.discovery.scoring import ITERATIONS, Scoring
 from calibration.discovery.trials import Found, Scored, Tried, in_order
 
-ROUNDS = 6  # effects at most
+ROUNDS = 10  # effects at most
 SHORTLIST = 5
 HOPELESS = 300.0  # of -2 ln L, by which waves of first order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
