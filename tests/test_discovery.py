@@ -158,6 +158,8 @@ def test_what_swings_in_a_rolling_body(tmp_path, inertia, period):
     for name, true in {"mass": inertia, "period": period, "damping_ratio": 0.02}.items():
         assert said[name].value == pytest.approx(true, rel=0.01, abs=4 * said[name].standard_deviation), name
     assert said["period"].standard_deviation < 0.01
+    # a small body's centre is known as well, for its size, as a large one's
+    assert said["mass"].standard_deviation < 0.1 * inertia
 
 
 def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch):

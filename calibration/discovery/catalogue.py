@@ -1,5 +1,6 @@
 """The effects that are looked for: which load has them, which parameters, how large they may be expected, what would tell."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from calibration.discovery.candidates import COMPUTED, Candidate, sought
 from calibration.discovery.catalogue_of_motions import of_motion
 from calibration.discovery.listed import Listed, Scales
-from calibration.discovery.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS
+from calibration.discovery.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, size
 from calibration.discovery.returning import AT_ONCE, delays
 from calibration.parameters import Free
 from jaxhydro.environment import DOFS, STANDARD_GRAVITY
@@ -28,6 +29,7 @@ from jaxhydro.loads import (
 from jaxhydro.loads.wave_reflection import COEFFICIENT, DELAY, LATER, LATEST, SEEN
 from jaxhydro.model import Model
 
+SIZE = 27.0  # m, of a platform of 20 000 t
 CUTOFFS = (0.03, 0.015, 0.06)  # Hz: below which motion is slow, tried in turn
 SHARE = 0.1  # of computed radiation or drift that is noticeable
 
@@ -40,7 +42,8 @@ def catalogue(
     `step` (s) is that of simulations in waves, which has to follow what is looked for. Coordinates are values less null, so
     that programs compiled for one campaign serve all of a platform.
     """
-    known = Listed()
+    # by octaves' tenths: programs compiled for one campaign serve others
+    known = Listed(2.0 ** (round(10 * math.log2(size(model) / SIZE)) / 10))
     for dof in DOFS:
         if dof in scales:
             of_motion(known, dof, scales, wave_variance if waves else None, step)
@@ -81,7 +84,7 @@ def _of_the_whole(known: Listed, scales: Mapping[str, Scales]) -> None:
                 known.linear("umbilical.pull", s.force),
                 known.linear("umbilical.mass", 0.1 * s.force / STANDARD_GRAVITY),
             ],
-            shapes=(known.linear("umbilical.height", 5.0, 12.0),),
+            shapes=(known.linear("umbilical.height", 5.0 * known.length, 12.0 * known.length),),
             positive=("umbilical.stiffness",),
             telling="the same decays with the cable taken off",
             source=Umbilical.source,
@@ -89,7 +92,7 @@ def _of_the_whole(known: Listed, scales: Mapping[str, Scales]) -> None:
         known.add(
             "current",
             None,
-            [known.linear("current.x", 0.03)],
+            [known.linear("current.x", 0.03 * known.time)],
             telling="decays from both sides, and a look at the basin's circulation",
             source=Current.source,
         )
@@ -105,7 +108,7 @@ def _of_the_whole(known: Listed, scales: Mapping[str, Scales]) -> None:
         known.add(
             "sensor_reference",
             None,
-            [known.linear("sensor_reference.z", 0.5), known.linear("sensor_reference.x", 0.5)],
+            [known.linear(f"sensor_reference.{axis}", 0.5 * known.length) for axis in "zx"],
             telling="an inclining test, the tracked point's place measured on the model",
             source=SensorReference.source,
         )
@@ -120,9 +123,9 @@ def _of_mass(known: Listed, model: Model, scales: Mapping[str, Scales]) -> None:
         if dof in scales:
             labels.append(known.linear(f"mass_properties.{name}", INERTIA * float(scale)))
     if {"pitch", "roll"} & set(scales):
-        labels.append(known.linear("mass_properties.centre_z", CENTRE_UP))
+        labels.append(known.linear("mass_properties.centre_z", CENTRE_UP * size(model)))
     if "pitch" in scales:
-        labels.append(known.linear("mass_properties.centre_x", CENTRE_ALONG))
+        labels.append(known.linear("mass_properties.centre_x", CENTRE_ALONG * size(model)))
     known.add("mass_properties", None, labels, telling="weigh the model and swing it in air", source=MassError.source)
 
 
@@ -141,8 +144,8 @@ def _of_strips(known: Listed, model: Model, waves: bool) -> None:
             "sea_state_dependent_drag",
             None,
             [known.linear("sea_state_dependent_drag.low_share", 0.1, 1.0)],
-            shapes=(known.shape(cutoff := "sea_state_dependent_drag.cutoff", 0.03, 0.005, 0.08),),
-            grid=tuple({cutoff: frequency} for frequency in CUTOFFS),
+            shapes=(known.shape(cutoff := "sea_state_dependent_drag.cutoff", *(f / known.time for f in (0.03, 0.005, 0.08))),),
+            grid=tuple({cutoff: frequency / known.time} for frequency in CUTOFFS),
             telling="a decay in surge in still water against one in waves",
             source="OpenFAST HydroDyn, pull request 2895",
         )
@@ -162,14 +165,14 @@ def _of_gauges(known: Listed) -> None:
     known.add(
         "sensor_lag",
         None,
-        [known.linear("sensor_lag.delay", 0.05)],
+        [known.linear("sensor_lag.delay", 0.05 * known.time)],
         telling="tap the wave gauge and the tracker at once",
         source=SensorLag.source,
     )
     known.add(
         "wave_gauge_position",
         None,
-        [known.linear("wave_gauge_position.distance", 1.0)],
+        [known.linear("wave_gauge_position.distance", known.length)],
         telling="regular waves of three periods with a second gauge",
         source=WaveGaugePosition.source,
     )

@@ -64,8 +64,8 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         "radiation_memory",
         dof,
         [known.linear(f"radiation_memory{of}strength", s.force / s.rate)],
-        shapes=(known.shape(f"radiation_memory{of}frequency", 0.6, 0.03, 4.0),),
-        grid=tuple({f"radiation_memory{of}frequency": rate} for rate in RATES),
+        shapes=(known.shape(f"radiation_memory{of}frequency", *(rate / known.time for rate in (0.6, 0.03, 4.0))),),
+        grid=tuple({f"radiation_memory{of}frequency": rate / known.time} for rate in RATES),
         passive=True,
         telling=f"forced oscillation in {dof} at three periods",
         source=RadiationMemory.source,
@@ -96,7 +96,7 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         source=StaticForce.source,
     )
     if dof in (*LONG, "pitch", "roll"):
-        default = 0.5 if DOFS.index(dof) < 3 else 0.01
+        default = 0.5 * known.length if DOFS.index(dof) < 3 else 0.01
         known.add(
             "hysteresis",
             dof,

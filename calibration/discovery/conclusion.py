@@ -15,8 +15,8 @@ from calibration.discovery.candidates import Candidate, with_candidates, with_ef
 from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence, Finding
-from calibration.discovery.words import called
-from calibration.formatting import number
+from calibration.discovery.words import called, several
+from calibration.formatting import number, percent
 from calibration.records import Record
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from calibration.seas_results import bands_of
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 # of a motion: what is left beyond it, and twice the noise, is not for noise, nor for a model's last digits. Fitted seas of the
 # tank's campaigns with nothing missing leave up to 0.04
 LEFT = {"decay": 0.03, "waves": 0.05}
+MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
+MEMORY = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
 FAR_OFF = 3.0  # times what is declared, or a third of it
 
 
@@ -45,23 +47,54 @@ def conclude(
     effects = (*first, *(effect_of(search, one, after) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
-    verdict = "found" if effects else ("unexplained" if much(search, left) else "nothing_missing")
-    lost = strays([test for test in baseline.tests if test.kind == "decay"], search.posed.declared)
+    more = much(search, left)
+    verdict = "found" if effects else ("unexplained" if more else "nothing_missing")
+    doubts = [*in_motion(search, after), *([like(after.chosen, more)] if after.chosen and more else [])]
+    lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
         anatomy(search, before), left, share, words, next_test(search, after, verdict),
-        (*lost, *far_off(search, augmented), *notes), seconds,
+        (*lost, *doubts, *far_off(search, augmented), *notes), seconds,
         latent,
     )  # fmt: skip
 
 
-def much(search: Search, left: Sequence[Finding]) -> bool:
-    """Whether more of a motion is left in the fitted tests than noise and a model's last digits leave."""
+def much(search: Search, left: Sequence[Finding]) -> list[Finding]:
+    """What is left of motions in the fitted tests, where that is more than noise and a model's last digits leave; the largest
+    share of a motion first."""
     kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
     main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
     told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
-    return any(one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]] for one in told)
+    more = [one for one in told if one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]]]
+    return sorted(more, key=lambda one: -one.relative)
+
+
+def like(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
+    """In words, that what was found does not make the model follow."""
+    names, worst = several([called(one.effect, one.dof) for one in chosen]), more[0]
+    return (
+        f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
+        "not only, what was found, and sizes are less sure than their deviations say"
+    )
+
+
+def in_motion(search: Search, state: State) -> list[str]:
+    """In words, the decays that begin in motion, where that matters to what was found."""
+    names = [called(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY]
+    study, said = search.study, []
+    if study.decays is None or not names:
+        return []
+    for record, own in zip(study.decay_records, state.look.place.own.reshape(len(study.decay_records), 3, -1)):
+        i = study.decays.data.dofs.index(DOFS.index(str(record.degree_of_freedom)))
+        if abs(own[1, i]) > MOVING * float(np.hypot(*own[:2, i])):
+            said.append(record.id)
+    if not said:
+        return []
+    return [
+        f"{several(said)} {'begin' if len(said) > 1 else 'begins'} in motion, and {several(names)} as if what has a memory "
+        "had been at rest until then: where that is not so sizes are wrong; let records begin at the release"
+    ]
 
 
 def far_off(search: Search, fitted: Calibration) -> list[str]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from calibration.discovery.linear import cost_of, linearly, solve, weights
 from calibration.discovery.looks import Look, Place, Prior
-from calibration.discovery.study import Study
+from calibration.discovery.study import LOST, Study
 
 LONGEST = 0.7  # largest step of a coordinate that is a logarithm
 LEAST = 1e-4  # of what is minimised: a step that gains less is one too many, however many samples there are
@@ -59,6 +59,11 @@ def bounded(
     return np.clip(kept, low, high), own
 
 
+def lost(residual: np.ndarray) -> bool:
+    """Whether a simulation diverges, of a test that is fitted or of one that is not: nothing is seen from there."""
+    return not bool((np.abs(residual) < LOST).all())
+
+
 def fit(
     study: Study,
     look: Look,
@@ -76,7 +81,7 @@ def fit(
     logarithmic = study.logarithmic[list(look.active)]
     directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
-    if not np.isfinite(now):  # nothing is seen from where a simulation diverges
+    if lost(look.residual):
         return Reached(look, 0, False)
     damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
     while taken < iterations and not settled:
@@ -88,7 +93,7 @@ def fit(
         residual = study.residual(there)
         cost = cost_of(study, look, residual, there, used, prior)
         expected = now - cost_of(study, look, linearly(study, look, step, own), there, used, prior)
-        gain = now - cost if np.isfinite(cost) else -np.inf
+        gain = -np.inf if lost(residual) else now - cost
         tolerance = max(tolerance, LEAST * abs(now))
         known, little = fresh or not left, 0 <= gain < tolerance or expected < tolerance
         if gain > 0:

@@ -20,7 +20,7 @@ from calibration.fit import Progress
 from calibration.seas import NO_ZERO, Options
 from jaxhydro.model import Model
 
-ABSOLUTE = f"{NO_ZERO}, and a sensor whose zero is elsewhere for ballast or a force"
+ABSOLUTE = f"{NO_ZERO}, so that a sensor's zero elsewhere is taken for ballast, or for a force"
 
 
 def diagnose(

@@ -143,7 +143,8 @@ def refusal(bic: float, held: float | None, net: float, clear: float, matters: f
         asked = f"{least:.0f} are asked" if apart else f"{least:.0f} are asked where nothing held out can tell"
         return f"it gains too little in the fitted tests (BIC {bic:+.0f}, {asked})"
     if held is not None and held < LEAST_GAIN:
-        return f"the squared error of the {where} changes by {-100 * held:+.0f} % only"
+        change = f"falls by {100 * held:.0f} % only" if held >= 0 else f"grows by {-100 * held:.0f} %"
+        return f"the squared error of the {where} {change}"
     if held is not None and net < LEAST_NET:
         return f"all in all the {where} do not gain by it (-2 ln L {-net:+.0f})"
     if apart and bic + net < LEAST_TOGETHER:

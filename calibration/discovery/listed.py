@@ -44,11 +44,19 @@ def scales_of(
 
 @dataclass(frozen=True)
 class Listed:
-    """What is listed so far: candidates, their parameters, and what is noticeable of each of these."""
+    """What is listed so far: candidates, their parameters, and what is noticeable of each of these. `length` is the platform's
+    over that of one of 20 000 t, for which lengths and frequencies are stated: Froude's law has them of another, or of a model
+    that is declared at its own scale."""
 
+    length: float = 1.0
     found: list[Candidate] = field(default_factory=list)
     free: dict[str, Free] = field(default_factory=dict)
     units: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def time(self) -> float:
+        """Times over those of a platform of 20 000 t, and speeds."""
+        return math.sqrt(self.length)
 
     def linear(self, label: str, scale: float, null: float = 0.0) -> str:
         self.free[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf)

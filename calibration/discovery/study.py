@@ -28,7 +28,7 @@ from calibration.seas import moving
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.model import Model
 
-LOST = 1e100  # slopes along which a simulation overflows: nothing is known there, and a fit stays where it is
+LOST = 1e100  # motions and slopes that are as large are of a simulation that overflows: nothing is known there
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""At which periods something may swing in a hull, from a residual and from what it would do at one period."""
+"""At which periods, and how damped, something may swing in a hull, from a residual and from what it would do at one period."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calibration.discovery.linear import beyond
-from calibration.discovery.peaks import likeliest
+from calibration.discovery.peaks import TRIED, likeliest
 
 if TYPE_CHECKING:
     from calibration.discovery.looks import Look
@@ -17,12 +17,13 @@ Places = Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]
 
 FINENESS = 1.03  # of one period to the next: half a resonance's width
 RATIO = 0.03  # damping ratio at null
+RATIOS = (RATIO, 0.2)  # that are tried
 
 
-def response(omega: np.ndarray, period: float) -> np.ndarray:
+def response(omega: np.ndarray, period: float, ratio: float) -> np.ndarray:
     """Force (N) of a unit mass on a spring on what accelerates it by 1 m/s2 (Den Hartog 1956, chapter 3), less its sign."""
     own = 2 * math.pi / period
-    spring = own**2 + 2j * RATIO * own * omega
+    spring = own**2 + 2j * ratio * own * omega
     return spring / (spring - omega**2)
 
 
@@ -37,11 +38,15 @@ def periods(dof: str, shortest: float, longest: float) -> Places:
     def found(study: "Study", look: "Look", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
         tried = shortest * FINENESS ** np.arange(int(math.log(longest / shortest, FINENESS)) + 1)
         omega = 2 * math.pi * study.frequency
-        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest)
-        columns = np.stack([there * response(omega, period) for period in tried], axis=1)
-        rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
-        along, size = beyond(study, look, rows)
-        gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
-        return tuple({f"hidden_oscillator.{dof}.period": float(tried[i])} for i in likeliest(np.pad(gain, 1)) - 1)
+        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest, RATIO)
+        best = []
+        for ratio in RATIOS:
+            columns = np.stack([there * response(omega, period, ratio) for period in tried], axis=1)
+            rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
+            along, size = beyond(study, look, rows)
+            gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
+            best += [(float(gain[i]), float(tried[i]), ratio) for i in likeliest(np.pad(gain, 1)) - 1]
+        of = f"hidden_oscillator.{dof}."
+        return tuple({f"{of}period": period, f"{of}damping_ratio": ratio} for _, period, ratio in sorted(best)[::-1][:TRIED])
 
     return found

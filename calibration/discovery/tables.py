@@ -12,7 +12,8 @@ ORDER = list(USE)
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
 VARIED = (
     f"Let vary, as it is only nearly known (one standard deviation: mass {percent(MASS)}, inertia {percent(INERTIA)}, centre "
-    f"of mass {CENTRE_UP:g} m up and {CENTRE_ALONG:g} m along, moorings {percent(STIFFNESS)}; trim)"
+    f"of mass {100 * CENTRE_UP:.2g} % up and {100 * CENTRE_ALONG:.1g} % along of the cube root of what the body displaces, "
+    f"moorings {percent(STIFFNESS)}; trim)"
 )
 
 

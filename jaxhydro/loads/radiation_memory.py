@@ -11,7 +11,7 @@ from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
 
 PARAMETERS = {
     "strength": both("N s/m", "N m s/rad", "largest radiation damping in {dof}", 0.0),
-    "frequency": both("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 5.0, 0.6),
+    "frequency": both("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 30.0, 0.6),
     "damping_ratio": both("-", "-", "width of the radiation damping in {dof}, against its frequency", 0.05, 2.0, 0.4),
 }
 
