@@ -31,7 +31,8 @@ def write_report(folder: str | PathLike[str]) -> Path:
         found = "one that was stopped: the same `jaxhydro sweep` goes on"
         raise InputError(str(folder), [Problem("", "a sweep that is done", found)])
     if not there:
-        found = f"no {RESULT}, {DIAGNOSIS}, {UNCERTAINTY} or {SWEEP}" if folder.is_dir() else "no such folder"
+        found = "a file" if folder.is_file() else "no such folder"
+        found = f"no {RESULT}, {DIAGNOSIS}, {UNCERTAINTY} or {SWEEP}" if folder.is_dir() else found
         expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
         raise InputError(str(folder), [Problem("", expected, found)])
     if there[0] == DIAGNOSIS:

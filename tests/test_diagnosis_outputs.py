@@ -118,6 +118,13 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
     less = {key: replace(getattr(result, key), tests=()) for key in ("baseline", "augmented")}
     write_diagnosis(replace(nothing(verdict="unexplained", signature="at 0.01 Hz, as Hs^2"), **less), tmp_path / "b")
     assert "at 0.01 Hz, as Hs^2" in Page(write_report(tmp_path / "b").read_text()).text
+    stopped = nothing(verdict="unexplained", scores=result.scores[:1], augmented=replace(result.augmented, converged=False))
+    write_diagnosis(stopped, tmp_path / "stopped")
+    assert "did not come to its end" in Page(write_report(tmp_path / "stopped").read_text()).text
+    quiet = replace(stopped, scores=tuple(replace(one, gain=0.5, refitted=None) for one in result.scores))
+    write_diagnosis(quiet, tmp_path / "quiet")
+    assert (tmp_path / "stopped" / "figures" / "scores.png").exists()
+    assert not (tmp_path / "quiet" / "figures" / "scores.png").exists()
     one = result.effects[0]
     unsure = replace(one.evidence, score=np.nan, delta_bic=np.inf, holdout_gain=np.nan, clear=np.nan)
     other = replace(one, effect="new", degree_of_freedom="yaw", parameters={}, telling_test=None)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from calibration.discovery.result import Diagnosis, Effect
-from calibration.discovery.search_plots import anatomy_figure, latent_figure, scores_figure
+from calibration.discovery.search_plots import LEAST, anatomy_figure, latent_figure, scores_figure
 from calibration.discovery.words import called
 from calibration.formatting import percent
 from calibration.plot import BAND_COLOURS, DECADES, HIGHEST
@@ -42,7 +42,7 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
             name = "-".join(filter(None, ("effect", effect.effect, effect.degree_of_freedom)))
             title = called(effect.effect, effect.degree_of_freedom)
             yield f"{safe_name(name)}.png", _EFFECT.format(title=title, id=row.test.id), effect_figure(row, title)
-    if diagnosis.scores:
+    if any(max(one.gain, one.refitted or 0.0) > LEAST for one in diagnosis.scores):
         yield "scores.png", _SCORES, scores_figure(diagnosis)
     if diagnosis.latent:
         largest = max(diagnosis.latent, key=lambda one: one.relative)

@@ -71,7 +71,7 @@ def coefficients(saved: SavedDiagnosis) -> Rows:
     rows = []
     for label, was, now in _parameters(saved, nearly_known=False):
         known = was is not None and now is not None and was.identifiable and now.identifiable and was.value != 0
-        moved = f"{100 * (now.value / was.value - 1):+.2g} %" if known and was and now else ""
+        moved = _moved(now.value / was.value - 1) if known and was and now else ""
         rows.append((*_of_parameter(label, was, now), moved))
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
 
@@ -80,6 +80,10 @@ def nearly_known(saved: SavedDiagnosis) -> Rows:
     """The same of those that are let vary though nobody declared them."""
     rows = [_of_parameter(*one) for one in _parameters(saved, nearly_known=True)]
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit"), rows
+
+
+def _moved(ratio: float) -> str:
+    return f"{100 * ratio:+.2g} %" if abs(ratio) < 0.995 else f"{100 * ratio:+.0f} %"
 
 
 def _parameters(saved: SavedDiagnosis, nearly_known: bool) -> list[tuple[str, Parameter | None, Parameter | None]]:

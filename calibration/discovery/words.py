@@ -92,6 +92,8 @@ def verdict(saved: SavedDiagnosis) -> str:
     names = several([called(one.effect, one.degree_of_freedom) for one in missing.effects])
     if missing.verdict == "found":
         return f"The declared model lacks {names}: {fall(saved)}."
+    if not saved.converged and not names:
+        return "The search did not come to its end: until then nothing was found that the declared model lacks."
     if missing.verdict == "nothing_missing":
         return "These records show nothing that the declared model lacks: no effect that was tried survives."
     if names:
@@ -145,7 +147,9 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
         said.append(f"{WHERE}, {percent(gain)} of the squared error of tests that were not fitted go.")
     else:
         said.append(f"The squared error of tests that were not fitted grows by {percent(-gain)}.")
-    said.append(f"It explains {percent(one.share_of_residual_explained)} of what the fitted tests left unexplained.")
+    share = one.share_of_residual_explained
+    whole = share is not None and 0.99 < share < 1
+    said.append(f"It explains {'more than 99 %' if whole else percent(share)} of what the fitted tests left unexplained.")
     if evidence.clear is not None:
         said.append(f"Its size is {number(evidence.clear, 2)} standard deviations away from none.")
     if evidence.score is not None:
