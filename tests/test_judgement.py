@@ -12,7 +12,9 @@ from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.conclusion import in_motion, like, much
 from calibration.discovery.descent import fit
+from calibration.discovery.gathering import series_of_sea
 from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, refusal
+from calibration.discovery.linear import likelihoods
 from calibration.discovery.looks import Look, Prior, Series
 from calibration.discovery.result import Finding
 from calibration.discovery.study import Study
@@ -79,6 +81,21 @@ def test_a_test_is_about_what_moves_in_it():
     assert like([Candidate("hidden_oscillator", "heave", ())], [worst]).startswith(
         "with a hidden oscillator in heave in the model 95 % of heave is left in sea: what acts is not, or not only,"
     )
+
+
+def test_what_barely_moves_in_a_sea_weighs_nothing():
+    """Sway in head waves has no degrees of freedom: damping that takes a model's own sway away would cost surge nothing."""
+    rows = np.stack([np.sin(TIME), 0.05 * np.sin(0.3 * TIME), 0.02 * np.sin(TIME)])  # surge, sway, pitch
+    sea = SimpleNamespace(measured=rows[None], times=TIME, dofs=(0, 1, 4), slow=0.03)
+    noise = {"surge": 0.01, "sway": 0.01, "pitch": 1e-4}
+    record = Record("sea", "irregular", "fit", None, TIME, {}, None, None, noise, True, 0.0, SimpleNamespace(), "sea.csv")
+    found, cut = series_of_sea(sea, [record], 0.5)  # type: ignore[arg-type]
+    assert [one.channel for one in found] == ["surge", "sway", "pitch"]
+    assert [bool(one.dof.any()) for one in found] == [True, False, True]
+    study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), (), tuple(found), (), np.zeros((0, 0)), (cut,))  # type: ignore[arg-type]
+    errors = [cut(np.stack([0 * TIME, size * np.sin(0.3 * TIME), 0 * TIME])) for size in (0.0, 3.0)]
+    assert len({float(likelihoods(study, one).sum()) for one in errors}) == 1
+    assert list(study.main) == [True, False, True]
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():

@@ -1,6 +1,7 @@
 """From a campaign's records to a study: decays in arrays, seas prepared, every motion cut into bands."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import jax.numpy as jnp
 import numpy as np
@@ -16,7 +17,7 @@ from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem, dominant_period, gather
 from calibration.runs import Run
-from calibration.seas import Options, sea_step, seas_of
+from calibration.seas import Options, moving_channels, sea_step, seas_of
 from calibration.stretches import window
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock
@@ -103,7 +104,9 @@ def of_decays(
 
 
 def series_of_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[Series], Rows]:
-    """Every motion of every test of a run, and their rows up to `highest` (Hz)."""
+    """Every motion of every test of a run, and their rows up to `highest` (Hz). What barely moves beside others of its unit has
+    no degrees of freedom: a model that sways too much in head waves would else be damped until it does not, and surge with it.
+    """
     measured, step = np.asarray(sea.measured), float(sea.times[1] - sea.times[0])
     n = measured.shape[-1]
     cut = bands_of(n * step, step, n, BANDS, highest)
@@ -111,12 +114,11 @@ def series_of_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> 
     turns = np.array(sea.dofs) >= 3
     found = []
     for record, rows in zip(records, measured):
-        motions = np.stack([powers(cut, values, TAPERED) for values in rows])
-        # sway in head waves is no more to be followed than to what surge is
-        found += [
-            _series(record, name, values, cut, motions[turns == turn].max(axis=0), sea.slow)
-            for name, values, turn in zip(names, rows, turns)
-        ]
+        motions, moves = np.stack([powers(cut, values, TAPERED) for values in rows]), moving_channels(dict(zip(names, rows)))
+        for name, values, turn in zip(names, rows, turns):
+            # sway is no more to be followed than to what surge is
+            one = _series(record, name, values, cut, motions[turns == turn].max(axis=0), sea.slow)
+            found.append(one if name in moves else replace(one, dof=0 * one.dof))
     return found, Rows.of([cut] * len(found), n, TAPERED)
 
 
