@@ -10,8 +10,9 @@ from numpy.testing import assert_allclose
 from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
-from calibration.discovery.conclusion import in_motion, like, much
+from calibration.discovery.conclusion import much
 from calibration.discovery.descent import fit
+from calibration.discovery.doubts import in_motion, like
 from calibration.discovery.gathering import series_of_sea
 from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, refusal
 from calibration.discovery.linear import likelihoods

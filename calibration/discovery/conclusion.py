@@ -12,11 +12,11 @@ from calibration.campaign import Campaign
 from calibration.conclusion import strays
 from calibration.discovery.anatomy import anatomy, signature
 from calibration.discovery.candidates import Candidate, with_candidates, with_effects
+from calibration.discovery.doubts import doubts_of
 from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence, Finding
-from calibration.discovery.words import called, several
-from calibration.formatting import number, percent
+from calibration.discovery.words import called
 from calibration.records import Record
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from calibration.seas_results import bands_of
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 # of a motion: what is left beyond it, and twice the noise, is not for noise, nor for a model's last digits. Fitted seas of the
 # tank's campaigns with nothing missing leave up to 0.04
 LEFT = {"decay": 0.03, "waves": 0.05}
-MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
-MEMORY = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
-FAR_OFF = 3.0  # times what is declared, or a third of it
 
 
 def conclude(
@@ -49,14 +46,12 @@ def conclude(
     left = anatomy(search, after)
     more = much(search, left)
     verdict = "found" if effects else ("unexplained" if more else "nothing_missing")
-    doubts = [*in_motion(search, after), *([like(after.chosen, more)] if after.chosen and more else [])]
     lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
         anatomy(search, before), left, share, words, next_test(search, after, verdict),
-        (*lost, *doubts, *far_off(search, augmented), *notes), seconds,
-        latent,
+        (*lost, *doubts_of(search, after, augmented, more), *notes), seconds, latent,
     )  # fmt: skip
 
 
@@ -68,43 +63,6 @@ def much(search: Search, left: Sequence[Finding]) -> list[Finding]:
     told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
     more = [one for one in told if one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]]]
     return sorted(more, key=lambda one: -one.relative)
-
-
-def like(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
-    """In words, that what was found does not make the model follow."""
-    names, worst = several([called(one.effect, one.dof) for one in chosen]), more[0]
-    return (
-        f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
-        "not only, what was found, and sizes are less sure than their deviations say"
-    )
-
-
-def in_motion(search: Search, state: State) -> list[str]:
-    """In words, the decays that begin in motion, where that matters to what was found."""
-    names = [called(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY]
-    study, said = search.study, []
-    if study.decays is None or not names:
-        return []
-    for record, own in zip(study.decay_records, state.look.place.own.reshape(len(study.decay_records), 3, -1)):
-        i = study.decays.data.dofs.index(DOFS.index(str(record.degree_of_freedom)))
-        if abs(own[1, i]) > MOVING * float(np.hypot(*own[:2, i])):
-            said.append(record.id)
-    if not said:
-        return []
-    return [
-        f"{several(said)} {'begin' if len(said) > 1 else 'begins'} in motion, and {several(names)} as if what has a memory "
-        "had been at rest until then: where that is not so sizes are wrong; let records begin at the release"
-    ]
-
-
-def far_off(search: Search, fitted: Calibration) -> list[str]:
-    """In words, the coefficients that end far from what was declared."""
-    some = [fitted.parameters[label] for label in search.posed.base if label in fitted.parameters]
-    far = [one for one in some if one.identifiable and one.start > 0 and not 1 / FAR_OFF < one.value / one.start < FAR_OFF]
-    if not far:
-        return []
-    named = ", ".join(f"{one.label} {number(one.value, 2)} ({number(one.start, 2)})" for one in far)
-    return [f"far from what was declared (in brackets): {named}; they may stand for something that the model lacks"]
 
 
 def next_test(search: Search, after: State, verdict: str) -> str:

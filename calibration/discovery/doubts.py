@@ -1,0 +1,66 @@
+"""What is to be doubted of a diagnosis, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calibration.discovery.candidates import Candidate
+from calibration.discovery.result import Finding
+from calibration.discovery.words import called, several
+from calibration.formatting import number, percent
+from calibration.result import Calibration
+from jaxhydro.environment import DOFS
+
+if TYPE_CHECKING:
+    from calibration.discovery.judgement import State
+    from calibration.discovery.search import Search
+
+MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
+MEMORY = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
+FAR_OFF = 3.0  # times what is declared, or a third of it
+
+
+def doubts_of(search: Search, state: State, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
+    """Of the last fit; `more`, what is left of motions beyond noise."""
+    beside = [like(state.chosen, more)] if state.chosen and more else []
+    return [*in_motion(search, state), *beside, *far_off(search, fitted)]
+
+
+def like(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
+    """In words, that what was found does not make the model follow."""
+    names, worst = several([called(one.effect, one.dof) for one in chosen]), more[0]
+    return (
+        f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
+        "not only, what was found, and sizes are less sure than their deviations say"
+    )
+
+
+def in_motion(search: Search, state: State) -> list[str]:
+    """In words, the decays that begin in motion, where that matters to what was found."""
+    names = [called(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY]
+    study, said = search.study, []
+    if study.decays is None or not names:
+        return []
+    for record, own in zip(study.decay_records, state.look.place.own.reshape(len(study.decay_records), 3, -1)):
+        i = study.decays.data.dofs.index(DOFS.index(str(record.degree_of_freedom)))
+        if abs(own[1, i]) > MOVING * float(np.hypot(*own[:2, i])):
+            said.append(record.id)
+    if not said:
+        return []
+    return [
+        f"{several(said)} {'begin' if len(said) > 1 else 'begins'} in motion, and {several(names)} as if what has a memory "
+        "had been at rest until then: where that is not so sizes are wrong; let records begin at the release"
+    ]
+
+
+def far_off(search: Search, fitted: Calibration) -> list[str]:
+    """In words, the coefficients that end far from what was declared."""
+    some = [fitted.parameters[label] for label in search.posed.base if label in fitted.parameters]
+    far = [one for one in some if one.identifiable and one.start > 0 and not 1 / FAR_OFF < one.value / one.start < FAR_OFF]
+    if not far:
+        return []
+    named = ", ".join(f"{one.label} {number(one.value, 2)} ({number(one.start, 2)})" for one in far)
+    return [f"far from what was declared (in brackets): {named}; they may stand for something that the model lacks"]
