@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
+from calibration.still import WIDTHS
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.statics import equilibrium, linearised, natural_modes
@@ -33,7 +34,6 @@ SAMPLES = 16  # in a natural period: those of a decay that are looked at
 FEWEST = 16  # samples for every mode
 WITHIN = 2.0  # times longer or shorter than the natural period: where its two modes are looked for
 APART = 0.03  # of their periods: modes that are closer are one
-WIDTHS = np.array([1.0, 1.0, 1.0, 50.0, 50.0, 50.0])  # as `natural_modes` compares rotations with translations
 RATIOS = (0.002, 0.5)  # damping ratios of a mass that may be
 ROUNDS, STEP, FURTHEST = 4, 1e-3, 3.0  # of the hull's own period; of a direction; standard deviations
 

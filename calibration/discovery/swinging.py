@@ -39,13 +39,15 @@ def periods(dof: str, shortest: float, longest: float) -> Places:
         tried = shortest * FINENESS ** np.arange(int(math.log(longest / shortest, FINENESS)) + 1)
         omega = 2 * math.pi * study.frequency
         there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest, RATIO)
-        best = []
-        for ratio in RATIOS:
-            columns = np.stack([there * response(omega, period, ratio) for period in tried], axis=1)
-            rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
-            along, size = beyond(study, look, rows)
-            gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
-            best += [(float(gain[i]), float(tried[i]), ratio) for i in likeliest(np.pad(gain, 1)) - 1]
+        columns = np.stack([there * response(omega, period, ratio) for ratio in RATIOS for period in tried], axis=1)
+        rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
+        along, size = beyond(study, look, rows)
+        gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
+        best = [
+            (float(of_ratio[i]), float(tried[i]), ratio)
+            for ratio, of_ratio in zip(RATIOS, gain.reshape(len(RATIOS), -1))
+            for i in likeliest(np.pad(of_ratio, 1)) - 1
+        ]
         of = f"hidden_oscillator.{dof}."
         return tuple({f"{of}period": period, f"{of}damping_ratio": ratio} for _, period, ratio in sorted(best)[::-1][:TRIED])
 
