@@ -195,7 +195,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     alarms, both = nulls.count("false alarm"), pairs.count("named")
     outside = [case for case in said if case.effect in OUTSIDE]
     unexplained = sum(said[case] == "unexplained" for case in outside)
-    lower = sum(bool(results[case]["effects"]) and results[case]["error"][1] < results[case]["error"][0] for case in outside)
+    lower = sum(after < before for before, after in (results[case]["error"] for case in outside))
     held = [ratio[case] for case in middle if case in ratio]
     near = sum(one <= FACTOR for one in held)
     total = sum(1 for _ in cases())
@@ -204,8 +204,8 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     two = f"; of two effects at once both were found in {share(both, len(pairs))}, {listed_both}" if pairs else ""
     by = f", {earlier} of them by earlier sources" if earlier else ""
     others = (
-        f"Of effects that no candidate has the law of, {share(unexplained, len(outside))} are said to be unexplained, and "
-        f"{share(lower, len(outside))} are answered with a law that lowers the error of the tests that were not fitted. "
+        f" Of effects that no candidate has the law of, {share(unexplained, len(outside))} are said to be unexplained, and "
+        f"{share(lower, len(outside))} are answered with a law that lowers the error of the tests that were not fitted."
     ) if outside else ""  # fmt: skip
     text = (
         f"Nine decays and two seas of 1600 s each, from `benchmarks/tank.py`, a plain NumPy tank that shares no code with the "
@@ -213,9 +213,8 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
         f"run{by}. At the middle strength the right effect is named first in {share(named, len(known))}, and among those told "
         f"apart by nothing, or found after another, in {share(listed, len(known))}; of campaigns with nothing missing "
         f"{share(alarms, len(nulls))} raised a false alarm{two}. The error of the tests that were not fitted is then within "
-        f"{FACTOR} times that of the same platform in the same waves with nothing missing in {share(near, len(held))}. {others}"
-        f"\n\n"
-        f"{LAWS}\n\n"
+        f"{FACTOR} times that of the same platform in the same waves with nothing missing in {share(near, len(held))}.{others}"
+        f"\n\n{LAWS}\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
         f"nothing missing; a force: the law proposed for what is unexplained, and the share that it gives in what was not "
@@ -323,8 +322,8 @@ def _words(case: Case, said: str, result: dict[str, Any], ratio: float | None = 
     effects = result["effects"]
     number = f" {ratio:.2f}" if ratio is not None else ""
     if not effects:
-        laws = {motion: one for motion, one in result.get("laws", {}).items() if one[0]}
-        words = "; ".join(f"{motion} by {', '.join(terms)} ({100 * part:.0f} %)" for motion, (terms, part) in laws.items())
+        laws = result.get("laws", {}).items()
+        words = "; ".join(f"{motion} by {', '.join(terms)} ({100 * part:.0f} %)" for motion, (terms, part) in laws if terms)
         return f"*{said}*{number}" + (f", a force in {words}" if words else "")
     right = [one for one in effects if one in case.effects]
     first, left = effects[0], effects[1:]
