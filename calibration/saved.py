@@ -171,7 +171,8 @@ def read_as(kind: type[S], path: str | PathLike[str]) -> S:
         raise wrong(path, f"a {RESULT}, as `jaxhydro calibrate` writes it", "no such file") from None
     except (json.JSONDecodeError, RecursionError) as error:
         place = f"line {error.lineno}, column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
-        raise wrong(path, "valid JSON", getattr(error, "msg", "lists nested too deeply"), place) from None
+        found = f"a mistake in it ({getattr(error, 'msg', 'lists nested too deeply')})"
+        raise wrong(path, "valid JSON, as jaxhydro writes it", found, place) from None
     except UnicodeDecodeError:
         raise wrong(path, "text in UTF-8", "other bytes") from None
     except (OSError, ValueError) as error:

@@ -51,6 +51,13 @@ class Failure(Open):
     reason: str
 
 
+class Used(Open):
+    """A calibration's file, and the values that were used of it, by label."""
+
+    file: str
+    values: dict[str, Number]
+
+
 class SavedSweep(Open):
     """sweep.json."""
 
@@ -63,6 +70,8 @@ class SavedSweep(Open):
     probability_without_runs: Number = 0.0
     lifetime: dict[str, Life]
     failures: list[Failure] = Field(default_factory=list)
+    notes: list[str] = Field(default_factory=list)
+    calibration: Used | None = None
 
 
 def page(saved: SavedSweep, folder: Path) -> str:
@@ -77,6 +86,11 @@ def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
         yield f'<p class="warning">{runs.failed} of {runs.total} runs failed; {share} of the life is without a run.</p>'
     seeds = f"{len(saved.seeds)} seed{'s' * (len(saved.seeds) != 1)}"
     yield f"<p>{saved.cases} sea states and headings, {seeds}: {runs.done} runs of {runs.total} done.</p>"
+    if saved.calibration is not None:
+        values = ", ".join(f"{label} = {number(value)}" for label, value in saved.calibration.values.items())
+        yield f"<p>With the values of {escape(saved.calibration.file)}: {escape(values)}.</p>"
+    if saved.notes:
+        yield f"<h2>Notes</h2>{listed(saved.notes)}"
     yield "<h2>Over the life</h2>"
     yield _LIFE
     yield _lifetimes(saved)

@@ -66,12 +66,25 @@ def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     """The model with the values, laws and effects of a calibration.json or diagnosis.json; what is to be known of them is
     printed. `asked` is the platform as it was asked for, `name` its own. Raises InputError."""
     used = with_calibration(model, asked, source)
-    if used.platform and used.platform != name:
-        complain(f"warning: {source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
-    say(f"Calibrated values used: {', '.join(used.values)}")
-    if used.vague:
-        complain(f"warning: among them the records did not determine {', '.join(used.vague)}")
+    print_used(used.values, warnings_of(used, name, source))
     return used.model
+
+
+def print_used(values: Collection[str], warnings: list[str]) -> None:
+    """Labels of calibrated values that are used, and what is to be known of them."""
+    say(f"Calibrated values used: {', '.join(values)}")
+    for warning in warnings:
+        complain(f"warning: {warning}")
+
+
+def warnings_of(used: "Applied", name: str, source: Path) -> list[str]:
+    """Why calibrated values may not be those of the platform of this name."""
+    found = []
+    if used.platform and used.platform != name:
+        found.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
+    if used.vague:
+        found.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
+    return found
 
 
 def with_calibration(model: Model, asked: str, source: Path) -> "Applied":

@@ -105,7 +105,7 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         "stretching": asked.stretching,
         "diffraction": "none" if model.cylinders is None else model.diffraction,
     }
-    usual = math.sqrt(2 * float(model.environment.gravity) / (4 * math.sqrt(energy))) / (2 * math.pi)
+    usual = usual_cutoff(4 * math.sqrt(energy), float(model.environment.gravity))
     if asked.order == 2 and asked.cutoff > usual:
         notes.append(
             f"in a sea this high second order is usually cut off at sqrt(2 g / Hs), --cutoff {usual:.2g} (Stansberg): "
@@ -121,6 +121,14 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         if about["share_of_record"] < CUT:
             notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
     return Built(sea, about, target, notes)
+
+
+def usual_cutoff(height: float, gravity: float) -> float:
+    """sqrt(2 g / Hs) / 2 pi (Hz; m, m/s2): where second order of a sea is usually cut off.
+
+    C. T. Stansberg, Non-Gaussian extremes in numerically generated second-order random waves on deep water, ISOPE 1998.
+    """
+    return math.sqrt(2 * gravity / height) / (2 * math.pi)
 
 
 def _from_spectrum(

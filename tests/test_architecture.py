@@ -46,7 +46,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.sea_command",),
     ("jaxhydro.sweep.schema", "jaxhydro.sweep.lifetime", "jaxhydro.sweep.statistics"),
     ("jaxhydro.sweep.load", "jaxhydro.sweep.cases", "jaxhydro.sweep.plot"),
-    ("jaxhydro.sweep.batch",),
+    ("jaxhydro.sweep.batch", "jaxhydro.sweep.notes"),
     ("jaxhydro.sweep.store", "jaxhydro.sweep.resources", "jaxhydro.sweep.sensitivity"),
     ("jaxhydro.sweep.worker",),
     ("jaxhydro.sweep.local", "jaxhydro.sweep.cluster"),
@@ -135,6 +135,15 @@ def test_the_shared_helpers_of_loads_are_no_loads() -> None:
     for name in modules():
         if name.startswith("jaxhydro.loads."):
             assert not classes & {what for module, what in imports(name) if module.startswith("jaxhydro.loads.")}
+
+
+def test_sweeps_are_known_to_the_edge_only() -> None:
+    """So what evidence is made of (benchmarks/evidence/common.fingerprint) does not depend on them."""
+    left_out = ("jaxhydro.sweep", "jaxhydro.sea_command", "calibration.sweep_page")
+    for name in modules():
+        if not name.startswith((*left_out, "jaxhydro.cli", "calibration.report")):
+            known = {module for module, _ in imports(name) if module.startswith(left_out)}
+            assert not known, f"{name} imports {known}"
 
 
 def test_the_simulator_does_not_know_calibration() -> None:

@@ -3,16 +3,19 @@
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from fake_sweep import SWEEP, written
 
+import jaxhydro as jh
 from calibration.report import write_report
 from jaxhydro.problems import InputError, validate
 from jaxhydro.sweep.cases import Plan, plan_of
 from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted
 from jaxhydro.sweep.load import load_sweep
+from jaxhydro.sweep.notes import notes, shares_in_band
 from jaxhydro.sweep.plot import exceedance_figure, scatter_figure
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.sweep.statistics import equivalent_ranges, frequencies, kept_of
@@ -26,8 +29,8 @@ def plan(**changes) -> Plan:
 
 
 def test_cases_are_states_by_headings_by_seeds_in_order() -> None:
-    made = plan(scatter=[{"hs": 1, "tp": 5}, {"hs": 2, "tp": 8, "probability": 3, "gamma": 2}], seeds=[4, 7],
-                headings=[0, {"heading": 30, "probability": 3}])  # fmt: skip
+    made = plan(scatter=[{"hs": 1, "tp": 5, "probability": 1}, {"hs": 2, "tp": 8, "probability": 3, "gamma": 2}], seeds=[4, 7],
+                headings=[{"heading": 0, "probability": 1}, {"heading": 30, "probability": 3}])  # fmt: skip
     assert [case.probability for case in made.cases] == [1 / 16, 3 / 16, 3 / 16, 9 / 16]
     assert [(case.hs, case.gamma, case.heading) for case in made.cases] == [(1, None, 0), (1, None, 30), (2, 2, 0), (2, 2, 30)]
     assert len(made) == 8
@@ -54,14 +57,18 @@ def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
     assert Path(sweep.platform) == tmp_path / "buoy.yaml"
     (tmp_path / "table.csv").write_text("Tp; Hs; Probability; gamma\n7; 1,5; 0,6;\n9; 3; 0,4; 2,5\n")  # as spreadsheets do
     assert load_sweep(file).scatter == sweep.scatter
+    (tmp_path / "table.csv").write_text("Tp [s],Hs (m),Probability (%),gamma\n7,1.5,0.6,\n9,3,0.4,2.5\n")
+    assert load_sweep(file).scatter == sweep.scatter
 
 
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ("Hs,Tp\n1,2\n", "line 1: expected a column probability, found hs, tp"),
+        ("Hs,Tp\n1,2\n", "line 1: expected a column probability, found Hs, Tp"),
         ("Hs,Tp,probabilty\n1,2,3\n", "found 'probabilty'. Did you mean 'probability'?"),
-        ("Hs,Tp,probability\n1,2,3\n1,x,-1\n", "line 3, column tp: expected a number > 0, found 'x'"),
+        ("Hs,Tp,probability\n1,2,3\n1,x,-1\n", "line 3, column Tp: expected a number > 0, found 'x'"),
+        ("Hs (ft),Tp,probability\n1,2,3\n", "found 'Hs (ft)'. Hs in m, Tp in s"),
+        ("Hs,Tp (min),probability (%)\n1,2,3\n", "found 'Tp (min)'. Hs in m, Tp in s"),
         ("Hs,Tp,probability\n1,2\n", "line 2: expected 3 cells, found 2"),
         ("Hs,Tp,probability\n", "expected one row or more under the header, found none"),
         ("", "found an empty file"),
@@ -82,12 +89,18 @@ def test_a_wrong_table_is_told_by_its_row(tmp_path, table, words) -> None:
         ({"scatter": []}, "scatter: expected"),
         ({"scatter": [{"hs": -1, "tp": 5}]}, "scatter[0].hs: expected a number > 0, found -1"),
         ({"scatter": {"hs": [1], "tp": [5], "probability": [[1, 2]]}}, "scatter.probability[0]: expected 1 numbers"),
-        ({"scatter": [{"hs": 1, "tp": 5, "probability": 0}]}, "expected a probability above 0, found none"),
+        ({"scatter": [{"hs": 1, "tp": 5, "probability": 0}]}, "scatter: expected a probability above 0, found none"),
+        ({"headings": [{"heading": 0, "probability": 0}]}, "headings: expected a probability above 0, found none"),
+        ({"scatter": [{"hs": 1, "tp": 5, "probability": 2}, {"hs": 1, "tp": 6}]},
+         "scatter[1]: expected a probability, as others in the list have, found none"),
+        ({"headings": [0, {"heading": 30, "probability": 0.5}]},
+         "headings[0]: expected a probability, as others in the list have, found none"),
+        ({"fatigue": {"exponents": [3, 4, 3]}}, "fatigue.exponents: expected each one once, found 3.0 twice"),
         ({"scatter": "none.csv"}, "none.csv', and there is none"),
         ({"seed": 3}, "found 'seed'. Did you mean 'seeds'?"),
         ({"seeds": [1, 1]}, "seeds: expected each one once, found 1 twice"),
         ({"headings": [0, 360]}, "headings: expected each one once, found 0 deg twice"),
-        ({"seeds": 0}, "seeds: expected a number of seeds"),
+        ({"seeds": 0}, "seeds: expected a number of seeds, 1 to 100000"),
         ({"headings": 30}, "headings: expected a list"),
         ({"cutoff": 0.02}, "cutoff: expected a number above low, 0.03 Hz, found 0.02"),
         ({"transient": 150}, "transient: expected less than the duration, 150 s, found 150"),
@@ -109,6 +122,44 @@ def test_what_differs_between_plans_is_named() -> None:
     ]  # fmt: skip
     assert list(plan().differences(plan())) == []
     assert next(plan().differences(plan(scatter=[{"hs": 2, "tp": 7}])))[0] == "cases"
+
+
+# --- notes
+
+
+def test_the_share_of_a_spectrum_in_the_band_is_that_of_its_seas() -> None:
+    """By the components of a sea, and in closed form for Pierson and Moskowitz: m0 below f goes with exp(-5/4 (fp / f)^4)."""
+    seas = [{"hs": 0.5, "tp": 3}, {"hs": 3, "tp": 9, "gamma": 2}, {"hs": 3, "tp": 9, "gamma": 5}]
+    made = plan(scatter=seas, headings=[0, 90], cutoff=0.3, duration=3600.0)
+    found = shares_in_band(made)
+    assert found.shape == (6,) and (found[::2] == found[1::2]).all()
+    for case, share in zip(made.cases[::2], found[::2]):
+        waves = jh.spectrum_components(
+            lambda w, case=case: jh.jonswap(w, case.hs, case.tp, case.gamma), 3600.0, jh.Environment(), low=0.03, cutoff=0.3,
+            seed=0,
+        )  # fmt: skip
+        assert float((waves.amplitude**2 / 2).sum()) == pytest.approx(share * case.hs**2 / 16)
+    smooth = plan(scatter=[{"hs": 0.5, "tp": 3}, {"hs": 3, "tp": 9}], spectrum="pierson_moskowitz", cutoff=0.3, duration=3600.0)
+    below = [math.exp(-1.25 / (f * tp) ** 4) for tp in (3, 9) for f in (0.03, 0.3)]
+    assert shares_in_band(smooth) == pytest.approx([below[1] - below[0], below[3] - below[2]], rel=5e-3)
+
+
+def test_what_simulate_notes_of_a_sea_is_noted_of_a_sweep() -> None:
+    model = jh.load_model("volturnus-s")
+    quiet = [{"hs": 2, "tp": 8}, {"hs": 3, "tp": 9}]
+    usual = {"cutoff": 0.3, "order": 2, "duration": 600.0}
+    assert list(notes(plan(scatter=quiet, **usual), model, 0)) == []
+    made = plan(scatter=[*quiet, {"hs": 0.5, "tp": 3}, {"hs": 9, "tp": 14}, {"hs": 3, "tp": 9}], headings=[0, 90], **usual)
+    left_out, twice, cut, high = notes(made, model, 2)
+    assert left_out == "2 cases of probability 0 are left out"
+    assert twice.startswith("Hs 3 m, Tp 9 s and 1 more are in the table more than once")
+    assert cut.startswith("in 1 of 4 sea states less than 95% of the spectrum lies from 0.03 to 0.3 Hz")
+    assert "least in Hs 0.5 m, Tp 3 s, 12.6% or Hs 0.18 m" in cut
+    assert "in 1 of 4 sea states below 0.3 Hz, at 0.24 Hz in Hs 9 m, Tp 14 s" in high
+    assert not list(notes(plan(scatter=[{"hs": 9, "tp": 14}], **usual | {"order": 1}), model, 0))
+    bare = SimpleNamespace(cylinders=None, diffraction="ramp", environment=model.environment)
+    (note,) = notes(plan(scatter=quiet, **usual), bare, 0)
+    assert note == "no member of this platform diffracts waves: 1 + Ca everywhere"
 
 
 # --- statistics
@@ -190,10 +241,12 @@ def test_a_sweep_makes_a_page(tmp_path: Path) -> None:
     content = {
         "sweep": "s.yaml", "platform": "volturnus-s", "source": "jaxhydro 0.1.0", "cases": 3, "seeds": [0, 4],
         "runs": {"total": 6, "done": 5, "failed": 1}, "lifetime": {"pitch": life}, "failures": [failure],
+        "notes": ["one & all"], "calibration": {"file": "c.json", "values": {"column.Cd_t": 1.25}},
     }  # fmt: skip
     (tmp_path / "sweep.json").write_text(json.dumps(content))
     page = write_report(tmp_path).read_text()
     assert "<td>pitch (deg)</td>" in page and ">1.250</td>" in page and "Equivalent range, m = 3" in page
+    assert "<li>one &amp; all</li>" in page and "With the values of c.json: column.Cd_t = 1.250." in page
     assert "1 of 6 runs failed" in page and "a wave &lt;b&gt;breaks&lt;/b&gt;" in page and "<img" not in page
     (tmp_path / "sweep.json").write_text(json.dumps(content | {"runs": {"total": 6}}))
     with pytest.raises(InputError, match=r"runs\.done"):

@@ -22,6 +22,7 @@ from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
 from jaxhydro.sweep.batch import outcome, outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
 from jaxhydro.sweep.local import Worker
+from jaxhydro.sweep.notes import shares_in_band
 from jaxhydro.sweep.run import opened, prepared
 from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store
 from jaxhydro.waves.sea_state import state_of
@@ -118,6 +119,7 @@ def test_the_store_says_what_it_holds(whole) -> None:
         assert dict(data.sizes) | {"case": 3, "seed": 8, "time": 301, "exponent": 3} == dict(data.sizes)
         assert data.hs.values.tolist() == [1.5, 3.0, BREAKING["hs"]] and data.hs.units == "m"
         assert data.probability.values == pytest.approx([0.6, 0.35, 0.05])
+        assert data.spectrum_share.values == pytest.approx(shares_in_band(setup_in(whole / INPUTS).plan))
         assert data.attrs["source"].startswith("jaxhydro") and len(data.attrs["fingerprint"]) == 16
         assert data.statistics.encoding["chunks"][:2] == (1, 1)
 
@@ -171,6 +173,25 @@ def test_a_killed_sweep_goes_on_and_is_bitwise_the_same(file, whole, tmp_path) -
     assert_bitwise(out, whole)
 
 
+def test_a_sweep_that_is_told_to_end_says_that_it_can_go_on(file, tmp_path) -> None:
+    """SIGTERM, as SLURM sends it before a job's time is over."""
+    words = ["sweep", str(file), "--out", str(tmp_path / "o"), "--workers", "1"]
+    code = "from jaxhydro.cli import main; main()"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stderr is not None
+    seen = ""
+    for line in process.stderr:
+        seen += line
+        if "runs, " in line:  # the first is done
+            process.terminate()
+            break
+    rest = process.stderr.read()
+    assert process.wait(timeout=60) == 130, seen + rest
+    assert "the same command goes on" in rest and 1 <= len(chunks(tmp_path / "o")) < RUNS
+
+
 def test_a_platform_that_falls_over_is_not_swept(tmp_path) -> None:
     """Nor is a folder begun."""
     file = written(tmp_path)
@@ -207,6 +228,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same(file, whole, tmp_path) -> 
                 os.kill(killed[0], signal.SIGKILL)
                 assert now.done + now.failed < RUNS - 4
 
+        assert cluster.workers_of(local.scheduler_address) == 2
         run_sweep(file, tmp_path / "o", scheduler=local.scheduler_address, progress=kill_one)
     assert killed
     assert_bitwise(tmp_path / "o", whole)
@@ -249,7 +271,9 @@ def test_another_platform_is_not_mixed_in(whole, tmp_path) -> None:
 
 @pytest.mark.parametrize(
     ("changes", "words"),
-    [({"platform": "none.yaml"}, "none.yaml"), ({"calibration": "none.json"}, "none.json: expected a calibration.json"),
+    [({"platform": "none.yaml"}, "sweep.yaml: platform: none.yaml: expected a YAML file"),
+     ({"calibration": "none.json"}, "none.json: expected a calibration.json"),
+     ({"calibration": "buoy.yaml"}, "buoy.yaml: line 2, column 1: expected valid JSON"),
      ({"scatter": "none.csv"}, "there is none"), ({"seed": 1}, "Did you mean 'seeds'?")],
 )  # fmt: skip
 def test_bad_input_leaves_nothing_behind(tmp_path, changes, words) -> None:

@@ -15,8 +15,12 @@ ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"
 CACHE = Path(os.environ.get("JAXHYDRO_VALIDATE_CACHE", ROOT / ".venv" / "validate-cache"))
 DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
-# the edge of the packages: no number depends on it
-EDGE = {"cli", "command", "console", "export", "files", "formatting", "outputs", "plot", "report", "saved", "tables"}
+# the edge of the packages, and sweeps, which only that edge knows: no number depends on them
+EDGE = {
+    "cli", "command", "console", "export", "files", "formatting", "outputs", "plot", "report", "saved", "tables",
+    "sea_command", "sweep_page",
+}  # fmt: skip
+SWEEPS = ROOT / "jaxhydro" / "sweep"
 TRUE = {
     "column.Ca_t": 1.50, "column.Ca_z": 0.12, "column.Cd_t": 2.09, "column.Cd_z": 2.23,
     "pontoon.Ca_t": 0.11, "pontoon.Ca_z": 1.87, "pontoon.Cd_t": 1.84, "pontoon.Cd_z": 4.96,
@@ -38,10 +42,11 @@ class Absent(Exception):
 
 
 def fingerprint(*inputs: Path | str) -> str:
-    """Hash of the packages' sources, the edge left out, and of files, folders and words."""
-    sources = [p for name in ("jaxhydro", "calibration") for p in (ROOT / name).rglob("*.py") if p.stem not in EDGE]
+    """Hash of the packages' sources, `EDGE` and `SWEEPS` left out, and of files, folders and words."""
+    every = [path for name in ("jaxhydro", "calibration") for path in (ROOT / name).rglob("*.py")]
+    sources = sorted(path for path in every if path.stem not in EDGE and SWEEPS not in path.parents)
     digest = hashlib.sha256()
-    for item in [*sorted(sources), *inputs]:
+    for item in [*sources, *inputs]:
         if isinstance(item, Path):
             for path in sorted(item.rglob("*")) if item.is_dir() else [item]:
                 if path.is_file():

@@ -108,7 +108,8 @@ def plan_of(sweep: Sweep, source: str) -> tuple[Plan, int]:
     ]
     total = sum(case.probability for case in every)
     if not total > 0:
-        raise InputError(source, [Problem("scatter", "a probability above 0", "none")])
+        key = "headings" if any(state.probability > 0 for state in states) else "scatter"
+        raise InputError(source, [Problem(key, "a probability above 0", "none")])
     cases = tuple(case._replace(probability=case.probability / total) for case in every if case.probability > 0)
     seeds = tuple(range(sweep.seeds)) if isinstance(sweep.seeds, int) else sweep.seeds
     same: tuple[str, ...] = ("spectrum", "amplitudes", "duration", "start", "time_step", "step", "order", "stretching",

@@ -25,6 +25,12 @@ def client_of(scheduler: str) -> Any:
         raise InputError("--scheduler", [Problem("", "a scheduler that answers", f"{scheduler!r} ({said})")]) from None
 
 
+def workers_of(scheduler: str) -> int:
+    """How many workers a scheduler has now. Raises InputError as `client_of`."""
+    with client_of(scheduler) as client:
+        return len(client.nthreads())
+
+
 def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: str) -> Iterator[Found]:
     """Each batch's runs when they are in the store, in the order in which they come. Workers must see `folder` by the same
     path.

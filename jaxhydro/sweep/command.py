@@ -1,12 +1,17 @@
 """The sweep command: from a sweep file to its store, tables and figures."""
 
 import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
-from jaxhydro.command import print_rest
+from jaxhydro.command import print_rest, print_used
 from jaxhydro.console import complain, counting, say, table
 from jaxhydro.problems import InputError, Problem
-from jaxhydro.sweep.cluster import client_of
+from jaxhydro.sweep.cluster import workers_of
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.outputs import Summary, summary_of, write_outputs
 from jaxhydro.sweep.resources import chosen
@@ -17,7 +22,7 @@ LISTED = 5  # failures that are printed
 
 
 class Stopped(Exception):
-    """Stopped by a key: what is done is kept."""
+    """Stopped by a key or by SIGTERM: what is done is kept."""
 
 
 def sweep(
@@ -36,8 +41,7 @@ def sweep(
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
     made = prepared(load_sweep(source), str(source))
     # bad input is told before anything is begun
-    if scheduler is not None:
-        client_of(scheduler).close()
+    workers_there = 0 if scheduler is None else workers_of(scheduler)
     resumed = opened(out, made, restart)
     numbers = to_do(out, retry_failed)
     _print_plan(made)
@@ -47,8 +51,8 @@ def sweep(
     ran = Ran(0, 0, 0.0, 0.0)
     if numbers:
         how = chosen(made.setup, len(numbers), workers, batch)
-        say(how.words if scheduler is None else f"On the cluster of {scheduler}, {how.batch} at a time", stderr=True)
-        with counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
+        say(how.words if scheduler is None else _cluster(scheduler, workers_there, how.batch), stderr=True)
+        with ended_by_signal(), counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
             try:
                 ran = run_all(out, made, numbers, how, scheduler, lambda now: show(now.done + now.failed, _remark(now)))
             except OSError as error:
@@ -59,10 +63,40 @@ def sweep(
         say(f"{ran.runs} runs in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
     data = open_results(out)
     summary = summary_of(data)
-    write_outputs(out, data, summary, {"sweep": str(source), "platform": Path(made.platform).stem})
+    write_outputs(out, data, summary, _about(made, source))
     _print_results(summary, data.exponent.values)
     say(f"Results are in {out}")
     return not summary.failed
+
+
+@contextmanager
+def ended_by_signal() -> Iterator[None]:
+    """SIGTERM, which schedulers of clusters send before they kill, stops as a key does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _cluster(scheduler: str, workers: int, batch: int) -> str:
+    there = f"{workers} worker{'s' * (workers != 1)}" if workers else "no worker yet, and nothing runs until there is one"
+    return f"On the cluster of {scheduler}: {there}; {batch} run{'s' * (batch != 1)} at a time each"
+
+
+def _about(made: Prepared, source: Path) -> dict[str, Any]:
+    """What sweep.json says first."""
+    about: dict[str, Any] = {"sweep": str(source), "platform": Path(made.platform).stem}
+    if made.calibration is not None:
+        about["calibration"] = {"file": made.calibration, "values": made.setup.calibrated}
+    return about | {"notes": made.notes + made.setup.warnings}
 
 
 def _remark(now: Progress) -> str:
@@ -83,8 +117,10 @@ def _print_plan(made: Prepared) -> None:
         ("Step at most", f"{made.setup.limit:.3g} s"),
     ]
     table("Sweep", ("Property", "Value"), rows, left=2)
-    if made.left_out:
-        say(f"Note: {made.left_out} cases of probability 0 are left out")
+    for note in made.notes:
+        say(f"Note: {note}")
+    if made.calibration is not None:
+        print_used(made.setup.calibrated, made.setup.warnings)
 
 
 def _print_results(summary: Summary, exponents) -> None:

@@ -2,12 +2,14 @@
 
 import csv
 import math
+import re
 from pathlib import Path
 from typing import Any
 
 from jaxhydro.problems import InputError, Problem, read_yaml, shown, suggest, validate
 from jaxhydro.sweep.schema import COLUMNS, SeaState, Sweep
 
+UNITS = {"hs": "m", "tp": "s"}  # that a header may state; probability may be in any
 LIMITS = {"hs": (0.0, "a number > 0"), "tp": (0.0, "a number > 0"), "probability": (-1e-300, "a number >= 0")}
 
 
@@ -50,15 +52,18 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     ]  # fmt: skip
     if not rows:
         raise InputError(str(path), [Problem("", f"a header {','.join(COLUMNS[:3])} and rows", "an empty file")])
-    names = [cell.strip().lower() for cell in rows[0][1]]
+    heads = [cell.strip() for cell in rows[0][1]]
+    names = [_column(head) for head in heads]
     problems = []
-    for name in names:
+    for head, name in zip(heads, names):
         if name not in COLUMNS or names.count(name) > 1:
-            found = shown(name) if name not in COLUMNS else f"{name} twice"
-            problems.append(Problem("line 1", f"columns among {', '.join(COLUMNS)}", found, suggest(name, COLUMNS)))
+            found = shown(head) if name not in COLUMNS else f"{name} twice"
+            units = "Hs in m, Tp in s" if re.match(r"(hs|tp)\b", name) else ""
+            hint = units or suggest(name, COLUMNS)
+            problems.append(Problem("line 1", f"columns among {', '.join(COLUMNS)}", found, hint))
     missing = [name for name in COLUMNS[:3] if name not in names]
     if missing and not problems:
-        problems.append(Problem("line 1", f"a column {missing[0]}", ", ".join(names)))
+        problems.append(Problem("line 1", f"a column {missing[0]}", ", ".join(heads)))
     if problems:
         raise InputError(str(path), dict.fromkeys(problems))
     states = []
@@ -67,13 +72,13 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
             problems.append(Problem(f"line {number}", f"{len(names)} cells", str(len(row))))
             continue
         values = {}
-        for name, cell in zip(names, row):
+        for head, name, cell in zip(heads, names, row):
             if name == "gamma" and not cell.strip():
                 continue
             value = _number(cell)
             above, expected = LIMITS.get(name, (-math.inf, "a number from 1 to 7"))
             if not value > above or (name == "gamma" and not 1 <= value <= 7):
-                problems.append(Problem(f"line {number}, column {name}", expected, shown(cell.strip())))
+                problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))
             values[name] = value
         if not problems:
             states.append(SeaState(**values))
@@ -82,6 +87,12 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     if not states:
         raise InputError(str(path), [Problem("", "one row or more under the header", "none")])
     return tuple(states)
+
+
+def _column(head: str) -> str:
+    """A header without its case and its unit, `Hs (m)` or `Tp [s]`, where that is the right one."""
+    name, unit = re.fullmatch(r"(.*?)\s*(?:[(\[](.*?)[)\]])?", head.lower(), re.DOTALL).groups()  # type: ignore[union-attr]
+    return name if unit is None or unit.strip() == UNITS.get(name, unit.strip()) else head.lower()
 
 
 def _number(cell: str) -> float:

@@ -15,12 +15,13 @@ import xarray as xr
 from jaxhydro.command import calibration_file
 from jaxhydro.files import check_folder
 from jaxhydro.platform_schema import BESIDE, builtin_platforms, load_platform
-from jaxhydro.problems import read_yaml
+from jaxhydro.problems import InputError, read_yaml
 from jaxhydro.statics import stable_modes
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.local import simulated
+from jaxhydro.sweep.notes import notes
 from jaxhydro.sweep.resources import Chosen, chosen
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, check_same, create, discard, open_results
@@ -28,12 +29,13 @@ from jaxhydro.sweep.worker import Found
 
 
 class Prepared(NamedTuple):
-    """A sweep that can be stored and run, the platform as it was asked for, and the cases of probability 0 left out."""
+    """A sweep that can be stored and run, the platform and the calibration as they were asked for, and what is to be known."""
 
     inputs: Inputs
     setup: Setup
     platform: str
-    left_out: int
+    calibration: str | None
+    notes: list[str]
 
 
 class Progress(NamedTuple):
@@ -62,12 +64,17 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     """
     plan, left_out = plan_of(sweep, source)
     calibration = None if sweep.calibration is None else calibration_file(sweep.calibration)
-    setup = setup_of(plan, sweep.platform, calibration)
+    try:
+        setup = setup_of(plan, sweep.platform, calibration)
+    except InputError as error:
+        key = "calibration" if error.source == str(calibration) else "platform"
+        raise InputError(f"{source}: {key}: {error.source}", error.problems) from None
     stable_modes(setup.model)
     # as chosen for this platform: workers need not choose again
     setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
-    return Prepared(Inputs(plan, _platform_text(sweep.platform), text), setup, sweep.platform, left_out)
+    known = list(notes(plan, setup.model, left_out))
+    return Prepared(Inputs(plan, _platform_text(sweep.platform), text), setup, sweep.platform, sweep.calibration, known)
 
 
 def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:

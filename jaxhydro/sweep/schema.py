@@ -80,8 +80,18 @@ Scatter = Annotated[
 ]
 OneHeading = Annotated[Annotated[Number, Tag("one")] | Annotated[Heading, Tag("more")], Discriminator(_number_or)]
 Many: TypeAlias = Annotated[tuple[Seed, ...], Field(min_length=1)]
-Number1 = Annotated[int, Field(strict=True, ge=1, le=100_000)]
+MOST_SEEDS = 100_000
+Number1 = Annotated[int, Field(strict=True, ge=1, le=MOST_SEEDS)]
 Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")], Discriminator(_number_or)]
+
+
+def _some_without_share(key: str, rows: Any) -> Iterator[Problem]:
+    """Those of a list of sea states or headings that have no probability, where others have one."""
+    given = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows if isinstance(rows, tuple)]
+    if any(given):
+        for i, there in enumerate(given):
+            if not there:
+                yield Problem(f"{key}[{i}]", "a probability, as others in the list have", "none")
 
 
 class Sweep(Consistent):
@@ -93,7 +103,7 @@ class Sweep(Consistent):
     spectrum: Literal["jonswap", "pierson_moskowitz"] = "jonswap"
     amplitudes: Literal["deterministic", "rayleigh"] = "deterministic"
     headings: Annotated[tuple[OneHeading, ...], Field(min_length=1)] = (0.0,)
-    seeds: Seeds = Field(default=1, description="a number of seeds, or a list of whole numbers >= 0")
+    seeds: Seeds = Field(default=1, description=f"a number of seeds, 1 to {MOST_SEEDS}, or a list of whole numbers >= 0")
     duration: Positive = 3600.0
     transient: NonNegative | None = None
     time_step: Positive = 0.5
@@ -130,8 +140,10 @@ class Sweep(Consistent):
         turns = [one.heading % 360 for one in self.towards]
         if twice := [one for i, one in enumerate(turns) if one in turns[:i]]:
             yield Problem("headings", "each one once", f"{twice[0]:g} deg twice")
-        for key in ("motions", "seeds"):
-            values = getattr(self, key)
+        for key in ("scatter", "headings"):
+            yield from _some_without_share(key, getattr(self, key))
+        lists: dict[str, Any] = {"motions": self.motions, "seeds": self.seeds, "fatigue.exponents": self.fatigue.exponents}
+        for key, values in lists.items():
             if isinstance(values, tuple) and len(set(values)) < len(values):
                 twice = next(value for i, value in enumerate(values) if value in values[:i])
                 yield Problem(key, "each one once", f"{twice!r} twice")

@@ -20,6 +20,7 @@ from jaxhydro.files import staged
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
+from jaxhydro.sweep.notes import shares_in_band
 from jaxhydro.sweep.statistics import BANDS, STATISTICS, Kept, bands_in, frequencies, unit
 
 RESULTS, INPUTS, UNFINISHED = "results.zarr", "inputs", ".results"
@@ -161,6 +162,7 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
             _coordinate(group, name, (name,), values, units.get(name, ""))
         for name, its in (("hs", "m"), ("tp", "s"), ("heading", "deg"), ("probability", "1")):
             _coordinate(group, name, ("case",), np.array([getattr(case, name) for case in plan.cases], float), its)
+        _coordinate(group, "spectrum_share", ("case",), shares_in_band(plan), "1")
         _coordinate(group, "unit", ("channel",), [unit(channel) for channel in channels], "")
         _coordinate(group, "band_limits", ("case", "channel", "band", "edge"), limits, "Hz")
         runs = (len(plan.cases), len(plan.seeds))
@@ -197,7 +199,7 @@ def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
     plan = json.loads(inputs.plan.to_json())
     options = {name: value for name, value in plan.items() if name not in ("cases", "seeds") and value is not None}
     about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.diffraction}
-    coordinates = "hs tp heading probability unit band_limits"
+    coordinates = "hs tp heading probability spectrum_share unit band_limits"
     return options | about | {
         "source": f"jaxhydro {jaxhydro.__version__}",
         "fingerprint": inputs.fingerprint,
