@@ -188,10 +188,13 @@ def preparing(hour: Hour) -> tuple[list[Row], list[str]]:
 
 
 def measure(quick: bool) -> Iterator[tuple[list[Row], list[str]]]:
-    """All of this file, part by part."""
+    """All of this file, and `bench_profile`, part by part."""
+    from benchmarks.bench_profile import profile
+
     hour = Hour(120.0 if quick else 3600.0)
     yield speed(hour, 2 if quick else 5, 2.0 if quick else 20.0)
     yield kinematics(hour)
     yield preparing(hour)
+    yield from profile(hour, 2 if quick else 5)
     if not quick:
         yield derivatives(hour, 3)

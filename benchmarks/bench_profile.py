@@ -1,0 +1,137 @@
+"""Where an hour of sea spends its time, part by part along its own path, and the floor that arithmetic and memory set."""
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from benchmarks.bench_sea import STEP, Hour
+from benchmarks.bench_timing import LEAST, Row, contest, times
+from jaxhydro import Model, State
+from jaxhydro.rotations import rotation, turned
+from jaxhydro.waves.sea import AbstractSea
+
+Part = Callable[[Model, AbstractSea, jax.Array, State], Any]
+SQUARE = 768  # of the matrices whose product says what arithmetic can be had
+LARGE = 32_000_000  # float64 numbers that no cache holds
+
+
+def waves(model: Model, sea: AbstractSea, time: jax.Array, state: State) -> Any:
+    """Surface, and flow at all strips and ends, where the platform is."""
+    matrix, place, hull = rotation(state.position[3:]), state.position[:3], model.hull
+    points = jnp.concatenate([hull.strips.start, hull.ends.position], axis=1)
+    surface = sea.surface(time, place[:2, None] + matrix[:2] @ hull.gauges)
+    return surface, sea.flow(time, place[:, None] + turned(matrix, points), model.cylinders)
+
+
+def loads(model: Model, sea: AbstractSea, time: jax.Array, state: State) -> Any:
+    """Their sum, and what they read."""
+    return model.sum_of_loads(model.instant(time, state, sea), state.memory)
+
+
+PARTS: dict[str, tuple[str, Part]] = {  # each contains those before it
+    "waves": ("the waves at strips and ends", waves),
+    "instant": ("wetting, and the flow past strips and ends", lambda model, sea, time, state: model.instant(time, state, sea)),
+    "loads": ("the loads and their sum", loads),
+    "rate": ("inertia, accelerations, rates", lambda model, sea, time, state: model.rate(time, state, sea)),
+}
+
+
+def along(hour: Hour, sea: AbstractSea, part: Part, path: State) -> Callable[[], Any]:
+    """A compiled call of one part at every step of a path. All that it gives is summed, so that none of it is left out."""
+    arrays, static = eqx.partition((hour.model, sea), eqx.is_array)
+    instants = STEP * jnp.arange(hour.steps)
+
+    def run(arrays, instants, path):
+        model, sea = eqx.combine(arrays, static)
+
+        def body(total, now):
+            found = jax.tree.leaves(eqx.filter(part(model, sea, *now), eqx.is_inexact_array))
+            return total + sum(jnp.sum(one) for one in found), None
+
+        return jax.lax.scan(body, jnp.zeros(()), (instants, path))[0]
+
+    compiled = jax.jit(run).lower(arrays, instants, path).compile()
+    return lambda: jax.block_until_ready(compiled(arrays, instants, path))
+
+
+def path_of(hour: Hour, sea: AbstractSea) -> State:
+    """States at the beginnings of the hour's steps."""
+    from jaxhydro.integrate import integrate
+
+    state = State(hour.rest, jnp.zeros(6), hour.model.rest().memory)
+    run = eqx.filter_jit(lambda model, sea: integrate(model, sea, state, jnp.zeros(()), jnp.asarray(STEP), hour.steps, "ab4"))
+    found = run(hour.model, sea)
+    position, rate = found.position[: hour.steps], found.rate[: hour.steps]
+    memory = jax.tree.map(lambda x: jnp.broadcast_to(x, (hour.steps, *x.shape)), state.memory)
+    return State(position, jax.vmap(hour.model.body_velocity)(position, rate), memory)
+
+
+def seconds_of(call: Callable[[], Any]) -> float:
+    """CPU time (s) of a call that is made for a while, after one that is not counted."""
+    call()
+    count, begun = 0, time.process_time()
+    while time.process_time() - begun < 5 * LEAST:
+        call()
+        count += 1
+    return (time.process_time() - begun) / count
+
+
+def floor(hour: Hour, sea: Any, step: float, path: State) -> tuple[list[Row], list[str]]:
+    """What arithmetic and memory of one step take at the rates that this core reaches; `step` (s) is what one takes."""
+    arrays, static = eqx.partition((hour.model, sea), eqx.is_array)
+    state = jax.tree.map(lambda x: x[hour.steps // 2], path)
+
+    def rate(arrays, state):
+        model, sea = eqx.combine(arrays, static)
+        return model.rate(jnp.asarray(STEP * (hour.steps // 2)), state, sea)
+
+    cost = jax.jit(rate).lower(arrays, state).compile().cost_analysis()
+    operations, exponentials = float(cost["flops"]), float(cost["transcendentals"])
+    matrix = np.random.default_rng(0).standard_normal((SQUARE, SQUARE))
+    speed = 2 * SQUARE**3 / seconds_of(lambda: matrix @ matrix)
+    few = jnp.linspace(-1.0, 0.0, 32768)
+    exponential = jax.jit(jnp.exp)
+    each = seconds_of(lambda: [exponential(few) for _ in range(50)][-1].block_until_ready()) / (50 * few.size)
+    many = np.ones(LARGE)
+    target = np.empty_like(many)
+    bandwidth = 2 * many.nbytes / seconds_of(lambda: np.copyto(target, many))
+    row = sea.series[0].nbytes + path.position[0].nbytes
+    arithmetic, memory = operations / speed + exponentials * each, row / bandwidth
+    rows = [
+        Row("Arithmetic of a step at the core's speed", f"{1e6 * arithmetic:.3g} µs"),
+        Row("Memory of a step at the core's bandwidth", f"{1e6 * memory:.3g} µs"),
+        Row("A step over that floor", times(step / max(arithmetic, memory))),
+    ]
+    notes = [
+        f"The floor: XLA counts {operations:.3g} additions and multiplications and {exponentials:.3g} exponentials and the like in "
+        f"a step; this core does {speed / 1e9:.3g}e9 of the former a second in a product of matrices of {SQUARE}, and one of the "
+        f"latter in {1e9 * each:.2g} ns. What no cache holds are {row / 1e3:.3g} kB of the sea's series and the path; a copy "
+        f"moves {bandwidth / 1e9:.3g} GB/s.",
+    ]
+    return rows, notes
+
+
+def profile(hour: Hour, rounds: int) -> Iterator[tuple[list[Row], list[str]]]:
+    """Shares of a step of second order, all physics."""
+    sea = hour.prepared(2)
+    path = path_of(hour, sea)
+    runs = {name: along(hour, sea, part, path) for name, (_, part) in PARTS.items()}
+    runs["whole"] = hour.case(sea, "forward", lambda f: f)
+    turns = contest(runs, rounds)
+    whole, before, rows = turns["whole"].median, 0.0, []
+    words = {name: said for name, (said, _) in PARTS.items()} | {"whole": "the scheme, and keeping the path"}
+    for name, turn in turns.items():
+        took = turn.median - before
+        before = turn.median
+        rows.append(Row(f"Of a step: {words[name]}", f"{1e6 * took / hour.steps:.3g} µs, {took / whole:.0%}"))
+    note = (
+        "Of a step: each part is run along the hour's own path together with those before it, and the difference is said; "
+        "compiled alone they fuse otherwise than in the whole."
+    )
+    yield rows, [note]
+    yield floor(hour, sea, whole / hour.steps, path)
