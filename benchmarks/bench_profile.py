@@ -108,10 +108,10 @@ def floor(hour: Hour, sea: Any, step: float, path: State) -> tuple[list[Row], li
         Row("A step over that floor", times(step / max(arithmetic, memory))),
     ]
     notes = [
-        f"The floor: XLA counts {operations:.3g} additions and multiplications and {exponentials:.3g} exponentials and the like in "
-        f"a step; this core does {speed / 1e9:.3g}e9 of the former a second in a product of matrices of {SQUARE}, and one of the "
-        f"latter in {1e9 * each:.2g} ns. What no cache holds are {row / 1e3:.3g} kB of the sea's series and the path; a copy "
-        f"moves {bandwidth / 1e9:.3g} GB/s.",
+        f"The floor: XLA counts {operations:.3g} additions and multiplications and {exponentials:.3g} exponentials "
+        f"and the like in a step; this core does {speed / 1e9:.3g}e9 of the former a second in a product of matrices of "
+        f"{SQUARE}, and one of the latter in {1e9 * each:.2g} ns. What no cache holds are {row / 1e3:.3g} kB of the sea's "
+        f"series and the path; a copy moves {bandwidth / 1e9:.3g} GB/s."
     ]
     return rows, notes
 

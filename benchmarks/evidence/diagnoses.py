@@ -186,8 +186,8 @@ class Share(NamedTuple):
 class Tally(NamedTuple):
     """What was said, counted. At the middle strength: the right effect first, or in the set; held-out error `near` the one with
     nothing missing; near it, or just what is in the tank found (`told`: a model that was told of it is the same one). Of
-    campaigns with nothing missing: false alarms, an effect or something unexplained. Of pairs: both found, or in the sets. Of laws outside the catalogue: said to
-    be unexplained, or answered with a law that makes the held-out error lower."""
+    campaigns with nothing missing: false alarms, an effect or something unexplained. Of pairs: both found, or in the sets. Of
+    laws outside the catalogue: said to be unexplained, or answered with a law that makes the held-out error lower."""
 
     named: Share
     listed: Share
@@ -232,9 +232,10 @@ class Tally(NamedTuple):
         return (
             f"At the middle strength the right effect is named first in {self.named}, and among those told apart by nothing, "
             f"or found after another, in {self.listed}; of campaigns with nothing missing {self.alarms} raised a false "
-            f"alarm, an effect or something unexplained{two}. The error of the tests that were not fitted is then within {FACTOR} times that of the same platform "
-            f"in the same waves with nothing missing in {self.near}; in {self.told} it is, or what was found is what is in the "
-            f"tank and nothing else, so that a model that was told the truth has the same error.{others}"
+            f"alarm, an effect or something unexplained{two}. The error of the tests that were not fitted is then within "
+            f"{FACTOR} times that of the same platform in the same waves with nothing missing in {self.near}; in {self.told} "
+            f"it is, or what was found is what is in the tank and nothing else, so that a model that was told the truth has "
+            f"the same error.{others}"
         )
 
     def short(self) -> Iterator[str]:
