@@ -61,14 +61,17 @@ class Case(NamedTuple):
 
 
 def cases() -> Iterator[Case]:
-    """All of them, so that any few from the front tell something: the middle strength first, and pairs of effects after it;
-    nothing missing in between."""
+    """All of them, so that any few from the front tell something: the middle strength first, with pairs of effects and laws
+    from outside, and nothing missing in between; at the end laws from outside at other strengths, which no goal is about."""
     nulls = iter([Case("", 2, seed) for seed in range(1, NULLS + 1)])
-    for strength, seed in ((2, 1), (2, 2), (2, 3), (3, 1), (1, 1), (3, 2), (1, 2), (3, 3), (1, 3)):
-        for i, effect in enumerate((*EFFECTS, *OUTSIDE, *(PAIRS if strength == 2 else ()))):
+    others = ((3, 1), (1, 1), (3, 2), (1, 2), (3, 3), (1, 3))
+    for strength, seed in ((2, 1), (2, 2), (2, 3), *others):
+        for i, effect in enumerate((*EFFECTS, *(OUTSIDE + PAIRS if strength == 2 else ()))):
             if i % 5 == 0 and (null := next(nulls, None)) is not None:
                 yield null
             yield Case(effect, strength, seed)
+    for strength, seed in others:
+        yield from (Case(effect, strength, seed) for effect in OUTSIDE)
 
 
 def folder_of(name: str) -> Path:
