@@ -23,6 +23,10 @@ PAIRS = (
     "umbilical+sea_state_dependent_drag", "current+wave_drift", "coulomb_friction+nonlinear_hydrostatics",
     "radiation_memory+sensor_lag", "hidden_oscillator+mooring_nonlinearity",
 )  # fmt: skip
+ACTS = {  # motion that these act in, in the tank; others act in several, or in none of their own
+    "coulomb_friction": "surge", "hysteresis": "surge", "mooring_nonlinearity": "surge", "radiation_memory": "surge",
+    "wave_drift_damping": "surge", "hidden_oscillator": "pitch", "nonlinear_hydrostatics": "heave",
+}  # fmt: skip
 NULLS = 20
 STRENGTHS = {1: "weak", 2: "middle", 3: "strong"}
 NAMED, IN_SET, FALSE_ALARMS, BOTH = 0.90, 0.97, 0.05, 0.80  # goals
@@ -132,21 +136,28 @@ def keep_all(results: dict[str, dict[str, Any]]) -> None:
     beside.replace(KEPT)
 
 
+def found(result: dict[str, Any]) -> list[str]:
+    """Names of the effects found; with its motion where that is another one than in the tank: that is another effect."""
+    pairs = zip(result["effects"], result["motions"], strict=True)
+    return [name if motion in (None, ACTS.get(name, motion)) else f"{name} in {motion}" for name, motion in pairs]
+
+
 def outcome(case: Case, result: dict[str, Any]) -> str:
     """named: the right one first, or both of two; in the set: among those that cannot be told from the first, or found after
     it; of two, each named or among those that cannot be told from one that is; part: one of two; else what was said."""
-    if not result["effects"]:
+    effects = found(result)
+    if not effects:
         return "nothing" if result["verdict"] == "nothing_missing" else "unexplained"
     if not case.effect:
         return "false alarm"
     alike = {one for some in result["alike"] for one in some}
     if len(case.effects) == 2:
-        if (named := sum(one in result["effects"] for one in case.effects)) == 2:
+        if (named := sum(one in effects for one in case.effects)) == 2:
             return "named"
-        return "in the set" if set(case.effects) <= alike | set(result["effects"]) else "part" if named else "another"
-    if result["effects"][0] == case.effect:
+        return "in the set" if set(case.effects) <= alike | set(effects) else "part" if named else "another"
+    if effects[0] == case.effect:
         return "named"
-    return "in the set" if case.effect in [*result["alike"][0], *result["effects"]] else "another"
+    return "in the set" if case.effect in [*result["alike"][0], *effects] else "another"
 
 
 def run(figures: Path, processes: int, most: int) -> Section:
@@ -160,8 +171,8 @@ def run(figures: Path, processes: int, most: int) -> Section:
     results: dict[str, dict[str, Any]] = {}
     for name, result in parallel(SECTION, key, names, of_case, processes, go_on=True):
         results[name] = result
-        found = ", ".join(result["effects"]) or result["verdict"]
-        say(f"  {name}: {found} ({result['seconds']:.0f} s, {len(results)} of {len(names)})")
+        words = ", ".join(found(result)) or result["verdict"]
+        say(f"  {name}: {words} ({result['seconds']:.0f} s, {len(results)} of {len(names)})")
         keep_all({name: result})
     ordered = {Case.of(name): results[name] for name in names if name in results}
     earlier = sum(result["sources"] != key for result in ordered.values())
@@ -214,7 +225,7 @@ class Tally(NamedTuple):
 
         held = [case for case in known if case in ratio]
         near = {case for case in held if ratio[case] <= FACTOR}
-        just = {case for case in held if set(results[case]["effects"]) == set(case.effects)}
+        just = {case for case in held if set(found(results[case])) == set(case.effects)}
         fallen = [after < before for before, after in (results[case]["error"] for case in outside)]
         return cls(
             saying(known, "named"), saying(known, "named", "in the set"), Share(len(near), len(held)),
@@ -368,7 +379,7 @@ def draw(results: dict[Case, dict[str, Any]], path: Path) -> Path:
 
 def _words(case: Case, said: str, result: dict[str, Any], ratio: float | None = None) -> str:
     """An outcome in a cell."""
-    effects = result["effects"]
+    effects = found(result)
     number = f" {ratio:.2f}" if ratio is not None else ""
     if not effects:
         laws = result.get("laws", {}).items()
