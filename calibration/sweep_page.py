@@ -12,7 +12,9 @@ from calibration.saved import Open
 from jaxhydro.problems import Number
 
 FIGURES = {
-    "scatter.png": "Standard deviation by sea state, over seeds and headings; areas are shares of the life.",
+    "scatter.png": (
+        "Standard deviation by sea state, over seeds and headings; areas are shares of the life. A ring: no run of it is done."
+    ),
     "exceedance.png": "Maximum of a run, and the share of runs above it by probability: each seed's, and all seeds together.",
 }
 _LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. <i>Over seeds</i> are standard
@@ -76,14 +78,16 @@ class SavedSweep(Open):
 
 def page(saved: SavedSweep, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
-    return framed(f"{saved.platform}: {saved.sweep}", f"Sweep by {saved.source}", _parts(saved, folder), saved.source)
+    version = saved.source.removeprefix("jaxhydro ")
+    return framed(f"{saved.platform}: {saved.sweep}", f"Sweep by jaxhydro {version}", _parts(saved, folder), version)
 
 
 def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
     runs = saved.runs
     if runs.failed:
         share = percent(saved.probability_without_runs)
-        yield f'<p class="warning">{runs.failed} of {runs.total} runs failed; {share} of the life is without a run.</p>'
+        lost = f"{share} of the life is without a run, and what follows is of the rest"
+        yield f'<p class="warning">{runs.failed} of {runs.total} runs failed; {lost}.</p>'
     seeds = f"{len(saved.seeds)} seed{'s' * (len(saved.seeds) != 1)}"
     yield f"<p>{saved.cases} sea states and headings, {seeds}: {runs.done} runs of {runs.total} done.</p>"
     if saved.calibration is not None:

@@ -67,6 +67,8 @@ def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
         ("Hs,Tp\n1,2\n", "line 1: expected a column probability, found Hs, Tp"),
         ("Hs,Tp,probabilty\n1,2,3\n", "found 'probabilty'. Did you mean 'probability'?"),
         ("Hs,Tp,probability\n1,2,3\n1,x,-1\n", "line 3, column Tp: expected a number > 0, found 'x'"),
+        ("Hs;Tp;probability\n1,5;8,5;1.234\n", "line 2, column probability: expected a number with a decimal comma"),
+        ("Hs;Tp;probability\n1.5;8,5;x\n", "line 2, column Hs: expected a number with a decimal comma, as others"),
         ("Hs (ft),Tp,probability\n1,2,3\n", "found 'Hs (ft)'. Hs in m, Tp in s"),
         ("Hs,Tp (min),probability (%)\n1,2,3\n", "found 'Tp (min)'. Hs in m, Tp in s"),
         ("Hs,Tp,probability\n1,2\n", "line 2: expected 3 cells, found 2"),
@@ -151,10 +153,12 @@ def test_what_simulate_notes_of_a_sea_is_noted_of_a_sweep() -> None:
     assert list(notes(plan(scatter=quiet, **usual), model, 0)) == []
     made = plan(scatter=[*quiet, {"hs": 0.5, "tp": 3}, {"hs": 9, "tp": 14}, {"hs": 3, "tp": 9}], headings=[0, 90], **usual)
     left_out, twice, cut, high = notes(made, model, 2)
+    named = plan(scatter=[{"hs": 0.5, "tp": 3, "gamma": 2}], **usual)
+    assert "least in Hs 0.5 m, Tp 3 s, gamma 2, " in next(notes(named, model, 0))
     assert left_out == "2 cases of probability 0 are left out"
     assert twice.startswith("Hs 3 m, Tp 9 s and 1 more are in the table more than once")
     assert cut.startswith("in 1 of 4 sea states less than 95% of the spectrum lies from 0.03 to 0.3 Hz")
-    assert "least in Hs 0.5 m, Tp 3 s, 12.6% or Hs 0.18 m" in cut
+    assert "least in Hs 0.5 m, Tp 3 s, 12.6% or Hs 0.177 m" in cut
     assert "in 1 of 4 sea states below 0.3 Hz, at 0.24 Hz in Hs 9 m, Tp 14 s" in high
     assert not list(notes(plan(scatter=[{"hs": 9, "tp": 14}], **usual | {"order": 1}), model, 0))
     bare = SimpleNamespace(cylinders=None, diffraction="ramp", environment=model.environment)
@@ -225,6 +229,8 @@ def test_the_scatter_diagram_has_a_mark_per_sea_state() -> None:
         [math.sqrt((0.2 * 1 + 0.6 * 4) / 0.8)]
     )
     assert len(marks) == 2 and {text.get_text() for text in figure.axes[0].texts} == {"80 %", "20 %"}
+    one = scatter_figure(hs[2:], tp[2:], np.array([1.0]), np.array([1.0]), "surge", "t")
+    assert [text.get_text() for text in one.axes[0].texts] == ["100 %"]
 
 
 def test_the_exceedance_figure_has_a_line_per_seed_and_one_of_all() -> None:
@@ -247,6 +253,7 @@ def test_a_sweep_makes_a_page(tmp_path: Path) -> None:
     page = write_report(tmp_path).read_text()
     assert "<td>pitch (deg)</td>" in page and ">1.250</td>" in page and "Equivalent range, m = 3" in page
     assert "<li>one &amp; all</li>" in page and "With the values of c.json: column.Cd_t = 1.250." in page
+    assert 'content="jaxhydro 0.1.0"' in page and "and what follows is of the rest" in page
     assert "1 of 6 runs failed" in page and "a wave &lt;b&gt;breaks&lt;/b&gt;" in page and "<img" not in page
     (tmp_path / "sweep.json").write_text(json.dumps(content | {"runs": {"total": 6}}))
     with pytest.raises(InputError, match=r"runs\.done"):

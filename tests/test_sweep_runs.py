@@ -119,6 +119,7 @@ def test_the_store_says_what_it_holds(whole) -> None:
         assert dict(data.sizes) | {"case": 3, "seed": 8, "time": 301, "exponent": 3} == dict(data.sizes)
         assert data.hs.values.tolist() == [1.5, 3.0, BREAKING["hs"]] and data.hs.units == "m"
         assert data.probability.values == pytest.approx([0.6, 0.35, 0.05])
+        assert np.isnan(data.gamma.values).all() and data.gamma.dims == ("case",)
         assert data.spectrum_share.values == pytest.approx(shares_in_band(setup_in(whole / INPUTS).plan))
         assert data.attrs["source"].startswith("jaxhydro") and len(data.attrs["fingerprint"]) == 16
         assert data.statistics.encoding["chunks"][:2] == (1, 1)
@@ -190,6 +191,29 @@ def test_a_sweep_that_is_told_to_end_says_that_it_can_go_on(file, tmp_path) -> N
     rest = process.stderr.read()
     assert process.wait(timeout=60) == 130, seen + rest
     assert "the same command goes on" in rest and 1 <= len(chunks(tmp_path / "o")) < RUNS
+
+
+def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatch) -> None:
+    """Before the runs and after them."""
+
+    def stop(*_) -> None:
+        signal.raise_signal(signal.SIGTERM)
+
+    monkeypatch.setattr("jaxhydro.sweep.command.summary_of", stop)
+    assert f"stopped; what is done is in {whole / RESULTS}" in command("sweep", file, "--out", whole, status=130)
+    monkeypatch.setattr("jaxhydro.sweep.command.load_sweep", stop)
+    assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_scheduler_that_is_lost_is_told(file, tmp_path, monkeypatch) -> None:
+    def lost(*_):
+        raise ConnectionResetError("reset by peer")
+
+    monkeypatch.setattr("jaxhydro.sweep.command.workers_of", lambda scheduler: 2)
+    monkeypatch.setattr("jaxhydro.sweep.command.run_all", lost)
+    text = command("sweep", file, "--out", tmp_path / "o", "--scheduler", "tcp://x:1", status=130)
+    assert "the scheduler at tcp://x:1 was lost (reset by peer); what is done is in" in text
 
 
 def test_a_platform_that_falls_over_is_not_swept(tmp_path) -> None:

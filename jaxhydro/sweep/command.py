@@ -22,7 +22,7 @@ LISTED = 5  # failures that are printed
 
 
 class Stopped(Exception):
-    """Stopped by a key or by SIGTERM: what is done is kept."""
+    """Stopped by a key, by SIGTERM, or for want of a scheduler: what is done is kept."""
 
 
 def sweep(
@@ -39,6 +39,22 @@ def sweep(
     Raises InputError for bad input, EquilibriumError where the platform does not rest, Stopped.
     """
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
+    with ended_by_signal():
+        try:
+            return _sweep(source, out, workers, batch, restart, retry_failed, scheduler)
+        except KeyboardInterrupt:
+            raise Stopped(f"stopped; {_kept(out)}") from None
+
+
+def _kept(out: Path) -> str:
+    if (out / RESULTS).is_dir():
+        return f"what is done is in {out / RESULTS}, and the same command goes on"
+    return "nothing was written"
+
+
+def _sweep(
+    source: Path, out: Path, workers: int | None, batch: int | None, restart: bool, retry_failed: bool, scheduler: str | None
+) -> bool:
     made = prepared(load_sweep(source), str(source))
     # bad input is told before anything is begun
     workers_there = 0 if scheduler is None else workers_of(scheduler)
@@ -52,14 +68,14 @@ def sweep(
     if numbers:
         how = chosen(made.setup, len(numbers), workers, batch)
         say(how.words if scheduler is None else _cluster(scheduler, workers_there, how.batch), stderr=True)
-        with ended_by_signal(), counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
+        with counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
             try:
                 ran = run_all(out, made, numbers, how, scheduler, lambda now: show(now.done + now.failed, _remark(now)))
             except OSError as error:
                 said = str(error.strerror or error)
+                if scheduler is not None:  # workers write, and say it themselves where they cannot
+                    raise Stopped(f"the scheduler at {scheduler} was lost ({said}); {_kept(out)}") from None
                 raise InputError("--out", [Problem("", "a folder that can be written", f"{str(out)!r} ({said})")]) from None
-            except KeyboardInterrupt:
-                raise Stopped(f"stopped; what is done is in {out / RESULTS}, and the same command goes on") from None
         say(f"{ran.runs} runs in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
     data = open_results(out)
     summary = summary_of(data)

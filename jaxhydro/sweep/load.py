@@ -46,10 +46,9 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
         raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({said})")]) from None
     lines = text.splitlines()
     delimiter = next((mark for mark in ";\t" if lines and mark in lines[0]), ",")
-    rows = [
-        (number, row if delimiter == "," else [cell.replace(",", ".") for cell in row])  # decimal commas
-        for number, row in enumerate(csv.reader(lines, delimiter=delimiter), 1) if any(cell.strip() for cell in row)
-    ]  # fmt: skip
+    read = enumerate(csv.reader(lines, delimiter=delimiter), 1)
+    rows = [(number, row) for number, row in read if any(cell.strip() for cell in row)]
+    commas = delimiter != "," and any("," in cell for _, row in rows[1:] for cell in row)  # decimal ones
     if not rows:
         raise InputError(str(path), [Problem("", f"a header {','.join(COLUMNS[:3])} and rows", "an empty file")])
     heads = [cell.strip() for cell in rows[0][1]]
@@ -75,7 +74,11 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
         for head, name, cell in zip(heads, names, row):
             if name == "gamma" and not cell.strip():
                 continue
-            value = _number(cell)
+            if commas and "." in cell:  # of thousands, perhaps
+                expected = "a number with a decimal comma, as others in the file, and no point"
+                problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))
+                continue
+            value = _number(cell.replace(",", ".") if commas else cell)
             above, expected = LIMITS.get(name, (-math.inf, "a number from 1 to 7"))
             if not value > above or (name == "gamma" and not 1 <= value <= 7):
                 problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))

@@ -40,10 +40,10 @@ def notes(plan: Plan, model: Model, left_out: int) -> Iterator[str]:
     """One sentence each. `left_out` cases have probability 0."""
     if left_out:
         yield f"{_count(left_out, 'case')} of probability 0 {'are' if left_out > 1 else 'is'} left out"
-    states = Counter((case.hs, case.tp, case.gamma, case.heading % 360) for case in plan.cases)
+    states = Counter(case._replace(heading=case.heading % 360, probability=0.0) for case in plan.cases)
     if twice := [state for state, count in states.items() if count > 1]:
         more = f" and {len(twice) - 1} more are" if len(twice) > 1 else " is"
-        yield f"Hs {twice[0][0]:g} m, Tp {twice[0][1]:g} s{more} in the table more than once: run as often, and shares add up"
+        yield f"{_named(twice[0])}{more} in the table more than once: run as often, and shares add up"
     yield from _of_seas(plan, float(model.environment.gravity))
     if model.cylinders is None and model.diffraction != "none":
         yield "no member of this platform diffracts waves: 1 + Ca everywhere"
@@ -56,7 +56,7 @@ def _of_seas(plan: Plan, gravity: float) -> Iterator[str]:
         share, case = min(cut, key=lambda one: one[0])
         yield (
             f"in {len(cut)} {total} less than {CUT:.0%} of the spectrum lies {band}, and the rest is left out; least in "
-            f"{_named(case)}, {share:.1%} or Hs {case.hs * share**0.5:.2g} m: see low and cutoff"
+            f"{_named(case)}, {share:.1%} or Hs {case.hs * share**0.5:.3g} m: see low and cutoff"
         )
     usual = [(usual_cutoff(case.hs * share**0.5, gravity), case) for share, case in seas.values()]
     if plan.order == 2 and (high := [one for one in usual if one[0] < plan.cutoff]):
@@ -68,7 +68,7 @@ def _of_seas(plan: Plan, gravity: float) -> Iterator[str]:
 
 
 def _named(case: Case) -> str:
-    return f"Hs {case.hs:g} m, Tp {case.tp:g} s"
+    return f"Hs {case.hs:g} m, Tp {case.tp:g} s" + ("" if case.gamma is None else f", gamma {case.gamma:g}")
 
 
 def _count(number: int, what: str) -> str:

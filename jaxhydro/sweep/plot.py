@@ -47,8 +47,9 @@ def scatter_figure(
         ax.scatter(states[~solid, 1], states[~solid, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3)
     if len(states) <= WRITTEN:
         for (height, period), one, area in zip(states, share, size):
+            said = "100" if one > 0.995 else f"{100 * one:.2g}"
             ax.annotate(
-                f"{100 * one:.2g} %", (period, height), textcoords="offset points", xytext=(0, np.sqrt(area / np.pi) + 2),
+                f"{said} %", (period, height), textcoords="offset points", xytext=(0, np.sqrt(area / np.pi) + 2),
                 ha="center", fontsize=6.5, color=MEASURED,
             )  # fmt: skip
     ax.margins(0.16)

@@ -162,6 +162,8 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
             _coordinate(group, name, (name,), values, units.get(name, ""))
         for name, its in (("hs", "m"), ("tp", "s"), ("heading", "deg"), ("probability", "1")):
             _coordinate(group, name, ("case",), np.array([getattr(case, name) for case in plan.cases], float), its)
+        gamma = np.array([np.nan if case.gamma is None else case.gamma for case in plan.cases])
+        _coordinate(group, "gamma", ("case",), gamma, "1")
         _coordinate(group, "spectrum_share", ("case",), shares_in_band(plan), "1")
         _coordinate(group, "unit", ("channel",), [unit(channel) for channel in channels], "")
         _coordinate(group, "band_limits", ("case", "channel", "band", "edge"), limits, "Hz")
@@ -199,7 +201,7 @@ def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
     plan = json.loads(inputs.plan.to_json())
     options = {name: value for name, value in plan.items() if name not in ("cases", "seeds") and value is not None}
     about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.diffraction}
-    coordinates = "hs tp heading probability spectrum_share unit band_limits"
+    coordinates = "hs tp gamma heading probability spectrum_share unit band_limits"
     return options | about | {
         "source": f"jaxhydro {jaxhydro.__version__}",
         "fingerprint": inputs.fingerprint,
