@@ -1,6 +1,5 @@
 """Where an hour of sea spends its time, part by part along its own path, and the floor that arithmetic and memory set."""
 
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -10,8 +9,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from benchmarks.bench_sea import STEP, Hour
-from benchmarks.bench_timing import LEAST, Row, contest, times
+from benchmarks.bench_timing import Row, contest, times
 from jaxhydro import Model, State
+from jaxhydro.integrate import integrate
 from jaxhydro.rotations import rotation, turned
 from jaxhydro.waves.sea import AbstractSea
 
@@ -61,8 +61,6 @@ def along(hour: Hour, sea: AbstractSea, part: Part, path: State) -> Callable[[],
 
 def path_of(hour: Hour, sea: AbstractSea) -> State:
     """States at the beginnings of the hour's steps."""
-    from jaxhydro.integrate import integrate
-
     state = State(hour.rest, jnp.zeros(6), hour.model.rest().memory)
     run = eqx.filter_jit(lambda model, sea: integrate(model, sea, state, jnp.zeros(()), jnp.asarray(STEP), hour.steps, "ab4"))
     found = run(hour.model, sea)
@@ -71,17 +69,7 @@ def path_of(hour: Hour, sea: AbstractSea) -> State:
     return State(position, jax.vmap(hour.model.body_velocity)(position, rate), memory)
 
 
-def seconds_of(call: Callable[[], Any]) -> float:
-    """CPU time (s) of a call that is made for a while, after one that is not counted."""
-    call()
-    count, begun = 0, time.process_time()
-    while time.process_time() - begun < 5 * LEAST:
-        call()
-        count += 1
-    return (time.process_time() - begun) / count
-
-
-def floor(hour: Hour, sea: Any, step: float, path: State) -> tuple[list[Row], list[str]]:
+def floor(hour: Hour, sea: Any, step: float, path: State, rounds: int) -> tuple[list[Row], list[str]]:
     """What arithmetic and memory of one step take at the rates that this core reaches; `step` (s) is what one takes."""
     arrays, static = eqx.partition((hour.model, sea), eqx.is_array)
     state = jax.tree.map(lambda x: x[hour.steps // 2], path)
@@ -93,13 +81,17 @@ def floor(hour: Hour, sea: Any, step: float, path: State) -> tuple[list[Row], li
     cost = jax.jit(rate).lower(arrays, state).compile().cost_analysis()
     operations, exponentials = float(cost["flops"]), float(cost["transcendentals"])
     matrix = np.random.default_rng(0).standard_normal((SQUARE, SQUARE))
-    speed = 2 * SQUARE**3 / seconds_of(lambda: matrix @ matrix)
-    few = jnp.linspace(-1.0, 0.0, 32768)
-    exponential = jax.jit(jnp.exp)
-    each = seconds_of(lambda: [exponential(few) for _ in range(50)][-1].block_until_ready()) / (50 * few.size)
+    few, exponential = jnp.linspace(-1.0, 0.0, 32768), jax.jit(jnp.exp)
     many = np.ones(LARGE)
     target = np.empty_like(many)
-    bandwidth = 2 * many.nbytes / seconds_of(lambda: np.copyto(target, many))
+    turns = contest({
+        "product": lambda: matrix @ matrix,
+        "exponentials": lambda: [exponential(few) for _ in range(50)][-1].block_until_ready(),
+        "copy": lambda: np.copyto(target, many),
+    }, rounds)  # fmt: skip
+    speed = 2 * SQUARE**3 / turns["product"].median
+    each = turns["exponentials"].median / (50 * few.size)
+    bandwidth = 2 * many.nbytes / turns["copy"].median
     row = sea.series[0].nbytes + path.position[0].nbytes
     arithmetic, memory = operations / speed + exponentials * each, row / bandwidth
     rows = [
@@ -134,4 +126,4 @@ def profile(hour: Hour, rounds: int) -> Iterator[tuple[list[Row], list[str]]]:
         "compiled alone they fuse otherwise than in the whole."
     )
     yield rows, [note]
-    yield floor(hour, sea, whole / hour.steps, path)
+    yield floor(hour, sea, whole / hour.steps, path, rounds)

@@ -344,7 +344,7 @@ def draw(results: dict[Case, dict[str, Any]], path: Path) -> Path:
     from jaxhydro.plot import GREY, WIDTH, header, save, style
 
     def first(result: dict[str, Any]) -> str:
-        return result["effects"][0] if result["effects"] else result["verdict"]
+        return next(iter(found(result)), result["verdict"])
 
     one = {case: result for case, result in results.items() if len(case.effects) < 2}
     last = ("nothing_missing", "unexplained")

@@ -85,9 +85,9 @@ Number1 = Annotated[int, Field(strict=True, ge=1, le=MOST_SEEDS)]
 Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")], Discriminator(_number_or)]
 
 
-def _some_without_share(key: str, rows: Any) -> Iterator[Problem]:
+def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
     """Those of a list of sea states or headings that have no probability, where others have one."""
-    given = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows if isinstance(rows, tuple)]
+    given = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows]
     if any(given):
         for i, there in enumerate(given):
             if not there:
@@ -141,7 +141,8 @@ class Sweep(Consistent):
         if twice := [one for i, one in enumerate(turns) if one in turns[:i]]:
             yield Problem("headings", "each one once", f"{twice[0]:g} deg twice")
         for key in ("scatter", "headings"):
-            yield from _some_without_share(key, getattr(self, key))
+            if isinstance(rows := getattr(self, key), tuple):
+                yield from _some_without_share(key, rows)
         lists: dict[str, Any] = {"motions": self.motions, "seeds": self.seeds, "fatigue.exponents": self.fatigue.exponents}
         for key, values in lists.items():
             if isinstance(values, tuple) and len(set(values)) < len(values):
