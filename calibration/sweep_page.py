@@ -8,18 +8,22 @@ from pydantic import Field
 
 from calibration.formatting import number, percent
 from calibration.report import cells, embedded, figures, framed, listed, table
-from calibration.saved import Open
+from calibration.saved import Open, Reference
 from jaxhydro.problems import Number
+from jaxhydro.sweep.cases import runs_named
 
 FIGURES = {
     "scatter.png": (
         "Standard deviation by sea state, over seeds and headings; areas are shares of the life. A ring: no run of it is done."
     ),
-    "exceedance.png": "Maximum of a run, and the share of runs above it by probability: each seed's, and all seeds together.",
+    "exceedance.png": (
+        "Share of runs, by probability, that go beyond: below a minimum, to the left, and above a maximum, to the right; each "
+        "seed's, and all seeds together."
+    ),
 }
-_LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. <i>Over seeds</i> are standard
-deviations from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds. Equivalent ranges do the
-same damage as all cycles, at the sweep's equivalent frequency, for S-N curves of the exponent m.</p>"""
+_LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. Spreads are standard deviations
+from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds. Equivalent ranges do the same damage
+as all cycles{frequency}, for S-N curves of the exponent m.</p>"""
 
 
 class Runs(Open):
@@ -44,13 +48,39 @@ class Life(Open):
 
 
 class Failure(Open):
-    """A run that failed, and why."""
+    """Runs of a sea state (m, s) that failed alike, from headings (deg) with seeds, and why."""
 
     hs: Number
     tp: Number
-    heading: Number
-    seed: int
+    gamma: Number | None = None
+    headings: list[Number]
+    seeds: list[int]
+    runs: int
     reason: str
+
+
+class Heading(Open):
+    """Where waves run to (deg), and its share of the life."""
+
+    heading: Number
+    probability: Number
+
+
+class Options(Open):
+    """What all runs share: s, Hz."""
+
+    duration: Number
+    start: Number
+    time_step: Number
+    step: Number
+    spectrum: str
+    amplitudes: str
+    low: Number
+    cutoff: Number
+    order: int
+    stretching: str
+    diffraction: str
+    equivalent_frequency: Number
 
 
 class Used(Open):
@@ -58,6 +88,7 @@ class Used(Open):
 
     file: str
     values: dict[str, Number]
+    sea_state_reference: Reference | None = None
 
 
 class SavedSweep(Open):
@@ -67,8 +98,11 @@ class SavedSweep(Open):
     platform: str
     source: str
     runs: Runs
+    sea_states: int
     cases: int
+    headings: list[Heading]
     seeds: list[int]
+    options: Options
     probability_without_runs: Number = 0.0
     lifetime: dict[str, Life]
     failures: list[Failure] = Field(default_factory=list)
@@ -88,29 +122,49 @@ def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
         share = percent(saved.probability_without_runs)
         lost = f"{share} of the life is without a run, and what follows is of the rest"
         yield f'<p class="warning">{runs.failed} of {runs.total} runs failed; {lost}.</p>'
-    seeds = f"{len(saved.seeds)} seed{'s' * (len(saved.seeds) != 1)}"
-    yield f"<p>{saved.cases} sea states and headings, {seeds}: {runs.done} runs of {runs.total} done.</p>"
+    yield "<h2>What was run</h2>"
+    yield table(["Property", "Value"], [f"<tr>{cells(row, 2)}</tr>" for row in _run(saved)], 2)
     if saved.calibration is not None:
         values = ", ".join(f"{label} = {number(value)}" for label, value in saved.calibration.values.items())
-        yield f"<p>With the values of {escape(saved.calibration.file)}: {escape(values)}.</p>"
+        counted = ""
+        if (reference := saved.calibration.sea_state_reference) is not None:
+            hs, tp = number(reference.significant_height, 3), number(reference.peak_period, 3)
+            counted = f"; exponents count from Hs {hs} m, Tp {tp} s"
+        yield f"<p>With the values of {escape(saved.calibration.file)}: {escape(values)}{counted}.</p>"
     if saved.notes:
         yield f"<h2>Notes</h2>{listed(saved.notes)}"
-    yield "<h2>Over the life</h2>"
-    yield _LIFE
-    yield _lifetimes(saved)
+    if runs.done:
+        yield "<h2>Over the life</h2>"
+        yield _LIFE.format(frequency=f" at {number(saved.options.equivalent_frequency, 3)} Hz")
+        yield _lifetimes(saved)
     if saved.failures:
         yield "<h2>Failed</h2>"
         yield listed(
-            f"Hs {number(one.hs, 3)} m, Tp {number(one.tp, 3)} s, {number(one.heading, 3)} deg, seed {one.seed}: {one.reason}"
-            for one in saved.failures
+            f"{runs_named((one.hs, one.tp, one.gamma), one.headings, one.seeds)}: {one.reason}" for one in saved.failures
         )
     drawn = figures(embedded(folder / name, caption) for name, caption in FIGURES.items() if (folder / name).is_file())
     yield f"<h2>Figures</h2>{drawn}" if drawn else ""
 
 
+def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
+    how, seeds = saved.options, len(saved.seeds)
+    headings = ", ".join(f"{one.heading:g} deg ({percent(one.probability)})" for one in saved.headings)
+    yield "Runs", f"{saved.runs.done} of {saved.runs.total} done"
+    yield "Sea states", f"{saved.sea_states}"
+    yield "Headings, and shares of the life", headings
+    yield "Cases, a sea state from a heading", f"{saved.cases}"
+    yield "Seeds", f"{seeds}" if seeds > 8 else f"{seeds}: {', '.join(map(str, saved.seeds))}"
+    yield "Duration", f"{how.duration:g} s, of which the first {how.start:g} s are left out"
+    yield "Waves", (
+        f"{how.spectrum.replace('_', ' ')}, {how.amplitudes} amplitudes, {how.low:g} to {how.cutoff:g} Hz, order {how.order}"
+    )
+    yield "Wave stretching, diffraction", f"{how.stretching}, {how.diffraction.replace('_', ' ')}"
+    yield "Records every, steps of at most", f"{how.time_step:g} s, {number(how.step, 3)} s"
+
+
 def _lifetimes(saved: SavedSweep) -> str:
     exponents = list(dict.fromkeys(m for one in saved.lifetime.values() for m in one.damage_equivalent_range))
-    heads = ["Channel", "Mean", "Standard deviation", "over seeds", "Maximum of a seed", "over seeds", "Minimum of a seed"]
+    heads = ["Channel", "Mean", "Standard deviation", "its spread", "Maximum of a seed", "its spread", "Minimum of a seed"]
     heads += [f"Equivalent range, m = {escape(m)}" for m in exponents]
     rows = []
     for channel, one in saved.lifetime.items():

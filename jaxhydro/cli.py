@@ -8,12 +8,14 @@ from typer.core import TyperGroup
 
 from jaxhydro import arguments, options, sea_options
 from jaxhydro.console import complain, say, table
+from jaxhydro.interrupts import asked_to_stop, ended_by_signals
 from jaxhydro.problems import InputError
 
 if TYPE_CHECKING:
     from jaxhydro.model import Model
 
 BAD_INPUT, NOT_CONVERGED, STOPPED = 2, 3, 130
+NOTHING = "stopped; nothing was written"
 DEMO = "volturnus-s-decays"
 TRUTH = {  # what the records of the demo were made with: Table 1 of the paper this package started from
     "column.Ca_t": 1.50, "column.Ca_z": 0.12, "column.Cd_t": 2.09, "column.Cd_z": 2.23,
@@ -28,12 +30,18 @@ class Guarded(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""
         try:
-            return super().invoke(ctx)
+            with ended_by_signals():
+                return super().invoke(ctx)
         except InputError as error:
             complain(str(error))
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt as stopped:
-            complain(str(stopped) or "stopped; nothing was written")
+            complain(str(stopped) or NOTHING)
+            raise typer.Exit(STOPPED) from None
+        except ImportError:
+            if not asked_to_stop():  # in the middle of an import, which took it for a failure
+                raise
+            complain(NOTHING)
             raise typer.Exit(STOPPED) from None
         except RuntimeError as error:
             from jaxhydro.statics import EquilibriumError

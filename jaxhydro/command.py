@@ -4,7 +4,7 @@ import dataclasses
 import math
 from collections.abc import Collection
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -15,6 +15,7 @@ from jaxhydro.console import complain, say, table
 from jaxhydro.environment import DOFS
 from jaxhydro.export import Motion, write_motion
 from jaxhydro.loads import Buoyancy
+from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
@@ -24,9 +25,7 @@ from jaxhydro.simulate import default_step, free_decay
 from jaxhydro.statics import equilibrium, natural_modes, stable_modes
 from jaxhydro.strips import COLUMN_SLOPE
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
-
-if TYPE_CHECKING:
-    from calibration.applied import Applied
+from jaxhydro.waves.sea_state import SeaState
 
 GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
@@ -62,36 +61,50 @@ def model_of(platform: Platform, diffraction: str | None = None, elements: int |
     return model if diffraction is None else dataclasses.replace(model, diffraction=str(diffraction))
 
 
+class Used(NamedTuple):
+    """Values of a calibration in a model, by label; the sea state (m, s) that exponents among them count from; why they may not
+    be this platform's."""
+
+    values: dict[str, float]
+    reference: SeaState | None
+    warnings: list[str]
+
+
 def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     """The model with the values, laws and effects of a calibration.json or diagnosis.json; what is to be known of them is
     printed. `asked` is the platform as it was asked for, `name` its own. Raises InputError."""
-    used = with_calibration(model, asked, source)
-    print_used(used.values, warnings_of(used, name, source))
-    return used.model
+    model, used = with_calibration(model, asked, name, source)
+    print_used(used)
+    return model
 
 
-def print_used(values: Collection[str], warnings: list[str]) -> None:
+def print_used(used: Used) -> None:
     """Labels of calibrated values that are used, and what is to be known of them."""
-    say(f"Calibrated values used: {', '.join(values)}")
-    for warning in warnings:
+    counted = ""
+    if used.reference is not None:
+        hs, tp = used.reference
+        counted = f"; exponents count from Hs {hs:.3g} m, Tp {tp:.3g} s"
+    say(f"Calibrated values used: {', '.join(used.values)}{counted}")
+    for warning in used.warnings:
         complain(f"warning: {warning}")
 
 
-def warnings_of(used: "Applied", name: str, source: Path) -> list[str]:
-    """Why calibrated values may not be those of the platform of this name."""
-    found = []
-    if used.platform and used.platform != name:
-        found.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
-    if used.vague:
-        found.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
-    return found
-
-
-def with_calibration(model: Model, asked: str, source: Path) -> "Applied":
+def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple[Model, Used]:
     """`calibrated`, with what is to be known, and nothing is printed."""
     from calibration.applied import applied
+    from calibration.saved import read_saved
 
-    return applied(source, model, asked, everything=True)
+    used, fitted = applied(source, model, asked, everything=True), read_saved(source).best
+    warnings = []
+    if not fitted.converged:
+        warnings.append(f"the fit of {source} did not converge")
+    if used.platform and used.platform != name:
+        warnings.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
+    if used.vague:
+        warnings.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
+    stated = fitted.sea_state_reference if any(map(is_exponent, used.values)) else None
+    reference = None if stated is None else SeaState(stated.significant_height, stated.peak_period)
+    return used.model, Used(used.values, reference, warnings)
 
 
 def calibration_file(path: str) -> Path:

@@ -28,7 +28,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response"),
     ("jaxhydro.simulate",),
     # files in, files out: the edge
-    ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start"),
+    ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start", "jaxhydro.interrupts"),
     ("jaxhydro.problems",),
     ("jaxhydro.body_schema", "jaxhydro.files", "jaxhydro.interop.coefficients", "jaxhydro.interop.tables"),
     ("jaxhydro.interop.wamit", "jaxhydro.interop.capytaine", "jaxhydro.retardation"),
@@ -46,11 +46,11 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.sea_command",),
     ("jaxhydro.sweep.schema", "jaxhydro.sweep.lifetime", "jaxhydro.sweep.statistics"),
     ("jaxhydro.sweep.load", "jaxhydro.sweep.cases", "jaxhydro.sweep.plot"),
-    ("jaxhydro.sweep.batch", "jaxhydro.sweep.notes"),
-    ("jaxhydro.sweep.store", "jaxhydro.sweep.resources", "jaxhydro.sweep.sensitivity"),
-    ("jaxhydro.sweep.worker",),
+    ("jaxhydro.sweep.batch",),
+    ("jaxhydro.sweep.notes", "jaxhydro.sweep.store", "jaxhydro.sweep.resources", "jaxhydro.sweep.sensitivity"),
+    ("jaxhydro.sweep.worker", "jaxhydro.sweep.outputs"),
     ("jaxhydro.sweep.local", "jaxhydro.sweep.cluster"),
-    ("jaxhydro.sweep.run", "jaxhydro.sweep.outputs"),
+    ("jaxhydro.sweep.run",),
     ("jaxhydro.sweep",),
     ("jaxhydro.sweep.command",),
     ("jaxhydro.cli",),
@@ -76,6 +76,7 @@ EDGE = {  # third-party or built-in, and the only modules that may use it
     | {f"calibration.{name}" for name in ("folder", "outputs", "readers", "seas_outputs")},
     "typer": {"jaxhydro.cli", "jaxhydro.options", "jaxhydro.arguments"},
     "rich": {"jaxhydro.console"},
+    "filelock": {"jaxhydro.sweep.store"},
 }
 STANDARD = set(sys.stdlib_module_names) - {"csv", "io", "json", "logging", "os", "pathlib", "random", "sys", "warnings"}
 ARRAYS = {"jax", "jaxtyping", "equinox", "diffrax", "optimistix", "lineax", "numpy"}
@@ -188,7 +189,8 @@ def test_matplotlib_has_no_global_state_in_the_packages() -> None:
 
 def test_import_brings_in_nothing_of_the_edge() -> None:
     """Figures, tables and the command line cost their import only where they are used."""
-    edge = ["matplotlib", "pandas", "xarray", "h5py", "scipy", "rich", "typer", "PIL", "zarr", "rainflow", "psutil"]
+    edge = ["matplotlib", "pandas", "xarray", "h5py", "scipy", "rich", "typer", "PIL", "zarr", "rainflow", "psutil",
+            "filelock"]  # fmt: skip
     heavy = [*edge, "diffrax", "distributed", "calibration"]
     code = f"import jaxhydro, sys; print(*[m for m in {heavy!r} if m in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True, text=True)

@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from dataclasses import replace
@@ -111,7 +112,11 @@ def test_simulate_in_regular_waves_with_calibrated_values(tmp_path: Path) -> Non
     assert first.wave_m.abs().max() == pytest.approx(1.0, rel=1e-2)
     assert first.sway_m.std() == pytest.approx(np.tan(np.pi / 3) * first.surge_m.std(), rel=0.02)  # by symmetry
     values = result_with(tmp_path, **{"column.Ca_t": 2.0})
-    run("simulate", PLATFORM, *waves, "--calibration", values, "--out", tmp_path / "b")
+    saved = json.loads(values.read_text())
+    saved["baseline"]["converged"] = False
+    values.write_text(json.dumps(saved))
+    text = run("simulate", PLATFORM, *waves, "--calibration", values, "--out", tmp_path / "b")
+    assert "Calibrated values used: column.Ca_t" in text and "calibration.json did not converge" in text
     second = pd.read_csv(tmp_path / "b" / "motion.csv")
     assert np.abs(second.sway_m - first.sway_m).max() > 0.05 * first.sway_m.std()
 
@@ -276,6 +281,28 @@ def test_what_does_not_converge(outcome, status, words, written, monkeypatch, tm
     assert (tmp_path / "o").exists() == written and not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
     if written:
         assert json.loads((tmp_path / "o" / "calibration.json").read_text())["baseline"]["converged"] is False
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_stops_a_command(sent, monkeypatch, tmp_path) -> None:
+    """Also one that an import in progress takes for a failure."""
+    command = pytest.importorskip("calibration.command")
+    before = signal.getsignal(sent)
+
+    def at_once(*_: object, **__: object) -> None:
+        signal.raise_signal(sent)
+
+    def importing(*_: object, **__: object) -> None:
+        try:
+            signal.raise_signal(sent)
+        except KeyboardInterrupt:
+            raise ImportError("numpy failed") from None
+
+    for way in (at_once, importing):
+        monkeypatch.setattr(command, "calibrate", way)
+        text = run("calibrate", DEMO, "--no-figures", "--out", tmp_path / "o", status=130)
+        assert "stopped; nothing was written" in text and not list(tmp_path.iterdir())
+    assert signal.getsignal(sent) is before
 
 
 def small_campaign(folder: Path, **changes: str) -> Path:

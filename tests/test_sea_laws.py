@@ -20,6 +20,7 @@ from calibration.sea_laws_outputs import NAMES, laws_table, sentence, states_tab
 from calibration.sea_laws_outputs import document as document_of_laws
 from calibration.seas import Options, compare, seas_of, with_diffraction
 from calibration.stretches import sea_state, stretches, walk
+from jaxhydro.command import with_calibration
 from jaxhydro.drag_laws import drag_laws_of, surface_number
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import reference_of as reference_of_loads
@@ -263,6 +264,8 @@ def test_what_is_written_and_used_again(campaign, found, tmp_path) -> None:
     assert (tmp_path / "figures" / "sea-law-column.Cd_t.png").is_file()
     model = with_diffraction(build(campaign.platform), OPTIONS)
     used = applied(tmp_path, model, campaign.platform.name)
+    stated = with_calibration(model, campaign.platform.name, campaign.platform.name, tmp_path)[1].reference
+    assert stated == pytest.approx(reference(laws.chosen))
     state = SeaState(4.0, 9.0)
     expected = laws.chosen.coefficient("column.Cd_t", state)[0]
     law = next(load for load in used.model.in_sea(state).loads if "column.Cd_t" in load.values)

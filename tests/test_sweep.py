@@ -12,11 +12,14 @@ from fake_sweep import SWEEP, written
 import jaxhydro as jh
 from calibration.report import write_report
 from jaxhydro.problems import InputError, validate
+from jaxhydro.simulate import largest_step
+from jaxhydro.sweep.batch import Setup, prepared_for, sea_of
 from jaxhydro.sweep.cases import Plan, plan_of
 from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted
 from jaxhydro.sweep.load import load_sweep
-from jaxhydro.sweep.notes import notes, shares_in_band
+from jaxhydro.sweep.notes import impossible, notes, shares_in_band
 from jaxhydro.sweep.plot import exceedance_figure, scatter_figure
+from jaxhydro.sweep.resources import bytes_of_run, supports_of
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.sweep.statistics import equivalent_ranges, frequencies, kept_of
 
@@ -41,12 +44,20 @@ def test_cases_are_states_by_headings_by_seeds_in_order() -> None:
 
 
 def test_a_grid_is_all_heights_with_all_periods_and_what_never_happens_is_left_out() -> None:
-    made, left_out = plan_of(
+    made, known = plan_of(
         validate(Sweep, SWEEP | {"scatter": {"hs": [1, 2], "tp": [5, 6, 7], "probability": [[1, 0, 1], [2, 2, 0]]}}, "sweep"),
         "s" )
-    assert left_out == 2
+    assert known == ["2 cases of probability 0 are left out"]
     found = [(case.hs, case.tp, case.probability) for case in made.cases]
     assert found == [(1, 5, 1 / 6), (1, 7, 1 / 6), (2, 5, 1 / 3), (2, 6, 1 / 3)]
+
+
+def test_what_is_in_a_table_twice_is_run_once() -> None:
+    rows = [{"hs": hs, "tp": 8, "probability": share} for hs, share in ((1, 1), (2, 3), (1, 2), (2, 0), (1, 4))]
+    made, known = plan_of(validate(Sweep, SWEEP | {"scatter": rows}, "sweep"), "s")
+    assert [(case.hs, case.probability) for case in made.cases] == [(1, 0.7), (2, 0.3)]
+    (note,) = known
+    assert note == "Hs 1 m, Tp 8 s and 1 more are in the table more than once: run once, and its probabilities add up"
 
 
 def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
@@ -58,6 +69,8 @@ def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
     (tmp_path / "table.csv").write_text("Tp; Hs; Probability; gamma\n7; 1,5; 0,6;\n9; 3; 0,4; 2,5\n")  # as spreadsheets do
     assert load_sweep(file).scatter == sweep.scatter
     (tmp_path / "table.csv").write_text("Tp [s],Hs (m),Probability (%),gamma\n7,1.5,0.6,\n9,3,0.4,2.5\n")
+    assert load_sweep(file).scatter == sweep.scatter
+    (tmp_path / "table.csv").write_text("\ufeffsep=;\n# North Sea\nTp;Hs;Probability;gamma\n7;1,5;0,6;\n9;3;0,4;2,5\n")
     assert load_sweep(file).scatter == sweep.scatter
 
 
@@ -71,6 +84,7 @@ def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
         ("Hs;Tp;probability\n1.5;8,5;x\n", "line 2, column Hs: expected a number with a decimal comma, as others"),
         ("Hs (ft),Tp,probability\n1,2,3\n", "found 'Hs (ft)'. Hs in m, Tp in s"),
         ("Hs,Tp (min),probability (%)\n1,2,3\n", "found 'Tp (min)'. Hs in m, Tp in s"),
+        ("# hours\nHs,Tp,probability\n1,2,x\n", "line 3, column probability: expected a number >= 0"),
         ("Hs,Tp,probability\n1,2\n", "line 2: expected 3 cells, found 2"),
         ("Hs,Tp,probability\n", "expected one row or more under the header, found none"),
         ("", "found an empty file"),
@@ -124,6 +138,9 @@ def test_what_differs_between_plans_is_named() -> None:
     ]  # fmt: skip
     assert list(plan().differences(plan())) == []
     assert next(plan().differences(plan(scatter=[{"hs": 2, "tp": 7}])))[0] == "cases"
+    one, other = (plan(scatter=[{"hs": 1, "tp": tp}, {"hs": 2, "tp": 7, "gamma": 3}]) for tp in (7, 8))
+    before, now = (f"Hs 1 m, Tp {tp} s, heading 0 deg, probability 0.5" for tp in (7, 8))
+    assert list(one.differences(other)) == [("case 0", before, now)]
 
 
 # --- notes
@@ -146,24 +163,55 @@ def test_the_share_of_a_spectrum_in_the_band_is_that_of_its_seas() -> None:
     assert shares_in_band(smooth) == pytest.approx([below[1] - below[0], below[3] - below[2]], rel=5e-3)
 
 
+def noted(made: Plan, model) -> list[str]:
+    """What is noted of a sweep's seas; where some cannot be, that first."""
+    setup = Setup(made, model, np.arange(0.0, made.duration, 0.5), 0.25, None)
+    return list(notes(made, model, shares_in_band(made), impossible(setup)))
+
+
 def test_what_simulate_notes_of_a_sea_is_noted_of_a_sweep() -> None:
     model = jh.load_model("volturnus-s")
     quiet = [{"hs": 2, "tp": 8}, {"hs": 3, "tp": 9}]
     usual = {"cutoff": 0.3, "order": 2, "duration": 600.0}
-    assert list(notes(plan(scatter=quiet, **usual), model, 0)) == []
-    made = plan(scatter=[*quiet, {"hs": 0.5, "tp": 3}, {"hs": 9, "tp": 14}, {"hs": 3, "tp": 9}], headings=[0, 90], **usual)
-    left_out, twice, cut, high = notes(made, model, 2)
-    named = plan(scatter=[{"hs": 0.5, "tp": 3, "gamma": 2}], **usual)
-    assert "least in Hs 0.5 m, Tp 3 s, gamma 2, " in next(notes(named, model, 0))
-    assert left_out == "2 cases of probability 0 are left out"
-    assert twice.startswith("Hs 3 m, Tp 9 s and 1 more are in the table more than once")
+    assert noted(plan(scatter=quiet, **usual), model) == []
+    made = plan(scatter=[*quiet, {"hs": 0.5, "tp": 3}, {"hs": 9, "tp": 14}], headings=[0, 90], **usual)
+    cut, high = noted(made, model)
     assert cut.startswith("in 1 of 4 sea states less than 95% of the spectrum lies from 0.03 to 0.3 Hz")
     assert "least in Hs 0.5 m, Tp 3 s, 12.6% or Hs 0.177 m" in cut
     assert "in 1 of 4 sea states below 0.3 Hz, at 0.24 Hz in Hs 9 m, Tp 14 s" in high
-    assert not list(notes(plan(scatter=[{"hs": 9, "tp": 14}], **usual | {"order": 1}), model, 0))
+    (named,) = noted(plan(scatter=[{"hs": 0.5, "tp": 3, "gamma": 2}], **usual), model)
+    assert named.startswith("in the only sea state less than") and "least in Hs 0.5 m, Tp 3 s, gamma 2, " in named
+    assert not noted(plan(scatter=[{"hs": 9, "tp": 14}], **usual | {"order": 1}), model)
     bare = SimpleNamespace(cylinders=None, diffraction="ramp", environment=model.environment)
-    (note,) = notes(plan(scatter=quiet, **usual), bare, 0)
+    (note,) = noted(plan(scatter=quiet, **usual), bare)
     assert note == "no member of this platform diffracts waves: 1 + Ca everywhere"
+
+
+def test_sea_states_that_cannot_be_are_told_before_they_run() -> None:
+    """Once each, whatever their headings and seeds; nothing else is noted of them."""
+    rows = [{"hs": 2, "tp": 8, "probability": 90}, {"hs": 30, "tp": 9, "probability": 4}, {"hs": 1, "tp": 1, "probability": 6}]
+    (note,) = noted(plan(scatter=rows, headings=[0, 40], cutoff=0.3), jh.load_model("volturnus-s"))
+    assert note.startswith("2 of 3 sea states, 10.00% of the life, cannot be, and the runs fail: Hs 30 m, Tp 9 s (expect")
+    assert "break above" in note and note.endswith(" and 1 more")
+
+
+@pytest.mark.parametrize(("order", "cutoff"), [(1, 0.3), (2, 0.3), (1, 0.55)])
+def test_supports_are_counted_as_a_sea_has_them(order, cutoff) -> None:
+    """Of the heading along which the hull is longest; and a run's memory goes by them."""
+    model, made = jh.load_model("volturnus-s"), plan(order=order, cutoff=cutoff, headings=[0, 50])
+    setup = Setup(made, model, np.arange(0.0, made.duration, 0.5), largest_step(model, cutoff), None)
+    seas = [prepared_for(model, sea_of(setup, made.run(8 * row)), setup.times, setup.limit)[0] for row in (0, 1)]
+    assert supports_of(setup) == max(sea.wavenumber.size for sea in seas)
+    size = max(sea.series.nbytes for sea in seas)
+    assert 2.4 * size < bytes_of_run(setup) < 5 * size
+
+
+@pytest.mark.parametrize(("order", "cutoff"), [(1, 1.2), (2, 0.7), (2, 50.0)])
+def test_waves_too_short_for_the_hull_are_refused(order, cutoff) -> None:
+    model = jh.load_model("volturnus-s")
+    setup = Setup(plan(order=order, cutoff=cutoff), model, np.arange(0.0, 150.0, 0.5), 0.01, None)
+    with pytest.raises(InputError, match=rf"cutoff: expected about 0\.[68]\d? Hz or less at order {order}.* found {cutoff:g} "):
+        supports_of(setup)
 
 
 # --- statistics
@@ -233,28 +281,42 @@ def test_the_scatter_diagram_has_a_mark_per_sea_state() -> None:
     assert [text.get_text() for text in one.axes[0].texts] == ["100 %"]
 
 
-def test_the_exceedance_figure_has_a_line_per_seed_and_one_of_all() -> None:
+def test_the_exceedance_figure_has_a_line_per_seed_and_one_of_all_on_both_sides() -> None:
     values = np.array([[1.0, 2.0], [3.0, np.nan]])
-    figure = exceedance_figure(["surge (m)"], [values], np.array([0.9, 0.1]), 100.0, "t")
+    figure = exceedance_figure(["surge (m)"], [-2 * values], [values], np.array([0.9, 0.1]), 100.0, "t")
     lines = figure.axes[0].lines
-    assert len(lines) == 3 and lines[-1].get_xdata()[-1] == 3.0
+    assert len(lines) == 6 and lines[-1].get_xdata()[-1] == 3.0 and lines[2].get_xdata()[-1] == -6.0
+    assert lines[2].get_ydata() == pytest.approx(lines[-1].get_ydata())  # as rare on both sides
 
 
 def test_a_sweep_makes_a_page(tmp_path: Path) -> None:
     """Statistics over the life with their units, and what failed, escaped; no figure that is not there."""
     life = {"unit": "deg", "mean": 0.5, "standard_deviation": 1.25, "damage_equivalent_range": {"3": 2.5}}
-    failure = {"hs": 14.0, "tp": 9.0, "heading": 30.0, "probability": 0.1, "seed": 4, "reason": "a wave <b>breaks</b>"}
+    failure = {"hs": 14.0, "tp": 9.0, "headings": [30.0], "seeds": [0, 4], "runs": 2, "reason": "a wave <b>breaks</b>"}
+    options = {
+        "duration": 3600.0, "start": 500.0, "time_step": 0.5, "step": 0.25, "spectrum": "jonswap", "low": 0.03, "cutoff": 0.3,
+        "amplitudes": "rayleigh", "order": 2, "stretching": "vertical", "diffraction": "maccamy_fuchs",
+        "equivalent_frequency": 0.1,
+    }  # fmt: skip
     content = {
-        "sweep": "s.yaml", "platform": "volturnus-s", "source": "jaxhydro 0.1.0", "cases": 3, "seeds": [0, 4],
-        "runs": {"total": 6, "done": 5, "failed": 1}, "lifetime": {"pitch": life}, "failures": [failure],
-        "notes": ["one & all"], "calibration": {"file": "c.json", "values": {"column.Cd_t": 1.25}},
+        "sweep": "s.yaml", "platform": "volturnus-s", "source": "jaxhydro 0.1.0", "sea_states": 2, "cases": 3, "seeds": [0, 4],
+        "headings": [{"heading": 0.0, "probability": 0.75}, {"heading": 30.0, "probability": 0.25}], "options": options,
+        "runs": {"total": 6, "done": 4, "failed": 2}, "lifetime": {"pitch": life}, "failures": [failure],
+        "notes": ["one & all"], "calibration": {
+            "file": "c.json", "values": {"column.Cd_t": 1.25},
+            "sea_state_reference": {"significant_height": 2.0, "peak_period": 8.0},
+        },
     }  # fmt: skip
     (tmp_path / "sweep.json").write_text(json.dumps(content))
     page = write_report(tmp_path).read_text()
     assert "<td>pitch (deg)</td>" in page and ">1.250</td>" in page and "Equivalent range, m = 3" in page
-    assert "<li>one &amp; all</li>" in page and "With the values of c.json: column.Cd_t = 1.250." in page
+    assert "0 deg (75 %), 30 deg (25 %)" in page and "3600 s, of which the first 500 s are left out" in page
+    assert "<li>one &amp; all</li>" in page and "c.json: column.Cd_t = 1.250; exponents count from Hs 2.00 m" in page
     assert 'content="jaxhydro 0.1.0"' in page and "and what follows is of the rest" in page
-    assert "1 of 6 runs failed" in page and "a wave &lt;b&gt;breaks&lt;/b&gt;" in page and "<img" not in page
+    assert "Hs 14 m, Tp 9 s, heading 30 deg, 2 seeds: a wave &lt;b&gt;breaks&lt;/b&gt;" in page
+    assert "2 of 6 runs failed" in page and "<img" not in page
+    (tmp_path / "sweep.json").write_text(json.dumps(content | {"runs": {"total": 6, "done": 0, "failed": 6}}))
+    assert "Over the life" not in write_report(tmp_path).read_text()
     (tmp_path / "sweep.json").write_text(json.dumps(content | {"runs": {"total": 6}}))
     with pytest.raises(InputError, match=r"runs\.done"):
         write_report(tmp_path)

@@ -1,5 +1,6 @@
 """Sweeps that run: what a run is, results that do not depend on how they came about, kills, failures, derivatives."""
 
+import contextlib
 import json
 import os
 import re
@@ -13,7 +14,7 @@ import jax
 import numpy as np
 import pytest
 import xarray as xr
-from fake_sweep import BREAKING, PLATFORM, written
+from fake_sweep import BREAKING, PLATFORM, SWEEP, written
 from typer.testing import CliRunner
 
 import jaxhydro as jh
@@ -24,7 +25,7 @@ from jaxhydro.sweep.cases import Plan
 from jaxhydro.sweep.local import Worker
 from jaxhydro.sweep.notes import shares_in_band
 from jaxhydro.sweep.run import opened, prepared
-from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store
+from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store, alone
 from jaxhydro.waves.sea_state import state_of
 
 VARIABLES = ("statistics", "density", "bands", "ranges", "series")
@@ -52,6 +53,7 @@ def whole(file) -> Path:
     """The sweep by one process without a break."""
     out = file.parent / "whole"
     run_sweep(file, out, workers=1)
+    assert (out / "sweep.json").is_file()
     return out
 
 
@@ -139,9 +141,14 @@ def test_the_command_writes_what_the_life_is(file, whole) -> None:
     assert chunks(whole) == before
     assert "24 of 24 runs: nothing is left to do" in text and "8 of 24 runs failed" in text
     assert "no run is left have 5.00% of the life" in text
+    assert text.count("break above") == 2  # noted before, and one line for all runs that failed alike
+    assert "Hs 20 m, Tp 9 s, heading 0 deg, 8 seeds: expected a sea that does not break" in text
     document = json.loads((whole / "sweep.json").read_text())
     assert document["runs"] == {"total": 24, "done": 16, "failed": 8}
-    assert len(document["failures"]) == 8 and "break" in document["failures"][0]["reason"]
+    (failure,) = document["failures"]
+    assert "break" in failure["reason"] and failure["runs"] == 8 and failure["seeds"] == list(range(8))
+    assert (document["sea_states"], document["cases"], document["headings"]) == (3, 3, [{"heading": 0.0, "probability": 1.0}])
+    assert document["options"]["duration"] == 150.0 and document["options"]["order"] == 1
     with xr.open_zarr(whole / RESULTS) as data:
         deviation = data.statistics.sel(channel="surge", statistic="standard_deviation").values[:2]
     expected = np.sqrt((0.6 * (deviation[0] ** 2).mean() + 0.35 * (deviation[1] ** 2).mean()) / 0.95)
@@ -194,16 +201,32 @@ def test_a_sweep_that_is_told_to_end_says_that_it_can_go_on(file, tmp_path) -> N
 
 
 def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatch) -> None:
-    """Before the runs and after them."""
+    """Before the runs and after them; also where a library's callback swallowed the signal."""
 
     def stop(*_) -> None:
         signal.raise_signal(signal.SIGTERM)
 
+    def swallowed(*_) -> dict:
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        return {}
+
     monkeypatch.setattr("jaxhydro.sweep.command.summary_of", stop)
     assert f"stopped; what is done is in {whole / RESULTS}" in command("sweep", file, "--out", whole, status=130)
+    before = signal.getsignal(signal.SIGINT)
+    monkeypatch.setattr("jaxhydro.sweep.run.impossible", swallowed)
+    assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)
     monkeypatch.setattr("jaxhydro.sweep.command.load_sweep", stop)
     assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)
-    assert not (tmp_path / "o").exists()
+    assert not (tmp_path / "o").exists() and signal.getsignal(signal.SIGINT) is before
+
+
+def test_two_sweeps_do_not_write_to_one_folder(file, whole) -> None:
+    before = chunks(whole)
+    with alone(whole):
+        text = command("sweep", file, "--out", whole, "--restart", status=2)
+    assert "--out: expected a folder of its own" in text and "another sweep writes now" in text
+    assert chunks(whole) == before
 
 
 def test_a_scheduler_that_is_lost_is_told(file, tmp_path, monkeypatch) -> None:
@@ -278,7 +301,7 @@ def test_runs_at_once_are_runs_one_by_one(whole) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [({"duration": 160.0}, "duration: expected 150.0, as in the runs that are there, found 160.0"),
-     ({"scatter": [BREAKING]}, "cases: expected 3 of them, as in the runs that are there, found 1")],
+     ({"scatter": SWEEP["scatter"][:1]}, "cases: expected 3 of them, as in the runs that are there, found 1")],
 )  # fmt: skip
 def test_another_sweep_is_not_mixed_in(whole, tmp_path, changes, words) -> None:
     before = chunks(whole)
@@ -298,12 +321,19 @@ def test_another_platform_is_not_mixed_in(whole, tmp_path) -> None:
     [({"platform": "none.yaml"}, "sweep.yaml: platform: none.yaml: expected a YAML file"),
      ({"calibration": "none.json"}, "none.json: expected a calibration.json"),
      ({"calibration": "buoy.yaml"}, "buoy.yaml: line 2, column 1: expected valid JSON"),
-     ({"scatter": "none.csv"}, "there is none"), ({"seed": 1}, "Did you mean 'seeds'?")],
+     ({"scatter": [BREAKING]}, "scatter: expected a sea state that can be, found none: Hs 20 m, Tp 9 s: expected a sea that"),
+     ({"cutoff": 3}, "cutoff: expected about 1"), ({"scatter": "none.csv"}, "there is none"),
+     ({"seed": 1}, "Did you mean 'seeds'?")],
 )  # fmt: skip
 def test_bad_input_leaves_nothing_behind(tmp_path, changes, words) -> None:
     file = written(tmp_path / "in", **changes)
     assert words in command("sweep", file, "--out", tmp_path / "o", status=2)
     assert not (tmp_path / "o").exists()
+
+
+def test_a_cluster_has_its_own_workers(file, tmp_path) -> None:
+    text = command("sweep", file, "--out", tmp_path / "o", "--scheduler", "tcp://127.0.0.1:9", "--workers", 2, status=2)
+    assert "--workers: expected none with --scheduler" in text
 
 
 def test_a_scheduler_that_does_not_answer_leaves_nothing_behind(file, tmp_path, monkeypatch) -> None:

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.command import model_of, warnings_of, with_calibration
+from jaxhydro.command import Used, model_of, with_calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock, integrate
 from jaxhydro.loads import MooringLines
@@ -36,15 +36,13 @@ PLATFORM, CALIBRATION, PLAN = "platform.yaml", "calibration.json", "plan.json"  
 
 
 class Setup(NamedTuple):
-    """What all runs of a sweep share: times (s) of the records, largest step (s); values of a calibration that are used, by
-    label, and why they may not be this platform's."""
+    """What all runs of a sweep share: times (s) of the records, largest step (s), what of a calibration is used."""
 
     plan: Plan
     model: Model
     times: Float[np.ndarray, " t"]
     limit: float
-    calibrated: dict[str, float]
-    warnings: list[str]
+    calibrated: Used | None
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -56,14 +54,12 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     """From a platform's name or file and a calibration's file. Raises InputError, EquilibriumError."""
     declared = load_platform(platform)
     model = model_of(declared, plan.diffraction)
-    values: dict[str, float] = {}
-    warnings: list[str] = []
+    used = None
     if calibration is not None:
-        used = with_calibration(model, str(platform), calibration)
-        model, values, warnings = used.model, used.values, warnings_of(used, declared.name, calibration)
+        model, used = with_calibration(model, str(platform), declared.name, calibration)
     times = plan.time_step * np.arange(math.floor(plan.duration / plan.time_step * (1 + 1e-12)) + 1)
     limit = largest_step(model, plan.cutoff) if plan.step is None else plan.step
-    return Setup(plan, model, times, limit, values, warnings)
+    return Setup(plan, model, times, limit, used)
 
 
 def setup_in(inputs: Path) -> Setup:

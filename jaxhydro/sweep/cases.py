@@ -1,12 +1,14 @@
 """What a sweep runs, in order: every case, a sea state from a heading, with every seed. Plain values, as kept on disk."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from jaxhydro.problems import InputError, Problem, shown
 from jaxhydro.sweep.schema import Grid, SeaState, Sweep
+
+State: TypeAlias = tuple[float, float, float | None]
 
 
 class Case(NamedTuple):
@@ -17,6 +19,27 @@ class Case(NamedTuple):
     gamma: float | None
     heading: float
     probability: float
+
+    @property
+    def state(self) -> State:
+        """The sea state alone."""
+        return self[:3]
+
+    def __str__(self) -> str:
+        return f"{named(self.state)}, heading {self.heading:g} deg"
+
+
+def named(state: State) -> str:
+    """A sea state for people."""
+    hs, tp, gamma = state
+    return f"Hs {hs:g} m, Tp {tp:g} s" + ("" if gamma is None else f", gamma {gamma:g}")
+
+
+def runs_named(state: State, headings: Sequence[float], seeds: Sequence[int]) -> str:
+    """Runs of one sea state for people."""
+    towards = f"heading {headings[0]:g} deg" if len(headings) == 1 else f"{len(headings)} headings"
+    drawn = f"seed {seeds[0]}" if len(seeds) == 1 else f"{len(seeds)} seeds"
+    return f"{named(state)}, {towards}, {drawn}"
 
 
 class Run(NamedTuple):
@@ -82,38 +105,50 @@ class Plan:
                 if name != "cases":
                     yield name, _short(value), _short(others[name])
                     continue
-                apart = [(i, a, b) for i, (a, b) in enumerate(zip(value, others[name])) if a != b]
-                if len(value) != len(others[name]) or not apart:
-                    yield "cases", f"{len(value)} of them", f"{len(others[name])}"
+                apart = [(i, a, b) for i, (a, b) in enumerate(zip(self.cases, other.cases)) if a != b]
+                if len(self.cases) != len(other.cases) or not apart:
+                    yield "cases", f"{len(self.cases)} of them", f"{len(other.cases)}"
                 else:
                     i, a, b = apart[0]
-                    yield f"case {i}", _short(list(a)), _short(list(b))
+                    before, now = (f"{one}, probability {one.probability:.6g}" for one in (a, b))
+                    yield f"case {i}", before, now
 
 
 def _short(value: Any) -> str:
     return shown(list(value) if isinstance(value, tuple) else value)
 
 
-def plan_of(sweep: Sweep, source: str) -> tuple[Plan, int]:
-    """The plan of a sweep whose files are read, and the number of cases of probability 0, which are left out.
+def plan_of(sweep: Sweep, source: str) -> tuple[Plan, list[str]]:
+    """The plan of a sweep whose files are read, and what is to be known of how it was made.
 
-    Shares of sea states and of headings multiply, and are divided by their sum. Raises InputError that names `source` where
-    none is above 0.
+    Shares of sea states and of headings multiply, and are divided by their sum; those of a sea state that is in the table more
+    than once add up. Raises InputError that names `source` where none is above 0.
     """
     states: tuple[SeaState, ...] = sweep.scatter.states() if isinstance(sweep.scatter, Grid) else sweep.scatter  # type: ignore[assignment]
+    notes: list[str] = []
+    shares: dict[State, float] = {}
+    twice: dict[State, None] = {}
+    for one in states:
+        state = (one.hs, one.tp, one.gamma)
+        if state in shares:
+            twice[state] = None
+        shares[state] = shares.get(state, 0.0) + one.probability
+    if twice:
+        more = f" and {len(twice) - 1} more are" if len(twice) > 1 else " is"
+        notes.append(f"{named(next(iter(twice)))}{more} in the table more than once: run once, and its probabilities add up")
     every = [
-        Case(state.hs, state.tp, state.gamma, one.heading, state.probability * one.probability)
-        for state in states
-        for one in sweep.towards
+        Case(*state, one.heading, share * one.probability) for state, share in shares.items() for one in sweep.towards
     ]
     total = sum(case.probability for case in every)
     if not total > 0:
-        key = "headings" if any(state.probability > 0 for state in states) else "scatter"
+        key = "headings" if any(share > 0 for share in shares.values()) else "scatter"
         raise InputError(source, [Problem(key, "a probability above 0", "none")])
     cases = tuple(case._replace(probability=case.probability / total) for case in every if case.probability > 0)
+    if left_out := len(every) - len(cases):
+        notes.append(f"{left_out} case{'s' * (left_out > 1)} of probability 0 {'are' if left_out > 1 else 'is'} left out")
     seeds = tuple(range(sweep.seeds)) if isinstance(sweep.seeds, int) else sweep.seeds
     same: tuple[str, ...] = ("spectrum", "amplitudes", "duration", "start", "time_step", "step", "order", "stretching",
     "diffraction", "low", "cutoff", "motions", "time_series")  # fmt: skip
     fatigue: dict[str, Any] = {"exponents": sweep.fatigue.exponents, "equivalent_frequency": sweep.fatigue.equivalent_frequency}
     options: dict[str, Any] = {name: getattr(sweep, name) for name in same}
-    return Plan(cases, seeds, **options, **fatigue), len(every) - len(cases)
+    return Plan(cases, seeds, **options, **fatigue), notes

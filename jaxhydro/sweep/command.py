@@ -1,24 +1,22 @@
 """The sweep command: from a sweep file to its store, tables and figures."""
 
 import os
-import signal
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from jaxhydro.command import print_rest, print_used
 from jaxhydro.console import complain, counting, say, table
+from jaxhydro.interrupts import asked_to_stop, stop_if_asked
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.cluster import workers_of
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.outputs import Summary, summary_of, write_outputs
 from jaxhydro.sweep.resources import chosen
 from jaxhydro.sweep.run import Prepared, Progress, Ran, opened, prepared, run_all, to_do
-from jaxhydro.sweep.store import RESULTS, open_results
+from jaxhydro.sweep.store import RESULTS, alone, open_results
 
-LISTED = 5  # failures that are printed
+LISTED = 5  # failures that are printed, of runs that failed alike
 
 
 class Stopped(Exception):
@@ -39,11 +37,19 @@ def sweep(
     Raises InputError for bad input, EquilibriumError where the platform does not rest, Stopped.
     """
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
-    with ended_by_signal():
-        try:
-            return _sweep(source, out, workers, batch, restart, retry_failed, scheduler)
-        except KeyboardInterrupt:
-            raise Stopped(f"stopped; {_kept(out)}") from None
+    if scheduler is not None and workers is not None:
+        raise InputError("--workers", [Problem("", "none with --scheduler, whose cluster has its own", f"{workers}")])
+    try:
+        made = prepared(load_sweep(source), str(source))
+        # bad input is told before anything is begun
+        workers_there = 0 if scheduler is None else workers_of(scheduler)
+        stop_if_asked()
+        with alone(out):
+            return _sweep(made, out, workers, batch, restart, retry_failed, scheduler, workers_there)
+    except (KeyboardInterrupt, Exception) as error:
+        if not (asked_to_stop() or isinstance(error, KeyboardInterrupt)):
+            raise
+        raise Stopped(f"stopped; {_kept(out)}") from None
 
 
 def _kept(out: Path) -> str:
@@ -53,11 +59,9 @@ def _kept(out: Path) -> str:
 
 
 def _sweep(
-    source: Path, out: Path, workers: int | None, batch: int | None, restart: bool, retry_failed: bool, scheduler: str | None
-) -> bool:
-    made = prepared(load_sweep(source), str(source))
-    # bad input is told before anything is begun
-    workers_there = 0 if scheduler is None else workers_of(scheduler)
+    made: Prepared, out: Path, workers: int | None, batch: int | None, restart: bool, retry_failed: bool, scheduler: str | None,
+    workers_there: int,
+) -> bool:  # fmt: skip
     resumed = opened(out, made, restart)
     numbers = to_do(out, retry_failed)
     _print_plan(made)
@@ -70,7 +74,7 @@ def _sweep(
         say(how.words if scheduler is None else _cluster(scheduler, workers_there, how.batch), stderr=True)
         with counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
             try:
-                ran = run_all(out, made, numbers, how, scheduler, lambda now: show(now.done + now.failed, _remark(now)))
+                ran = run_all(out, made, numbers, how, scheduler, partial(_show, show))
             except OSError as error:
                 said = str(error.strerror or error)
                 if scheduler is not None:  # workers write, and say it themselves where they cannot
@@ -79,27 +83,10 @@ def _sweep(
         say(f"{ran.runs} runs in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
     data = open_results(out)
     summary = summary_of(data)
-    write_outputs(out, data, summary, _about(made, source))
+    write_outputs(out, data, summary, made.about)
     _print_results(summary, data.exponent.values)
     say(f"Results are in {out}")
     return not summary.failed
-
-
-@contextmanager
-def ended_by_signal() -> Iterator[None]:
-    """SIGTERM, which schedulers of clusters send before they kill, stops as a key does."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def stop(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def _cluster(scheduler: str, workers: int, batch: int) -> str:
@@ -107,12 +94,9 @@ def _cluster(scheduler: str, workers: int, batch: int) -> str:
     return f"On the cluster of {scheduler}: {there}; {batch} run{'s' * (batch != 1)} at a time each"
 
 
-def _about(made: Prepared, source: Path) -> dict[str, Any]:
-    """What sweep.json says first."""
-    about: dict[str, Any] = {"sweep": str(source), "platform": Path(made.platform).stem}
-    if made.calibration is not None:
-        about["calibration"] = {"file": made.calibration, "values": made.setup.calibrated}
-    return about | {"notes": made.notes + made.setup.warnings}
+def _show(show: Callable[[int, str], None], now: Progress) -> None:
+    stop_if_asked()
+    show(now.done + now.failed, _remark(now))
 
 
 def _remark(now: Progress) -> str:
@@ -124,10 +108,11 @@ def _print_plan(made: Prepared) -> None:
     plan = made.inputs.plan
     print_rest(made.setup.model, made.platform)
     headings = sorted({case.heading for case in plan.cases})
-    states = {(case.hs, case.tp, case.gamma) for case in plan.cases}
+    states = {case.state for case in plan.cases}
     rows = [
         ("Sea states", f"{len(states)}"),
         ("Headings", ", ".join(f"{heading:g}" for heading in headings[:8]) + (" ..." if len(headings) > 8 else "") + " deg"),
+        ("Cases, a sea state from a heading", f"{len(plan.cases)}"),
         ("Seeds", f"{len(plan.seeds)}"),
         ("Runs", f"{len(plan)} of {plan.duration:g} s, statistics from {plan.start:g} s on"),
         ("Step at most", f"{made.setup.limit:.3g} s"),
@@ -135,8 +120,8 @@ def _print_plan(made: Prepared) -> None:
     table("Sweep", ("Property", "Value"), rows, left=2)
     for note in made.notes:
         say(f"Note: {note}")
-    if made.calibration is not None:
-        print_used(made.setup.calibrated, made.setup.warnings)
+    if made.setup.calibrated is not None:
+        print_used(made.setup.calibrated)
 
 
 def _print_results(summary: Summary, exponents) -> None:
@@ -145,14 +130,15 @@ def _print_results(summary: Summary, exponents) -> None:
         numbers = (one.mean, one.standard_deviation, one.standard_deviation_spread, one.maximum_of_seed, one.maximum_spread)
         shown = ("-" if value != value else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in (*numbers, *one.ranges))
         rows.append((f"{channel} ({summary.units[channel]})", *shown))
-    heads = ("Channel", "Mean", "Standard deviation", "over seeds", "Maximum of a seed", "over seeds")
-    if summary.failed < summary.total:
-        table("Over the life", (*heads, *(f"Equivalent range m = {m:g}" for m in exponents)), rows)
+    heads = ("Channel", "Mean", "Standard deviation", "its spread", "Maximum of a seed", "its spread")
+    if summary.done:
+        ranges = (f"Equivalent range m = {m:g}" for m in exponents)
+        table("Over the life; spreads are from seed to seed", (*heads, *ranges), rows)
     if summary.failed:
-        share = f"; sea states of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
+        share = f"; cases of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
         complain(f"{summary.failed} of {summary.total} runs failed{share}")
-        for run in summary.failures[:LISTED]:
-            where = f"Hs {run['hs']:g} m, Tp {run['tp']:g} s, heading {run['heading']:g} deg, seed {run['seed']}"
-            complain(f"{where}: {run['reason']}")
-        if summary.failed > LISTED:
-            complain(f"and {summary.failed - LISTED} more: see sweep.json")
+        listed, others = summary.failures[:LISTED], summary.failures[LISTED:]
+        for failure in listed:
+            complain(f"{failure.where}: {failure.reason}")
+        if others:
+            complain(f"and {sum(failure.runs for failure in others)} more: see sweep.json")

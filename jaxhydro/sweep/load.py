@@ -44,14 +44,16 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     except (OSError, ValueError) as error:
         said = str(getattr(error, "strerror", None) or error)
         raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({said})")]) from None
-    lines = text.splitlines()
-    delimiter = next((mark for mark in ";\t" if lines and mark in lines[0]), ",")
+    # as blank lines, so that lines keep their numbers: comments, and what spreadsheets say of the delimiter
+    lines = ["" if re.match(r"\s*#|\ufeff?sep=.\s*$", line, re.IGNORECASE) else line for line in text.splitlines()]
+    head = next(filter(str.strip, lines), "")
+    delimiter = next((mark for mark in ";\t" if mark in head), ",")
     read = enumerate(csv.reader(lines, delimiter=delimiter), 1)
     rows = [(number, row) for number, row in read if any(cell.strip() for cell in row)]
     commas = delimiter != "," and any("," in cell for _, row in rows[1:] for cell in row)  # decimal ones
     if not rows:
         raise InputError(str(path), [Problem("", f"a header {','.join(COLUMNS[:3])} and rows", "an empty file")])
-    heads = [cell.strip() for cell in rows[0][1]]
+    where, heads = f"line {rows[0][0]}", [cell.strip() for cell in rows[0][1]]
     names = [_column(head) for head in heads]
     problems = []
     for head, name in zip(heads, names):
@@ -59,10 +61,10 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
             found = shown(head) if name not in COLUMNS else f"{name} twice"
             units = "Hs in m, Tp in s" if re.match(r"(hs|tp)\b", name) else ""
             hint = units or suggest(name, COLUMNS)
-            problems.append(Problem("line 1", f"columns among {', '.join(COLUMNS)}", found, hint))
+            problems.append(Problem(where, f"columns among {', '.join(COLUMNS)}", found, hint))
     missing = [name for name in COLUMNS[:3] if name not in names]
     if missing and not problems:
-        problems.append(Problem("line 1", f"a column {missing[0]}", ", ".join(heads)))
+        problems.append(Problem(where, f"a column {missing[0]}", ", ".join(heads)))
     if problems:
         raise InputError(str(path), dict.fromkeys(problems))
     states = []

@@ -1,15 +1,16 @@
 """What is to be known of a sweep before it runs: what `jaxhydro simulate` notes of one sea, of all of them."""
 
-from collections import Counter
 from collections.abc import Iterator
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
+from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.model import Model
 from jaxhydro.sea_command import CUT, usual_cutoff
-from jaxhydro.sweep.cases import Case, Plan
+from jaxhydro.sweep.batch import Setup, reason_of, sea_of
+from jaxhydro.sweep.cases import Plan, Run, State, named
 from jaxhydro.waves.irregular import repeat_period
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
 
@@ -21,8 +22,8 @@ def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
     period = repeat_period(plan.duration)
     harmonics = np.arange(max(np.ceil(plan.low * period - 1e-6), 1), np.floor(plan.cutoff * period + 1e-6) + 1)
     omega = jnp.asarray(2 * np.pi / period * harmonics)
-    found: dict[tuple[float, float, float | None], float] = {}
-    states = list(dict.fromkeys((case.hs, case.tp, case.gamma) for case in plan.cases))
+    found: dict[State, float] = {}
+    states = list(dict.fromkeys(case.state for case in plan.cases))
     for i in range(0, len(states), AT_ONCE):
         some = states[i : i + AT_ONCE]
         hs, tp = (jnp.array([state[k] for state in some])[:, None] for k in (0, 1))
@@ -33,42 +34,63 @@ def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
             density = pierson_moskowitz(omega, hs, tp)
         share = density.sum(axis=1) * 2 * np.pi / period / (hs[:, 0] ** 2 / 16)
         found |= dict(zip(some, share.tolist()))
-    return np.array([found[case.hs, case.tp, case.gamma] for case in plan.cases])
+    return np.array([found[case.state] for case in plan.cases])
 
 
-def notes(plan: Plan, model: Model, left_out: int) -> Iterator[str]:
-    """One sentence each. `left_out` cases have probability 0."""
-    if left_out:
-        yield f"{_count(left_out, 'case')} of probability 0 {'are' if left_out > 1 else 'is'} left out"
-    states = Counter(case._replace(heading=case.heading % 360, probability=0.0) for case in plan.cases)
-    if twice := [state for state, count in states.items() if count > 1]:
-        more = f" and {len(twice) - 1} more are" if len(twice) > 1 else " is"
-        yield f"{_named(twice[0])}{more} in the table more than once: run as often, and shares add up"
-    yield from _of_seas(plan, float(model.environment.gravity))
+def impossible(setup: Setup) -> dict[State, str]:
+    """Why the runs of a sea state will fail, of those that cannot be: its waves break, or hardly any are in the band."""
+    found: dict[State, str] = {}
+    for state, case in {case.state: case for case in setup.plan.cases}.items():
+        stop_if_asked()
+        try:
+            sea_of(setup, Run(0, 0, 0, case, setup.plan.seeds[0]))
+        except Exception as error:  # whatever it is, it is this sea state's
+            found[state] = reason_of(error)
+    return found
+
+
+def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: dict[State, str]) -> Iterator[str]:
+    """One sentence each, of a plan with the `shares_in_band` of its cases and its `impossible` sea states."""
+    seas = {case.state: float(share) for case, share in zip(plan.cases, shares)}
+    if failing:
+        state, reason = next(iter(failing.items()))
+        life = sum(case.probability for case in plan.cases if case.state in failing)
+        more = f" and {len(failing) - 1} more" if len(failing) > 1 else ""
+        yield (
+            f"{len(failing)} of {_count(len(seas), 'sea state')}, {life:.2%} of the life, cannot be, and the runs fail: "
+            f"{named(state)} ({reason}){more}"
+        )
+    run = {state: share for state, share in seas.items() if state not in failing}
+    yield from _of_band(run, len(seas), plan)
+    yield from _of_height(run, len(seas), plan, model)
     if model.cylinders is None and model.diffraction != "none":
         yield "no member of this platform diffracts waves: 1 + Ca everywhere"
 
 
-def _of_seas(plan: Plan, gravity: float) -> Iterator[str]:
-    seas = {case[:3]: (float(share), case) for case, share in zip(plan.cases, shares_in_band(plan))}
-    total, band = f"of {_count(len(seas), 'sea state')}", f"from {plan.low:g} to {plan.cutoff:g} Hz"
-    if cut := [one for one in seas.values() if one[0] < CUT]:
-        share, case = min(cut, key=lambda one: one[0])
+def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
+    if cut := {state: share for state, share in seas.items() if share < CUT}:
+        state = min(cut, key=cut.__getitem__)
         yield (
-            f"in {len(cut)} {total} less than {CUT:.0%} of the spectrum lies {band}, and the rest is left out; least in "
-            f"{_named(case)}, {share:.1%} or Hs {case.hs * share**0.5:.3g} m: see low and cutoff"
-        )
-    usual = [(usual_cutoff(case.hs * share**0.5, gravity), case) for share, case in seas.values()]
-    if plan.order == 2 and (high := [one for one in usual if one[0] < plan.cutoff]):
-        lowest, case = min(high, key=lambda one: one[0])
-        yield (
-            f"second order is usually cut off at sqrt(2 g / Hs) (Stansberg): in {len(high)} {total} below {plan.cutoff:g} Hz, "
-            f"at {lowest:.2g} Hz in {_named(case)}. Beyond, short waves bind more than they have: see cutoff"
+            f"{_in(len(cut), total)} less than {CUT:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, and "
+            f"the rest is left out; least in {named(state)}, {cut[state]:.1%} or Hs {state[0] * cut[state] ** 0.5:.3g} m: see "
+            "low and cutoff"
         )
 
 
-def _named(case: Case) -> str:
-    return f"Hs {case.hs:g} m, Tp {case.tp:g} s" + ("" if case.gamma is None else f", gamma {case.gamma:g}")
+def _of_height(seas: dict[State, float], total: int, plan: Plan, model: Model) -> Iterator[str]:
+    gravity = float(model.environment.gravity)
+    usual = {state: usual_cutoff(state[0] * share**0.5, gravity) for state, share in seas.items()}
+    if plan.order == 2 and (high := {state: one for state, one in usual.items() if one < plan.cutoff}):
+        state = min(high, key=high.__getitem__)
+        yield (
+            f"second order is usually cut off at sqrt(2 g / Hs) (Stansberg): {_in(len(high), total)} below "
+            f"{plan.cutoff:g} Hz, at {high[state]:.2g} Hz in {named(state)}. Beyond, short waves bind more than they have: see "
+            "cutoff"
+        )
+
+
+def _in(some: int, total: int) -> str:
+    return "in the only sea state" if total == 1 else f"in {some} of {total} sea states"
 
 
 def _count(number: int, what: str) -> str:

@@ -13,17 +13,39 @@ import jaxhydro
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.plot import save, style
+from jaxhydro.sweep.cases import State, runs_named
 from jaxhydro.sweep.lifetime import Lifetime, lifetime
 from jaxhydro.sweep.plot import exceedance_figure, scatter_figure
 from jaxhydro.sweep.store import DONE, FAILED
 
 PANELS = ("surge", "heave", "pitch")  # whose maxima are drawn, where they move
 FAILURES = 1000  # listed in sweep.json; all are in the store
+OPTIONS = (
+    "duration", "start", "time_step", "step", "spectrum", "amplitudes", "low", "cutoff", "order", "stretching", "diffraction",
+    "equivalent_frequency",
+)  # fmt: skip
 STILL = 1e-6  # m, deg
 
 
+class Failure(NamedTuple):
+    """Runs of one sea state (m, s) that failed alike, from these headings (deg) with these seeds, and why."""
+
+    hs: float
+    tp: float
+    gamma: float | None
+    headings: list[float]
+    seeds: list[int]
+    runs: int
+    reason: str
+
+    @property
+    def where(self) -> str:
+        """The runs, for people."""
+        return runs_named(self[:3], self.headings, self.seeds)
+
+
 class Summary(NamedTuple):
-    """Runs in all, done and failed; lifetime statistics by channel; share of the time without a single run done; failures."""
+    """Runs in all, done and failed; lifetime statistics by channel; share of the life in cases without a run done; failures."""
 
     total: int
     done: int
@@ -31,7 +53,7 @@ class Summary(NamedTuple):
     missing: float
     lifetimes: dict[str, Lifetime]
     units: dict[str, str]
-    failures: list[dict[str, Any]]
+    failures: list[Failure]
 
 
 def summary_of(data: xr.Dataset) -> Summary:
@@ -48,13 +70,28 @@ def summary_of(data: xr.Dataset) -> Summary:
         )
         ranges = data.ranges.sel(channel=channel).values
         lifetimes[channel] = lifetime(probability, mean, deviation, least, most, ranges, exponents)
-    failures = []
-    for row, column in zip(*np.nonzero(status == FAILED)):
-        case = {name: float(data[name].values[row]) for name in ("hs", "tp", "heading", "probability")}
-        failures.append(case | {"seed": int(data.seed.values[column]), "reason": str(data.reason.values[row, column])})
     units = dict(zip(map(str, data.channel.values), map(str, data.unit.values)))
     missing = float(probability[~(status == DONE).any(axis=1)].sum())
-    return Summary(status.size, int((status == DONE).sum()), len(failures), missing, lifetimes, units, failures)
+    done, failed = (int((status == one).sum()) for one in (DONE, FAILED))
+    return Summary(status.size, done, failed, missing, lifetimes, units, _failures(data))
+
+
+def _failures(data: xr.Dataset) -> list[Failure]:
+    alike: dict[tuple[State, str], list[tuple[float, int]]] = {}
+    headings, seeds, reasons = data.heading.values, data.seed.values, data.reason.values
+    for row, column in zip(*np.nonzero(data.status.values == FAILED)):
+        key = _state(data, row), str(reasons[row, column])
+        alike.setdefault(key, []).append((float(headings[row]), int(seeds[column])))
+    found = []
+    for ((hs, tp, gamma), reason), runs in alike.items():
+        towards, drawn = zip(*runs)
+        found.append(Failure(hs, tp, gamma, sorted(set(towards)), sorted(set(drawn)), len(runs), reason))
+    return found
+
+
+def _state(data: xr.Dataset, row: int) -> State:
+    hs, tp, gamma = (float(data[name].values[row]) for name in ("hs", "tp", "gamma"))
+    return hs, tp, None if math.isnan(gamma) else gamma
 
 
 def write_outputs(folder: Path, data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> None:
@@ -76,10 +113,16 @@ def _document(data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> str:
         | {"damage_equivalent_range": {f"{m:g}": _plain(r) for m, r in zip(data.exponent.values, one.ranges)}}
         for channel, one in summary.lifetimes.items()
     }
+    headings: dict[float, float] = {}
+    for heading, share in zip(data.heading.values.tolist(), data.probability.values.tolist()):
+        headings[heading] = headings.get(heading, 0.0) + share
     document = about | {
         "source": f"jaxhydro {jaxhydro.__version__}", "fingerprint": data.attrs["fingerprint"], "runs": runs,
-        "cases": data.sizes["case"], "seeds": data.seed.values.tolist(), "probability_without_runs": summary.missing,
-        "lifetime": lifetimes, "failures": summary.failures[:FAILURES],
+        "sea_states": len({_state(data, row) for row in range(data.sizes["case"])}), "cases": data.sizes["case"],
+        "headings": [{"heading": heading, "probability": share} for heading, share in headings.items()],
+        "seeds": data.seed.values.tolist(), "options": {name: data.attrs[name] for name in OPTIONS if name in data.attrs},
+        "probability_without_runs": summary.missing, "lifetime": lifetimes,
+        "failures": [one._asdict() for one in summary.failures[:FAILURES]],
     }  # fmt: skip
     return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -105,10 +148,12 @@ def _figures(folder: Path, data: xr.Dataset, summary: Summary, platform: str) ->
     figure = scatter_figure(data.hs.values, data.tp.values, probability, deviation, label, platform)
     save(figure, folder / "scatter.png")
     panels = [name for name in PANELS if name in moving] or list(moving)[:3] or ["wave"]
-    maxima = [found.sel(channel=name).values[..., names.index("maximum")] for name in panels]
+    minima, maxima = (
+        [found.sel(channel=name).values[..., names.index(one)] for name in panels] for one in ("minimum", "maximum")
+    )
     labels = [f"{name} ({summary.units[name]})" for name in panels]
     duration = float(data.attrs["duration"]) - float(data.attrs["start"])
-    save(exceedance_figure(labels, maxima, probability, duration, platform), folder / "exceedance.png")
+    save(exceedance_figure(labels, minima, maxima, probability, duration, platform), folder / "exceedance.png")
 
 
 def _plain(value: float) -> float | None:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 from matplotlib.ticker import FuncFormatter
 
 from jaxhydro.plot import GREY, MEASURED, SIMULATED, stack
-from jaxhydro.sweep.lifetime import exceedance
+from jaxhydro.sweep.lifetime import Runs, exceedance
 
 WRITTEN = 16  # sea states, up to which their probability is written into the diagram
 COLOURS = "viridis"
@@ -41,10 +41,12 @@ def scatter_figure(
     order = np.argsort(-size)
     order = order[solid[order]]
     marks = ax.scatter(
-        states[order, 1], states[order, 0], s=size[order], c=colour[order], cmap=COLOURS, lw=0.4, edgecolors="white", zorder=2
-    )
+        states[order, 1], states[order, 0], s=size[order], c=colour[order], cmap=COLOURS, lw=0.4, edgecolors="white", zorder=2,
+        clip_on=False,
+    )  # fmt: skip
     if not solid.all():
-        ax.scatter(states[~solid, 1], states[~solid, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3)
+        at = states[~solid]
+        ax.scatter(at[:, 1], at[:, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3, clip_on=False)
     if len(states) <= WRITTEN:
         for (height, period), one, area in zip(states, share, size):
             said = "100" if one > 0.995 else f"{100 * one:.2g}"
@@ -65,34 +67,44 @@ def scatter_figure(
 
 def exceedance_figure(
     names: Sequence[str],
-    maxima: Sequence[Float[np.ndarray, "case seed"]],
+    minima: Sequence[Runs],
+    maxima: Sequence[Runs],
     probability: Float[np.ndarray, " case"],
     duration: float,
     title: str,
 ) -> Figure:
-    """Probability that a run of a random case, `duration` (s) long, has a larger maximum: one line per seed, and all of them.
+    """Probability that a run of a random case, `duration` (s) long, goes beyond: below a minimum, to the left, or above a
+    maximum, to the right. One line per seed, and all of them.
 
-    `names` are those of the panels, with units; `maxima` are NaN where a run failed.
+    `names` are those of the panels, with units; `minima` and `maxima` are NaN where a run failed.
     """
     figure, axes = stack([1.15] * len(names), shared=False)
     artists: dict[str, Any] = {}
-    for ax, name, values in zip(axes, names, maxima, strict=True):
-        for column in values.T if values.shape[1] > 1 else ():
-            x, p = exceedance(probability, column)
+    for ax, name, least, most in zip(axes, names, minima, maxima, strict=True):
+        lowest = 0.1
+        for sign, values in ((-1, -least), (1, most)):
+            for column in values.T if values.shape[1] > 1 else ():
+                x, p = exceedance(probability, column)
+                if len(x):
+                    (artists["one seed"],) = ax.step(sign * _begun(x), [1.0, *p], where="pre", color=GREY, lw=0.5, alpha=0.7)
+            x, p = exceedance(np.repeat(probability, values.shape[1]), values.reshape(-1))
             if len(x):
-                (artists["one seed"],) = ax.step([x[0], *x], [1.0, *p], where="pre", color=GREY, lw=0.5, alpha=0.7)
-        x, p = exceedance(np.repeat(probability, values.shape[1]), values.reshape(-1))
-        if len(x):
-            (artists["all seeds"],) = ax.step([x[0], *x], [1.0, *p], where="pre", color=SIMULATED, lw=1.1)
+                (artists["all seeds"],) = ax.step(sign * _begun(x), [1.0, *p], where="pre", color=SIMULATED, lw=1.1)
+                lowest = min(lowest, 0.5 * float(p.min()))
         ax.set_yscale("log")
-        ax.set_ylim(min(0.5 * float(p.min(initial=0.1)), 0.1), 1.15)
+        ax.set_ylim(lowest, 1.15)
         ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         ax.minorticks_off()
-        ax.set_xlabel(f"Maximum of {name}")
-        ax.set_ylabel("Share of runs above")
+        ax.set_xlabel(f"Minimum and maximum of {name}")
+        ax.set_ylabel("Share of runs beyond")
     legend = figure.legend(
         list(artists.values()), list(artists), loc="outside upper left", ncols=2, alignment="left",
         title=f"{title}, runs of {duration:g} s",
     )  # fmt: skip
     legend.get_title().set_fontweight("bold")
     return figure
+
+
+def _begun(x: Float[np.ndarray, " n"]) -> Float[np.ndarray, " m"]:
+    """Values of `exceedance` from where it is 1."""
+    return np.concatenate([x[:1], x])

@@ -1,19 +1,25 @@
 """How many runs at a time: what the cores, the GPUs and the memory of this machine hold."""
 
+import math
 import os
 from typing import NamedTuple
 
 import jax
+import jax.numpy as jnp
+import numpy as np
 import psutil
 
+from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import Setup
+from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import fourier_length, repeat_period
+from jaxhydro.waves.irregular_sea import EXCURSION
+from jaxhydro.waves.supports import MOST, Box, supports
 
-WAVENUMBERS = 26  # supports of a sea, at most
-COPIES = 6  # of a sea's series, while it is made
+COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
 PROCESS = 700e6  # bytes of a worker before its first sea
 SHARE = 0.6  # of what is available, that is used
-MOST = 512  # runs at once: beyond, a GPU gains nothing
+MOST_AT_ONCE = 512  # runs: beyond, a GPU gains nothing
 
 
 class Chosen(NamedTuple):
@@ -27,27 +33,54 @@ class Chosen(NamedTuple):
     words: str
 
 
+def supports_of(setup: Setup, source: str = "sweep") -> int:
+    """Support wavenumbers of the sweep's seas, of the heading that needs most: those that `IrregularSea.prepared` finds.
+
+    Raises InputError that names `source` where the waves are too short for the hull.
+    """
+    plan, environment = setup.plan, setup.model.environment
+    depth, gravity, period = float(environment.depth), float(environment.gravity), repeat_period(plan.duration)
+    omega = 2 * math.pi / period * math.floor(plan.cutoff * period + 1e-6)
+    free = float(wavenumber(jnp.asarray(omega), jnp.asarray(depth), jnp.asarray(gravity)))
+    points = np.asarray(setup.model.hull.extremities())
+    low = 2.0 * math.floor(max(-depth, float(points[2].min()) - 0.3 * EXCURSION) / 2.0)
+    most = 0
+    for heading in {math.radians(case.heading) for case in plan.cases}:
+        place = np.array([math.cos(heading), math.sin(heading)]) @ points[:2]
+        half = 5.0 * math.ceil((0.5 * np.ptp(place) + EXCURSION) / 5.0)
+        highest = 2 * (MOST - 8) / half  # rad/m, that about so many supports do for
+        try:
+            if plan.order * free > 2 * highest:  # to try would take more memory than there is
+                raise ValueError(f"waves of {2 * math.pi / (plan.order * free):.2g} m")
+            most = max(most, supports(Box(0.0, half, low, depth), free, 2 * free if plan.order == 2 else 0.0).wavenumber.size)
+        except ValueError:
+            usual = math.sqrt(gravity * highest / plan.order) / (2 * math.pi)
+            expected = f"about {usual:.2g} Hz or less at order {plan.order} for so large a hull"
+            hint = "Shorter waves need too many support wavenumbers."
+            raise InputError(source, [Problem("cutoff", expected, f"{plan.cutoff:g} Hz", hint)]) from None
+    return most
+
+
 def bytes_of_run(setup: Setup) -> float:
-    """Of one run at its largest: its sea's series, and at second order the pairs of its components."""
-    plan = setup.plan
-    period = repeat_period(plan.duration)
+    """Of one run at its largest: its sea's series while they are made, and the spectra that they are made of."""
+    plan, model = setup.plan, setup.model
+    period, cylinders = repeat_period(plan.duration), model.cylinders
     steps = fourier_length(period / setup.limit) * plan.duration / period
-    cylinders = setup.model.cylinders
     radii = 0 if cylinders is None else cylinders.radius.size * (2 if cylinders.ramp else 1)
-    series = steps * (6 + 2 * radii) * 2 * WAVENUMBERS * 8
-    pairs = (plan.cutoff * period) ** 2 * 200 if plan.order == 2 else 0.0
-    return COPIES * series + pairs + len(setup.times) * 50 * 8
+    rows = 6 + 2 * radii + (0 if model.excitation is None else 6)
+    complex_numbers = COPIES * steps + 3 * plan.order * plan.cutoff * period
+    return complex_numbers * rows * supports_of(setup) * 16 + len(setup.times) * 50 * 8
 
 
 def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Chosen:
     """Workers and batch as given, else those that fit: on the CPU one run per core at a time (more at once are no faster), on
-    GPUs as many as their memory holds, at most `MOST`."""
+    GPUs as many as their memory holds, at most `MOST_AT_ONCE`."""
     size = bytes_of_run(setup)
     gpus = [device for device in jax.local_devices() if device.platform == "gpu"]
     if gpus:
         available = min(float((device.memory_stats() or {}).get("bytes_limit", 8e9)) for device in gpus)
         count = min(workers or len(gpus), len(gpus))
-        fits = max(1, min(MOST, int(SHARE * available / size), -(-runs // count)))
+        fits = max(1, min(MOST_AT_ONCE, int(SHARE * available / size), -(-runs // count)))
         taken = fits if batch is None else batch
         words = f"{count} GPU{'s' * (count > 1)}, {taken} runs at once: {taken * size / 1e9:.2g} of {available / 1e9:.0f} GB"
         return Chosen(count, taken, tuple(str(i) for i in range(count)), size, words)

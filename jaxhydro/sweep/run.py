@@ -8,34 +8,50 @@ from hashlib import sha256
 from importlib import resources
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
 import xarray as xr
+from jaxtyping import Float
 
 from jaxhydro.command import calibration_file
 from jaxhydro.files import check_folder
 from jaxhydro.platform_schema import BESIDE, builtin_platforms, load_platform
-from jaxhydro.problems import InputError, read_yaml
+from jaxhydro.problems import InputError, Problem, read_yaml
 from jaxhydro.statics import stable_modes
 from jaxhydro.sweep.batch import Setup, setup_of
-from jaxhydro.sweep.cases import plan_of
+from jaxhydro.sweep.cases import named, plan_of
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.local import simulated
-from jaxhydro.sweep.notes import notes
-from jaxhydro.sweep.resources import Chosen, chosen
+from jaxhydro.sweep.notes import impossible, notes, shares_in_band
+from jaxhydro.sweep.outputs import summary_of, write_outputs
+from jaxhydro.sweep.resources import Chosen, chosen, supports_of
 from jaxhydro.sweep.schema import Sweep
-from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, check_same, create, discard, open_results
+from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, alone, check_same, create, discard, open_results
 from jaxhydro.sweep.worker import Found
 
 
 class Prepared(NamedTuple):
-    """A sweep that can be stored and run, the platform and the calibration as they were asked for, and what is to be known."""
+    """A sweep that can be stored and run: its file, the platform and the calibration as they were asked for, the share of every
+    case's spectrum in the band, and what is to be known."""
 
     inputs: Inputs
     setup: Setup
+    source: str
     platform: str
     calibration: str | None
+    shares: Float[np.ndarray, " c"]
     notes: list[str]
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What sweep.json says first."""
+        about: dict[str, Any] = {"sweep": self.source, "platform": Path(self.platform).stem}
+        if (used := self.setup.calibrated) is None:
+            return about | {"notes": self.notes}
+        reference = {} if used.reference is None else {"sea_state_reference": used.reference._asdict()}
+        about["calibration"] = {"file": self.calibration, "values": used.values} | reference
+        return about | {"notes": self.notes + used.warnings}
 
 
 class Progress(NamedTuple):
@@ -62,7 +78,7 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
 
     Raises InputError, EquilibriumError.
     """
-    plan, left_out = plan_of(sweep, source)
+    plan, known = plan_of(sweep, source)
     calibration = None if sweep.calibration is None else calibration_file(sweep.calibration)
     try:
         setup = setup_of(plan, sweep.platform, calibration)
@@ -72,9 +88,15 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     stable_modes(setup.model)
     # as chosen for this platform: workers need not choose again
     setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
+    supports_of(setup, source)
+    shares, failing = shares_in_band(plan), impossible(setup)
+    if all(case.state in failing for case in plan.cases):
+        state, reason = next(iter(failing.items()))
+        raise InputError(source, [Problem("scatter", "a sea state that can be", f"none: {named(state)}: {reason}")])
+    known += notes(plan, setup.model, shares, failing)
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
-    known = list(notes(plan, setup.model, left_out))
-    return Prepared(Inputs(plan, _platform_text(sweep.platform), text), setup, sweep.platform, sweep.calibration, known)
+    inputs = Inputs(plan, _platform_text(sweep.platform), text)
+    return Prepared(inputs, setup, source, sweep.platform, sweep.calibration, shares, known)
 
 
 def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
@@ -87,7 +109,7 @@ def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
     if (folder / RESULTS).is_dir():
         check_same(folder, made.inputs)
         return True
-    create(folder, made.inputs, made.setup)
+    create(folder, made.inputs, made.setup, made.shares)
     return False
 
 
@@ -134,7 +156,8 @@ def run_sweep(
     scheduler: str | None = None,
     progress: Callable[[Progress], None] = lambda now: None,
 ) -> xr.Dataset:
-    """Run a sweep, or what is left of it, and open its results, in the folder `out`: see docs/sweeps.md.
+    """Run a sweep, or what is left of it, and open its results, in the folder `out`, with all files of the command: see
+    docs/sweeps.md.
 
     `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart`
     forgets the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a
@@ -143,10 +166,13 @@ def run_sweep(
     source = "sweep" if isinstance(sweep, Sweep) else str(sweep)
     made = prepared(sweep if isinstance(sweep, Sweep) else load_sweep(source), source)
     folder = check_folder(out, "out")
-    opened(folder, made, restart)
-    if numbers := to_do(folder, retry_failed):
-        run_all(folder, made, numbers, chosen(made.setup, len(numbers), workers, batch), scheduler, progress)
-    return open_results(folder)
+    with alone(folder):
+        opened(folder, made, restart)
+        if numbers := to_do(folder, retry_failed):
+            run_all(folder, made, numbers, chosen(made.setup, len(numbers), workers, batch), scheduler, progress)
+        data = open_results(folder)
+        write_outputs(folder, data, summary_of(data), made.about)
+    return data
 
 
 def _platform_text(asked: str) -> str:

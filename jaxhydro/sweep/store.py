@@ -8,22 +8,25 @@ import hashlib
 import json
 import shutil
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 import zarr
+from filelock import FileLock, Timeout
+from jaxtyping import Float
 
 import jaxhydro
 from jaxhydro.files import staged
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.notes import shares_in_band
 from jaxhydro.sweep.statistics import BANDS, STATISTICS, Kept, bands_in, frequencies, unit
 
-RESULTS, INPUTS, UNFINISHED = "results.zarr", "inputs", ".results"
+RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2
 KEPT = {  # variable: its dimensions after case and seed, and what it is
     "statistics": (("channel", "statistic"), "in units of the channel; skewness and kurtosis 1, zero_crossing_period s"),
@@ -47,8 +50,32 @@ class Inputs(NamedTuple):
         return _hash("\n".join((self.plan.to_json(), self.platform, self.calibration or "")))
 
 
-def create(folder: Path, inputs: Inputs, setup: Setup) -> None:
-    """Make the folder's inputs and its store, with all runs to be done. Raises InputError where they cannot be written."""
+@contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """The folder, made where absent, is written by nobody else meanwhile. Raises InputError where another sweep does.
+
+    Where the file system has no locks nothing is checked.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(folder / LOCK)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        found = f"{str(folder)!r}, which another sweep writes now"
+        raise InputError("--out", [Problem("", "a folder of its own", found)]) from None
+    except (NotImplementedError, OSError):
+        pass
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def create(folder: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, " c"]) -> None:
+    """Make the folder's inputs and its store, with all runs to be done; `shares` of every case's spectrum are in its seas.
+
+    Raises InputError where they cannot be written.
+    """
     discard(folder)
     with staged(folder) as temporary:
         made = temporary / INPUTS
@@ -57,7 +84,7 @@ def create(folder: Path, inputs: Inputs, setup: Setup) -> None:
         (made / PLATFORM).write_text(inputs.platform, encoding="utf-8")
         if inputs.calibration is not None:
             (made / CALIBRATION).write_text(inputs.calibration, encoding="utf-8")
-    _arrays(folder / UNFINISHED, inputs, setup)
+    _arrays(folder / UNFINISHED, inputs, setup, shares)
     (folder / UNFINISHED).rename(folder / RESULTS)
 
 
@@ -134,7 +161,7 @@ def open_results(folder: Path) -> xr.Dataset:
     return data.assign_coords({name: coordinate.load() for name, coordinate in data.coords.items()})
 
 
-def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
+def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, " c"]) -> None:
     plan, channels = inputs.plan, setup.channels
     window = setup.times[setup.times >= plan.start]
     sizes: dict[str, Any] = {
@@ -164,7 +191,7 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup) -> None:
             _coordinate(group, name, ("case",), np.array([getattr(case, name) for case in plan.cases], float), its)
         gamma = np.array([np.nan if case.gamma is None else case.gamma for case in plan.cases])
         _coordinate(group, "gamma", ("case",), gamma, "1")
-        _coordinate(group, "spectrum_share", ("case",), shares_in_band(plan), "1")
+        _coordinate(group, "spectrum_share", ("case",), shares, "1")
         _coordinate(group, "unit", ("channel",), [unit(channel) for channel in channels], "")
         _coordinate(group, "band_limits", ("case", "channel", "band", "edge"), limits, "Hz")
         runs = (len(plan.cases), len(plan.seeds))
