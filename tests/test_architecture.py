@@ -189,8 +189,7 @@ def test_matplotlib_has_no_global_state_in_the_packages() -> None:
 
 def test_import_brings_in_nothing_of_the_edge() -> None:
     """Figures, tables and the command line cost their import only where they are used."""
-    edge = ["matplotlib", "pandas", "xarray", "h5py", "scipy", "rich", "typer", "PIL", "zarr", "rainflow", "psutil",
-            "filelock"]  # fmt: skip
+    edge = ["matplotlib", "pandas", "xarray", "h5py", "scipy", "rich", "typer", "PIL", "zarr", "rainflow", "psutil"]
     heavy = [*edge, "diffrax", "distributed", "calibration"]
     code = f"import jaxhydro, sys; print(*[m for m in {heavy!r} if m in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True, text=True)
