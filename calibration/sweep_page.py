@@ -17,13 +17,13 @@ FIGURES = {
         "Standard deviation by sea state, over seeds and headings; areas are shares of the life. A ring: no run of it is done."
     ),
     "exceedance.png": (
-        "Share of runs, by probability, that go beyond: below a minimum, to the left, and above a maximum, to the right; each "
-        "seed's, and all seeds together."
+        "Probability that a run goes beyond: below a minimum, to the left, and above a maximum, to the right; each "
+        "seed's, and of all seeds together."
     ),
 }
 _LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. Spreads are standard deviations
-from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds. Equivalent ranges do the same damage
-as all cycles{frequency}, for S-N curves of the exponent m.</p>"""
+from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds, the maximum of all that of all runs.
+Equivalent ranges do the same damage as all cycles{frequency}, for S-N curves of the exponent m.</p>"""
 
 
 class Runs(Open):
@@ -44,6 +44,8 @@ class Life(Open):
     maximum_of_seed: Number | None = None
     maximum_spread: Number | None = None
     minimum_of_seed: Number | None = None
+    maximum: Number | None = None
+    minimum: Number | None = None
     damage_equivalent_range: dict[str, Number | None] = Field(default_factory=dict)
 
 
@@ -164,11 +166,12 @@ def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
 
 def _lifetimes(saved: SavedSweep) -> str:
     exponents = list(dict.fromkeys(m for one in saved.lifetime.values() for m in one.damage_equivalent_range))
-    heads = ["Channel", "Mean", "Standard deviation", "its spread", "Maximum of a seed", "its spread", "Minimum of a seed"]
+    heads = ["Channel", "Mean", "Standard deviation", "its spread", "Maximum of a seed", "its spread", "Minimum of a seed",
+             "Maximum of all", "Minimum of all"]  # fmt: skip
     heads += [f"Equivalent range, m = {escape(m)}" for m in exponents]
     rows = []
     for channel, one in saved.lifetime.items():
         values = [one.mean, one.standard_deviation, one.standard_deviation_spread, one.maximum_of_seed, one.maximum_spread]
-        values += [one.minimum_of_seed, *(one.damage_equivalent_range.get(m) for m in exponents)]
+        values += [one.minimum_of_seed, one.maximum, one.minimum, *(one.damage_equivalent_range.get(m) for m in exponents)]
         rows.append(f"<tr>{cells([f'{channel} ({one.unit})', *(number(value) for value in values)], 1)}</tr>")
     return table(heads, rows, 1)

@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -285,7 +286,7 @@ def test_what_does_not_converge(outcome, status, words, written, monkeypatch, tm
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_stops_a_command(sent, monkeypatch, tmp_path) -> None:
-    """Also one that an import in progress takes for a failure."""
+    """Also one that comes in a callback that swallows it, or that an import in progress takes for a failure."""
     command = pytest.importorskip("calibration.command")
     before = signal.getsignal(sent)
 
@@ -298,7 +299,14 @@ def test_a_signal_stops_a_command(sent, monkeypatch, tmp_path) -> None:
         except KeyboardInterrupt:
             raise ImportError("numpy failed") from None
 
-    for way in (at_once, importing):
+    def _xla_gc_callback() -> None:
+        signal.raise_signal(sent)
+
+    def collecting(*_: object, **__: object) -> None:
+        _xla_gc_callback()
+        time.sleep(5)
+
+    for way in (at_once, importing, collecting):
         monkeypatch.setattr(command, "calibrate", way)
         text = run("calibrate", DEMO, "--no-figures", "--out", tmp_path / "o", status=130)
         assert "stopped; nothing was written" in text and not list(tmp_path.iterdir())

@@ -72,6 +72,8 @@ def test_a_table_is_read_from_a_file_beside_the_sweep(tmp_path) -> None:
     assert load_sweep(file).scatter == sweep.scatter
     (tmp_path / "table.csv").write_text("\ufeffsep=;\n# North Sea\nTp;Hs;Probability;gamma\n7;1,5;0,6;\n9;3;0,4;2,5\n")
     assert load_sweep(file).scatter == sweep.scatter
+    (tmp_path / "table.csv").write_text("Tp,Hs,Probability,gamma,\r\n7,1.5,0.6,,\r\n9,3,0.4,2.5,\r\n", encoding="utf-16")
+    assert load_sweep(file).scatter == sweep.scatter
 
 
 @pytest.mark.parametrize(
@@ -132,15 +134,40 @@ def test_a_wrong_sweep_is_told_by_its_key(tmp_path, changes, words) -> None:
     assert words in str(error.value)
 
 
+def test_a_table_in_another_encoding_is_told(tmp_path) -> None:
+    file = written(tmp_path, scatter="table.csv")
+    (tmp_path / "table.csv").write_text("# Größe\nHs,Tp,probability\n1,2,3\n", encoding="latin-1")
+    with pytest.raises(InputError, match=r"expected a CSV file in UTF-8, found .*table\.csv', which is in another encoding"):
+        load_sweep(file)
+
+
 def test_what_differs_between_plans_is_named() -> None:
     assert list(plan().differences(plan(duration=200.0))) == [
         ("duration", "150.0", "200.0"), ("start", "37.5", "50.0")
     ]  # fmt: skip
     assert list(plan().differences(plan())) == []
-    assert next(plan().differences(plan(scatter=[{"hs": 2, "tp": 7}])))[0] == "cases"
-    one, other = (plan(scatter=[{"hs": 1, "tp": tp}, {"hs": 2, "tp": 7, "gamma": 3}]) for tp in (7, 8))
-    before, now = (f"Hs 1 m, Tp {tp} s, heading 0 deg, probability 0.5" for tp in (7, 8))
-    assert list(one.differences(other)) == [("case 0", before, now)]
+
+
+def test_cases_that_differ_are_named_by_their_key() -> None:
+    """A probability by the case whose share of the life moved against those of the others."""
+    rows = [{"hs": hs, "tp": 7, "probability": share} for hs, share in ((1, 4), (2, 3), (3, 2), (4, 1))]
+
+    def apart(**changes) -> tuple[str, str, str]:
+        (found,) = plan(scatter=rows, headings=[0, 30]).differences(plan(**({"scatter": rows, "headings": [0, 30]} | changes)))
+        return found
+
+    assert apart(scatter=rows[:3]) == ("scatter", "4 sea states", "3")
+    assert apart(headings=[0, 40]) == ("headings", "[0.0, 30.0]", "[0.0, 40.0]")
+    other = [*rows[:2], rows[2] | {"gamma": 3}, rows[3]]
+    assert apart(scatter=other) == (
+        "scatter", "Hs 3 m, Tp 7 s, heading 0 deg, with 10.0000% of the life",
+        "Hs 3 m, Tp 7 s, gamma 3, heading 0 deg, with 10.0000% of the life",
+    )  # fmt: skip
+    other = [*rows[:2], rows[2] | {"probability": 12}, rows[3]]
+    assert apart(scatter=other) == (
+        "scatter", "Hs 3 m, Tp 7 s, heading 0 deg, with 10.0000% of the life",
+        "Hs 3 m, Tp 7 s, heading 0 deg, with 30.0000% of the life",
+    )  # fmt: skip
 
 
 # --- notes

@@ -211,6 +211,9 @@ def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatc
             signal.raise_signal(signal.SIGINT)
         return {}
 
+    with monkeypatch.context() as late:  # all is written: it is done
+        late.setattr("jaxhydro.sweep.command._print_results", stop)
+        assert f"Results are in {whole}" in command("sweep", file, "--out", whole, status=3)
     monkeypatch.setattr("jaxhydro.sweep.command.summary_of", stop)
     assert f"stopped; what is done is in {whole / RESULTS}" in command("sweep", file, "--out", whole, status=130)
     before = signal.getsignal(signal.SIGINT)
@@ -301,7 +304,7 @@ def test_runs_at_once_are_runs_one_by_one(whole) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [({"duration": 160.0}, "duration: expected 150.0, as in the runs that are there, found 160.0"),
-     ({"scatter": SWEEP["scatter"][:1]}, "cases: expected 3 of them, as in the runs that are there, found 1")],
+     ({"scatter": SWEEP["scatter"][:1]}, "scatter: expected 3 sea states, as in the runs that are there, found 1")],
 )  # fmt: skip
 def test_another_sweep_is_not_mixed_in(whole, tmp_path, changes, words) -> None:
     before = chunks(whole)

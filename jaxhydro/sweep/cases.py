@@ -1,6 +1,8 @@
 """What a sweep runs, in order: every case, a sea state from a heading, with every seed. Plain values, as kept on disk."""
 
 import json
+import math
+import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple, TypeAlias
@@ -105,13 +107,27 @@ class Plan:
                 if name != "cases":
                     yield name, _short(value), _short(others[name])
                     continue
-                apart = [(i, a, b) for i, (a, b) in enumerate(zip(self.cases, other.cases)) if a != b]
-                if len(self.cases) != len(other.cases) or not apart:
-                    yield "cases", f"{len(self.cases)} of them", f"{len(other.cases)}"
-                else:
-                    i, a, b = apart[0]
-                    before, now = (f"{one}, probability {one.probability:.6g}" for one in (a, b))
-                    yield f"case {i}", before, now
+                yield self._case_apart(other)
+
+    def _case_apart(self, other: "Plan") -> tuple[str, str, str]:
+        """As `differences`, of cases: the key that they come from."""
+        mine, others = ({case.state for case in plan.cases} for plan in (self, other))
+        if len(mine) != len(others):
+            return "scatter", f"{len(mine)} sea states", f"{len(others)}"
+        towards, now = ([*dict.fromkeys(case.heading for case in plan.cases)] for plan in (self, other))
+        if towards != now:
+            return "headings", _short(towards), _short(now)
+        pairs = list(zip(self.cases, other.cases))
+        moved = next(((a, b) for a, b in pairs if a.state != b.state), None)
+        if moved is None and len(self.cases) == len(other.cases):
+            # those of all others are divided by another sum
+            ratio = [b.probability / a.probability for a, b in pairs]
+            usual = statistics.median_low(ratio)
+            moved = pairs[max(range(len(ratio)), key=lambda i: abs(math.log(ratio[i] / usual)))]
+        if moved is None:
+            return "scatter", f"{len(self.cases)} cases of a probability above 0", f"{len(other.cases)}"
+        before, after = (f"{one}, with {one.probability:.4%} of the life" for one in moved)
+        return "scatter", before, after
 
 
 def _short(value: Any) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from jaxhydro.command import print_rest, print_used
 from jaxhydro.console import complain, counting, say, table
-from jaxhydro.interrupts import asked_to_stop, stop_if_asked
+from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.cluster import workers_of
 from jaxhydro.sweep.load import load_sweep
@@ -80,10 +80,12 @@ def _sweep(
                 if scheduler is not None:  # workers write, and say it themselves where they cannot
                     raise Stopped(f"the scheduler at {scheduler} was lost ({said}); {_kept(out)}") from None
                 raise InputError("--out", [Problem("", "a folder that can be written", f"{str(out)!r} ({said})")]) from None
-        say(f"{ran.runs} runs in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
+        many = f"{ran.runs} run{'s' * (ran.runs != 1)}"
+        say(f"{many} in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
     data = open_results(out)
     summary = summary_of(data)
     write_outputs(out, data, summary, made.about)
+    finished()
     _print_results(summary, data.exponent.values)
     say(f"Results are in {out}")
     return not summary.failed
@@ -127,13 +129,13 @@ def _print_plan(made: Prepared) -> None:
 def _print_results(summary: Summary, exponents) -> None:
     rows = []
     for channel, one in summary.lifetimes.items():
-        numbers = (one.mean, one.standard_deviation, one.standard_deviation_spread, one.maximum_of_seed, one.maximum_spread)
+        numbers = (one.mean, one.standard_deviation, one.standard_deviation_spread, one.minimum, one.maximum)
         shown = ("-" if value != value else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in (*numbers, *one.ranges))
         rows.append((f"{channel} ({summary.units[channel]})", *shown))
-    heads = ("Channel", "Mean", "Standard deviation", "its spread", "Maximum of a seed", "its spread")
+    heads = ("Channel", "Mean", "Standard deviation", "over seeds", "Minimum", "Maximum")
     if summary.done:
         ranges = (f"Equivalent range m = {m:g}" for m in exponents)
-        table("Over the life; spreads are from seed to seed", (*heads, *ranges), rows)
+        table("Over the life", (*heads, *ranges), rows)
     if summary.failed:
         share = f"; cases of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
         complain(f"{summary.failed} of {summary.total} runs failed{share}")

@@ -1,5 +1,6 @@
 """A sweep read from its files: the YAML, and a scatter table in a CSV file, one sea state in a row."""
 
+import codecs
 import csv
 import math
 import re
@@ -9,6 +10,7 @@ from typing import Any
 from jaxhydro.problems import InputError, Problem, read_yaml, shown, suggest, validate
 from jaxhydro.sweep.schema import COLUMNS, SeaState, Sweep
 
+UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # of "Unicode text" of spreadsheets
 UNITS = {"hs": "m", "tp": "s"}  # that a header may state; probability may be in any
 LIMITS = {"hs": (0.0, "a number > 0"), "tp": (0.0, "a number > 0"), "probability": (-1e-300, "a number >= 0")}
 
@@ -38,9 +40,12 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     Raises InputError for a file that is not there, columns that are not known or lacking, and rows with what is no number.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        content = path.read_bytes()
+        text = content.decode("utf-16" if content.startswith(UTF_16) else "utf-8-sig")
     except FileNotFoundError:
         raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, and there is none")]) from None
+    except UnicodeDecodeError:
+        raise InputError(asked, [Problem("", "a CSV file in UTF-8", f"{str(path)!r}, which is in another encoding")]) from None
     except (OSError, ValueError) as error:
         said = str(getattr(error, "strerror", None) or error)
         raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({said})")]) from None
@@ -53,6 +58,8 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
     commas = delimiter != "," and any("," in cell for _, row in rows[1:] for cell in row)  # decimal ones
     if not rows:
         raise InputError(str(path), [Problem("", f"a header {','.join(COLUMNS[:3])} and rows", "an empty file")])
+    while not any(row[-1].strip() for _, row in rows) and len({len(row) for _, row in rows}) == 1:
+        rows = [(number, row[:-1]) for number, row in rows]  # what a delimiter at the end of all lines makes
     where, heads = f"line {rows[0][0]}", [cell.strip() for cell in rows[0][1]]
     names = [_column(head) for head in heads]
     problems = []

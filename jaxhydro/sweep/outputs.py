@@ -119,7 +119,7 @@ def _document(data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> str:
     document = about | {
         "source": f"jaxhydro {jaxhydro.__version__}", "fingerprint": data.attrs["fingerprint"], "runs": runs,
         "sea_states": len({_state(data, row) for row in range(data.sizes["case"])}), "cases": data.sizes["case"],
-        "headings": [{"heading": heading, "probability": share} for heading, share in headings.items()],
+        "headings": [{"heading": heading, "probability": float(f"{share:.12g}")} for heading, share in headings.items()],
         "seeds": data.seed.values.tolist(), "options": {name: data.attrs[name] for name in OPTIONS if name in data.attrs},
         "probability_without_runs": summary.missing, "lifetime": lifetimes,
         "failures": [one._asdict() for one in summary.failures[:FAILURES]],

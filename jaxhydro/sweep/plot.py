@@ -61,7 +61,8 @@ def scatter_figure(
     bar = figure.colorbar(marks, ax=ax, pad=0.02, aspect=28)
     bar.set_label(label)
     bar.outline.set_visible(False)
-    figure.suptitle(f"{title}, areas by probability", x=0.015, ha="left", fontsize=8, fontweight="bold")
+    ring = "" if solid.all() else "; ring: no run is done"
+    figure.suptitle(f"{title}, areas by probability{ring}", x=0.015, ha="left", fontsize=8, fontweight="bold")
     return figure
 
 
@@ -96,10 +97,10 @@ def exceedance_figure(
         ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         ax.minorticks_off()
         ax.set_xlabel(f"Minimum and maximum of {name}")
-        ax.set_ylabel("Share of runs beyond")
+        ax.set_ylabel("Probability beyond")
     legend = figure.legend(
         list(artists.values()), list(artists), loc="outside upper left", ncols=2, alignment="left",
-        title=f"{title}, runs of {duration:g} s",
+        title=f"{title}, runs of {duration:g} s after the transient",
     )  # fmt: skip
     legend.get_title().set_fontweight("bold")
     return figure

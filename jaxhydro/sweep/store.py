@@ -57,7 +57,7 @@ def alone(folder: Path) -> Iterator[None]:
     Where the file system has no locks nothing is checked.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    lock = FileLock(folder / LOCK)
+    lock = FileLock(folder / LOCK, fallback_to_soft=False)  # a soft lock outlives a killed process
     try:
         lock.acquire(timeout=0)
     except Timeout:
