@@ -269,6 +269,20 @@ class Tally(NamedTuple):
             yield f"diagnosis: false alarms in {self.alarms}, goal 1 of 20"
 
 
+def other_strengths(said: dict[Case, str]) -> str:
+    """What is said of strong and of weak effects, in sentences."""
+    words = {
+        "named": "{} named first", "in the set": "{} among others alike", "nothing": "{} not seen", "unexplained":
+        "{} unexplained", "another": "{} called by another name",
+    }  # fmt: skip
+    sentences = []
+    for strength in (3, 1):
+        found = [one for case, one in said.items() if case.effect in EFFECTS and case.strength == strength]
+        counted = ", ".join(text.format(found.count(one)) for one, text in words.items() if one in found)
+        sentences += [f"Of {len(found)} {STRENGTHS[strength]} effects: {counted}."] if found else []
+    return " ".join(sentences)
+
+
 def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) -> Section:
     """The tables and what falls short; so many results are of `earlier` sources."""
     said = {case: outcome(case, result) for case, result in results.items()}
@@ -278,14 +292,14 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
         cells = []
         for strength in STRENGTHS:
             mine = [case for case in said if (case.effect, case.strength) == (effect, strength)]
-            cells.append(", ".join(_words(case, said[case], results[case], ratio.get(case)) for case in mine) or "–")
+            cells.append("; ".join(_words(case, said[case], results[case], ratio.get(case)) for case in mine) or "–")
         rows.append((" + ".join(f"`{one}`" for one in effect.split("+")) + (" (outside)" if effect in OUTSIDE else ""), *cells))
     tally, total = Tally.of(results, said, ratio), sum(1 for _ in cases())
     by = f", {earlier} of them by earlier sources" if earlier else ""
     text = (
         f"Nine decays and two seas of 1600 s each, from `benchmarks/tank.py`, a plain NumPy tank that shares no code with the "
         f"package: noise, imperfect releases, mass and mooring not quite as declared. {len(results)} of {total} campaigns were "
-        f"run{by}. {tally.text()}\n\n{LAWS}\n\n"
+        f"run{by}. {tally.text()} {other_strengths(said)}\n\n{LAWS}\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
         f"nothing missing; a force: the law proposed for what is unexplained, and the share that it gives in what was not "
