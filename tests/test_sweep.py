@@ -157,17 +157,15 @@ def test_cases_that_differ_are_named_by_their_key() -> None:
         return found
 
     assert apart(scatter=rows[:3]) == ("scatter", "4 sea states", "3")
-    assert apart(headings=[0, 40]) == ("headings", "[0.0, 30.0]", "[0.0, 40.0]")
+    before, now = (f"heading {heading} deg, with 50.0000% of the life" for heading in (30, 40))
+    assert apart(headings=[0, 40]) == ("headings", before, now)
+    weighed = [{"heading": 0, "probability": 1}, {"heading": 30, "probability": 3}]
+    assert apart(headings=weighed) == ("headings", before, "heading 30 deg, with 75.0000% of the life")
     other = [*rows[:2], rows[2] | {"gamma": 3}, rows[3]]
-    assert apart(scatter=other) == (
-        "scatter", "Hs 3 m, Tp 7 s, heading 0 deg, with 10.0000% of the life",
-        "Hs 3 m, Tp 7 s, gamma 3, heading 0 deg, with 10.0000% of the life",
-    )  # fmt: skip
+    before, now = (f"Hs 3 m, Tp 7 s{gamma}, with 20.0000% of the life" for gamma in ("", ", gamma 3"))
+    assert apart(scatter=other) == ("scatter", before, now)
     other = [*rows[:2], rows[2] | {"probability": 12}, rows[3]]
-    assert apart(scatter=other) == (
-        "scatter", "Hs 3 m, Tp 7 s, heading 0 deg, with 10.0000% of the life",
-        "Hs 3 m, Tp 7 s, heading 0 deg, with 30.0000% of the life",
-    )  # fmt: skip
+    assert apart(scatter=other) == ("scatter", before, "Hs 3 m, Tp 7 s, with 60.0000% of the life")
 
 
 # --- notes

@@ -3,7 +3,7 @@
 import json
 import math
 import statistics
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple, TypeAlias
 
@@ -26,9 +26,6 @@ class Case(NamedTuple):
     def state(self) -> State:
         """The sea state alone."""
         return self[:3]
-
-    def __str__(self) -> str:
-        return f"{named(self.state)}, heading {self.heading:g} deg"
 
 
 def named(state: State) -> str:
@@ -110,24 +107,34 @@ class Plan:
                 yield self._case_apart(other)
 
     def _case_apart(self, other: "Plan") -> tuple[str, str, str]:
-        """As `differences`, of cases: the key that they come from."""
-        mine, others = ({case.state for case in plan.cases} for plan in (self, other))
-        if len(mine) != len(others):
-            return "scatter", f"{len(mine)} sea states", f"{len(others)}"
-        towards, now = ([*dict.fromkeys(case.heading for case in plan.cases)] for plan in (self, other))
-        if towards != now:
-            return "headings", _short(towards), _short(now)
-        pairs = list(zip(self.cases, other.cases))
-        moved = next(((a, b) for a, b in pairs if a.state != b.state), None)
-        if moved is None and len(self.cases) == len(other.cases):
-            # those of all others are divided by another sum
-            ratio = [b.probability / a.probability for a, b in pairs]
-            usual = statistics.median_low(ratio)
-            moved = pairs[max(range(len(ratio)), key=lambda i: abs(math.log(ratio[i] / usual)))]
-        if moved is None:
-            return "scatter", f"{len(self.cases)} cases of a probability above 0", f"{len(other.cases)}"
-        before, after = (f"{one}, with {one.probability:.4%} of the life" for one in moved)
-        return "scatter", before, after
+        """As `differences`, of cases: by the key that they come from, the heading or sea state that moved."""
+        by: dict[str, tuple[str, Callable[[Case], Any], Callable[[Any], str]]] = {
+            "headings": ("headings", lambda case: case.heading, lambda heading: f"heading {heading:g} deg"),
+            "scatter": ("sea states", lambda case: case.state, named),
+        }
+        for key, (many, of, text) in by.items():
+            mine, others = (_shares(plan.cases, of) for plan in (self, other))
+            if len(mine) != len(others):
+                return key, f"{len(mine)} {many}", f"{len(others)}"
+            pairs = list(zip(mine.items(), others.items()))
+            moved = next(((a, b) for a, b in pairs if a[0] != b[0]), None)
+            if moved is None:
+                # those of all others are divided by another sum
+                ratio = [math.log(b[1] / a[1]) for a, b in pairs]
+                away = [abs(one - statistics.median_low(ratio)) for one in ratio]
+                moved = pairs[away.index(max(away))] if max(away) > 1e-9 else None
+            if moved is not None:
+                before, after = (f"{text(value)}, with {share:.4%} of the life" for value, share in moved)
+                return key, before, after
+        return "scatter", f"{len(self.cases)} cases of a probability above 0", f"{len(other.cases)}"
+
+
+def _shares(cases: Sequence[Case], of: Callable[[Case], Any]) -> dict[Any, float]:
+    """Of the life, by what `of` gives of a case."""
+    found: dict[Any, float] = {}
+    for case in cases:
+        found[of(case)] = found.get(of(case), 0.0) + case.probability
+    return found
 
 
 def _short(value: Any) -> str:
