@@ -57,7 +57,7 @@ def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: di
         life = sum(case.probability for case in plan.cases if case.state in failing)
         more = f" and {len(failing) - 1} more" if len(failing) > 1 else ""
         yield (
-            f"{len(failing)} of {_count(len(seas), 'sea state')}, {life:.2%} of the life, cannot be, and the runs fail: "
+            f"{len(failing)} of {len(seas)} sea states, {life:.2%} of the life, cannot be, and the runs fail: "
             f"{named(state)} ({reason}){more}"
         )
     run = {state: share for state, share in seas.items() if state not in failing}
@@ -91,7 +91,3 @@ def _of_height(seas: dict[State, float], total: int, plan: Plan, model: Model) -
 
 def _in(some: int, total: int) -> str:
     return "in the only sea state" if total == 1 else f"in {some} of {total} sea states"
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}{'s' * (number != 1)}"

@@ -78,9 +78,9 @@ def summary_of(data: xr.Dataset) -> Summary:
 
 def _failures(data: xr.Dataset) -> list[Failure]:
     alike: dict[tuple[State, str], list[tuple[float, int]]] = {}
-    headings, seeds, reasons = data.heading.values, data.seed.values, data.reason.values
+    states, headings, seeds, reasons = _states(data), data.heading.values, data.seed.values, data.reason.values
     for row, column in zip(*np.nonzero(data.status.values == FAILED)):
-        key = _state(data, row), str(reasons[row, column])
+        key = states[row], str(reasons[row, column])
         alike.setdefault(key, []).append((float(headings[row]), int(seeds[column])))
     found = []
     for ((hs, tp, gamma), reason), runs in alike.items():
@@ -89,9 +89,10 @@ def _failures(data: xr.Dataset) -> list[Failure]:
     return found
 
 
-def _state(data: xr.Dataset, row: int) -> State:
-    hs, tp, gamma = (float(data[name].values[row]) for name in ("hs", "tp", "gamma"))
-    return hs, tp, None if math.isnan(gamma) else gamma
+def _states(data: xr.Dataset) -> list[State]:
+    """Of every case."""
+    columns = (data[name].values.tolist() for name in ("hs", "tp", "gamma"))
+    return [(hs, tp, None if math.isnan(gamma) else gamma) for hs, tp, gamma in zip(*columns)]
 
 
 def write_outputs(folder: Path, data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> None:
@@ -118,7 +119,7 @@ def _document(data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> str:
         headings[heading] = headings.get(heading, 0.0) + share
     document = about | {
         "source": f"jaxhydro {jaxhydro.__version__}", "fingerprint": data.attrs["fingerprint"], "runs": runs,
-        "sea_states": len({_state(data, row) for row in range(data.sizes["case"])}), "cases": data.sizes["case"],
+        "sea_states": len(set(_states(data))), "cases": data.sizes["case"],
         "headings": [{"heading": heading, "probability": float(f"{share:.12g}")} for heading, share in headings.items()],
         "seeds": data.seed.values.tolist(), "options": {name: data.attrs[name] for name in OPTIONS if name in data.attrs},
         "probability_without_runs": summary.missing, "lifetime": lifetimes,
