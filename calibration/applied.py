@@ -22,14 +22,17 @@ OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in 
 
 class Applied(NamedTuple):
     """A model with values of a calibration, these values, those of them that its records did not determine, those that were
-    left, and the campaign and the platform that the calibration is of."""
+    left, the sea state (m, s) that exponents among them count from, the campaign and the platform that the calibration is of,
+    and whether it converged."""
 
     model: Model
     values: dict[str, float]
     vague: tuple[str, ...]
     left: tuple[str, ...]
+    reference: SeaState | None
     campaign: str
     platform: str
+    converged: bool
 
 
 def applied(path: str | PathLike[str], model: Model, platform: str, everything: bool = False) -> Applied:
@@ -54,7 +57,9 @@ def applied(path: str | PathLike[str], model: Model, platform: str, everything: 
             raise wrong(Path(path), expected, f"{value:g}", f"{saved.key}.parameters.{label}.value")
     vague = tuple(label for label in values if not saved.best.parameters[label].identifiable)
     left = tuple(label for label in saved.values() if label not in values)
-    return Applied(model.with_values(values), values, vague, left, saved.campaign, saved.platform)
+    reference = _reference(saved) if any(map(is_exponent, values)) else None
+    model = model.with_values(values)
+    return Applied(model, values, vague, left, reference, saved.campaign, saved.platform, saved.best.converged)
 
 
 def no_place(saved: Saved, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]) -> InputError:
@@ -122,16 +127,20 @@ def _said(law: DragLaw) -> str:
     return ", ".join(f"{key}: {value}" for key, value in law.model_dump(exclude_none=True).items())
 
 
+def _reference(saved: Saved) -> SeaState | None:
+    stated = saved.best.sea_state_reference
+    return None if stated is None else SeaState(stated.significant_height, stated.peak_period)
+
+
 def _with_laws(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     """The model with the laws over the sea state that the calibrated values have exponents of."""
-    stated = saved.best.sea_state_reference
     labels = [label for label in saved.values() if is_exponent(label) and split(label)[0] in model.values]
     if not labels:
         return model
-    if stated is None:
+    reference = _reference(saved)
+    if reference is None:
         where, found = f"{saved.key}.sea_state_reference", "nothing"
         raise wrong(Path(path), f"the sea state that {labels[0]} counts from", found, where)
-    reference = SeaState(stated.significant_height, stated.peak_period)
     try:
         loads = with_exponents(model.loads, dict.fromkeys(labels, 0.0), reference)
         return replace(model, loads=loads)

@@ -57,8 +57,8 @@ def document(calibration: Calibration) -> dict[str, Any]:
             "value": float(one.value),
             "standard_deviation": or_null(one.standard_deviation),
             "unit": one.unit,
-            "at_bound": bool(one.at_bound),
-            "identifiable": bool(one.identifiable),
+            "at_bound": one.at_bound,
+            "identifiable": one.identifiable,
             "start": or_null(one.start),
             "meaning": one.meaning,
         }

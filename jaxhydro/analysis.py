@@ -63,13 +63,27 @@ def band_integral(spectrum: PowerSpectrum, low: float, high: float) -> float:
     Each value stands for what lies halfway to its neighbours, the first and last for what lies within the ends; of a cell that
     a limit cuts, the share inside counts. Raises ValueError for high <= low or low < 0.
     """
-    if not 0 <= low < high:
-        raise ValueError(f"a band has 0 <= low < high, found {low} and {high} Hz")
+    _in_order(low, high)
     f = spectrum.frequency
     edges = np.concatenate([f[:1], 0.5 * (f[1:] + f[:-1]), f[-1:]])
     # each line holds density times spacing, also the first and the last, whose cells are halves: they are not doubled
     total = np.concatenate([[0.0], np.cumsum(spectrum.density) * (f[1] - f[0])])
     return float(np.interp(high, edges, total) - np.interp(low, edges, total))
+
+
+def band_pass(
+    time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"], low: float, high: float
+) -> Float[np.ndarray, " t"]:
+    """What of a record is from `low` to `high` (Hz), both included: its Fourier lines in the band, the others left out, so that
+    no phase is changed; the record is taken to repeat itself. From 0 Hz on the mean is kept.
+
+    Raises ValueError for uneven times, values that are no numbers, high <= low or low < 0.
+    """
+    _in_order(low, high)
+    step, x = _record(time, x)
+    lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
+    lines[(frequency < low) | (frequency > high)] = 0
+    return np.fft.irfft(lines, len(x))
 
 
 class BandWeights(NamedTuple):
@@ -100,8 +114,7 @@ def band_weights(
 
     Raises ValueError for high <= low or low < 0, or a segment or overlap out of range.
     """
-    if not 0 <= low < high:
-        raise ValueError(f"a band has 0 <= low < high, found {low} and {high} Hz")
+    _in_order(low, high)
     size, shared, name = _segments(count, step, segment, overlap, window)
     taper = signal.get_window(name, size)
     f = np.fft.rfftfreq(size, step)
@@ -226,6 +239,11 @@ def exceedance(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"]) -> Exc
     peaks = np.sort([float(cycle.max()) for cycle in cycles])
     probability = np.arange(len(peaks), 0, -1) / (len(peaks) + 1)
     return Exceedance(peaks, probability, np.exp(-0.5 * peaks**2 / max(centred.var(), 1e-300)))
+
+
+def _in_order(low: float, high: float) -> None:
+    if not 0 <= low < high:
+        raise ValueError(f"a band has 0 <= low < high, found {low} and {high} Hz")
 
 
 def _record(time: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:

@@ -15,7 +15,6 @@ from jaxhydro.console import complain, say, table
 from jaxhydro.environment import DOFS
 from jaxhydro.export import Motion, write_motion
 from jaxhydro.loads import Buoyancy
-from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
@@ -92,19 +91,16 @@ def print_used(used: Used) -> None:
 def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple[Model, Used]:
     """`calibrated`, with what is to be known, and nothing is printed."""
     from calibration.applied import applied
-    from calibration.saved import read_saved
 
-    used, fitted = applied(source, model, asked, everything=True), read_saved(source).best
+    used = applied(source, model, asked, everything=True)
     warnings = []
-    if not fitted.converged:
+    if not used.converged:
         warnings.append(f"the fit of {source} did not converge")
     if used.platform and used.platform != name:
         warnings.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
     if used.vague:
         warnings.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
-    stated = fitted.sea_state_reference if any(map(is_exponent, used.values)) else None
-    reference = None if stated is None else SeaState(stated.significant_height, stated.peak_period)
-    return used.model, Used(used.values, reference, warnings)
+    return used.model, Used(used.values, used.reference, warnings)
 
 
 def calibration_file(path: str) -> Path:

@@ -11,6 +11,7 @@ from jaxhydro.analysis import (
     BANDS,
     PowerSpectrum,
     band_integral,
+    band_pass,
     bands,
     exceedance,
     power_spectrum,
@@ -47,6 +48,21 @@ def test_parseval(count: int) -> None:
     assert band_integral(spectrum, 0.0, 2.0) == pytest.approx(x.var(), rel=1e-12)
     pieces = [band_integral(spectrum, a, a + 0.1) for a in np.arange(20) * 0.1]
     assert sum(pieces) == pytest.approx(x.var(), rel=1e-12)
+
+
+@pytest.mark.parametrize("count", [14400, 14399])
+def test_a_band_is_taken_out_without_moving_it(count: int) -> None:
+    """A wave of a whole number of periods in the band stays as it is, one outside goes; bands add up, and have the energy."""
+    time, span = TIMES[:count], count * STEP
+    slow, fast = (np.cos(2 * math.pi * cycles / span * time + 0.3) for cycles in (36, 360))
+    assert_allclose(band_pass(time, 2.0 + slow + fast, 0.005, 0.025), slow, atol=1e-12)
+    edge = 359.5 / span  # between two lines
+    parts = [band_pass(time, NOISE[:count], low, high) for low, high in ((0.0, edge), (edge, 2.0))]
+    assert_allclose(sum(parts), NOISE[:count], atol=1e-12)
+    raw = power_spectrum(time, NOISE[:count], segment=3600.0)
+    assert parts[1].var() == pytest.approx(band_integral(raw, edge, 2.0), rel=1e-9)
+    with pytest.raises(ValueError, match=r"0 <= low < high, found 0\.2 and 0\.1 Hz"):
+        band_pass(time, NOISE[:count], 0.2, 0.1)
 
 
 def test_white_noise_is_flat() -> None:

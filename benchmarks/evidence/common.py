@@ -128,11 +128,11 @@ class _Named:
 
 
 def within(x: np.ndarray, low: float, high: float, step: float) -> np.ndarray:
-    """What of a series in steps (s) is in a band (Hz); samples that are none are left out."""
+    """`band_pass` of a series in steps (s); samples that are none are left out."""
+    from jaxhydro.analysis import band_pass
+
     x = x[np.isfinite(x)]
-    lines, frequency = np.fft.rfft(x), np.fft.rfftfreq(len(x), step)
-    lines[(frequency < low) | (frequency > high)] = 0
-    return np.fft.irfft(lines, len(x))
+    return band_pass(step * np.arange(len(x)), x, low, high)
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

@@ -100,7 +100,7 @@ def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str
         free, x, deviation = study.space.free[k], look.place.x[k], float(deviations[look.active.index(i)])
         slope = (float(free.transform.forward(x + 1e-4)) - float(free.transform.forward(x - 1e-4))) / 2e-4
         about = study.model.about(name)
-        known = deviation < 0.5 * prior.width[i]
+        known = bool(deviation < 0.5 * prior.width[i])
         size = abs(slope) * deviation * float(study.directions[i, k])
         value = study.value(name, look.place.x)
         ends = np.array([about.lower, about.upper])

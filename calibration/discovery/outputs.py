@@ -107,8 +107,8 @@ def _parameter(name: str, one: Estimate) -> dict[str, Any]:
         "value": float(one.value),
         "standard_deviation": or_null(one.standard_deviation),
         "unit": one.unit,
-        "at_bound": bool(one.at_bound),
-        "identifiable": bool(one.identifiable),
+        "at_bound": one.at_bound,
+        "identifiable": one.identifiable,
         "label": one.label,
         "meaning": one.meaning,
     }

@@ -11,7 +11,7 @@ from jaxhydro.model import Model
 from jaxhydro.sea_command import CUT, usual_cutoff
 from jaxhydro.sweep.batch import Setup, reason_of, sea_of
 from jaxhydro.sweep.cases import Plan, Run, State, named
-from jaxhydro.waves.irregular import repeat_period
+from jaxhydro.waves.irregular import harmonics, repeat_period
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
 
 AT_ONCE = 256  # sea states whose spectra are in memory
@@ -20,8 +20,8 @@ AT_ONCE = 256  # sea states whose spectra are in memory
 def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
     """Of every case: share of its spectrum's variance, Hs^2/16, from `low` to `cutoff`, on the frequencies of its seas."""
     period = repeat_period(plan.duration)
-    harmonics = np.arange(max(np.ceil(plan.low * period - 1e-6), 1), np.floor(plan.cutoff * period + 1e-6) + 1)
-    omega = jnp.asarray(2 * np.pi / period * harmonics)
+    first, last = harmonics(plan.low, plan.cutoff, period)
+    omega = jnp.asarray(2 * np.pi / period * np.arange(first, last + 1))
     found: dict[State, float] = {}
     states = list(dict.fromkeys(case.state for case in plan.cases))
     for i in range(0, len(states), AT_ONCE):

@@ -12,7 +12,7 @@ import psutil
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import Setup
 from jaxhydro.waves.dispersion import wavenumber
-from jaxhydro.waves.irregular import fourier_length, repeat_period
+from jaxhydro.waves.irregular import fourier_length, harmonics, repeat_period
 from jaxhydro.waves.irregular_sea import EXCURSION
 from jaxhydro.waves.supports import MOST, Box, supports
 
@@ -40,20 +40,16 @@ def supports_of(setup: Setup, source: str = "sweep") -> int:
     """
     plan, environment = setup.plan, setup.model.environment
     depth, gravity, period = float(environment.depth), float(environment.gravity), repeat_period(plan.duration)
-    omega = 2 * math.pi / period * math.floor(plan.cutoff * period + 1e-6)
+    omega = 2 * math.pi / period * harmonics(plan.low, plan.cutoff, period)[1]
     free = float(wavenumber(jnp.asarray(omega), jnp.asarray(depth), jnp.asarray(gravity)))
     points = np.asarray(setup.model.hull.extremities())
-    low = 2.0 * math.floor(max(-depth, float(points[2].min()) - 0.3 * EXCURSION) / 2.0)
     most = 0
     for heading in {math.radians(case.heading) for case in plan.cases}:
-        place = np.array([math.cos(heading), math.sin(heading)]) @ points[:2]
-        half = 5.0 * math.ceil((0.5 * np.ptp(place) + EXCURSION) / 5.0)
-        highest = 2 * (MOST - 8) / half  # rad/m, that about so many supports do for
+        _, box = Box.of(points, heading, depth, EXCURSION)
         try:
-            if plan.order * free > 2 * highest:  # to try would take more memory than there is
-                raise ValueError(f"waves of {2 * math.pi / (plan.order * free):.2g} m")
-            most = max(most, supports(Box(0.0, half, low, depth), free, 2 * free if plan.order == 2 else 0.0).wavenumber.size)
+            most = max(most, supports(box, free, 2 * free if plan.order == 2 else 0.0).wavenumber.size)
         except ValueError:
+            highest = 2 * (MOST - 8) / box.half  # rad/m, that about so many supports do for
             usual = math.sqrt(gravity * highest / plan.order) / (2 * math.pi)
             expected = f"about {usual:.2g} Hz or less at order {plan.order} for so large a hull"
             hint = "Shorter waves need too many support wavenumbers."

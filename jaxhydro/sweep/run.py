@@ -88,11 +88,12 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     stable_modes(setup.model)
     # as chosen for this platform: workers need not choose again
     setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
-    supports_of(setup, source)
-    shares, failing = shares_in_band(plan), impossible(setup)
+    failing = impossible(setup)
     if all(case.state in failing for case in plan.cases):
         state, reason = next(iter(failing.items()))
         raise InputError(source, [Problem("scatter", "a sea state that can be", f"none: {named(state)}: {reason}")])
+    supports_of(setup, source)
+    shares = shares_in_band(plan)
     known += notes(plan, setup.model, shares, failing)
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     inputs = Inputs(plan, _platform_text(sweep.platform), text)

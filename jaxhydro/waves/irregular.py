@@ -69,7 +69,7 @@ def spectrum_components(
     if spreading is not None and not (spreading >= 0 and math.isfinite(spreading)):
         raise ValueError(f"the exponent of a spreading is not negative, found {spreading}")
     period = repeat_period(duration)
-    first, last = _harmonics(low, cutoff, period)
+    first, last = harmonics(low, cutoff, period)
     step = 2 * math.pi / period
     omega = step * np.arange(first, last + 1)
     density = np.broadcast_to(np.asarray(spectrum(jnp.asarray(omega)), float), omega.shape)
@@ -171,7 +171,7 @@ def separated_record(
         raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
     count = len(times)
     period = count * step
-    first, last = _harmonics(low, cutoff, period)
+    first, last = harmonics(low, cutoff, period)
     last = min(last, (count - 1) // 2)  # at half the sampling rate a phase is not seen
     band = slice(first, last + 1)
     omega = 2 * math.pi / period * np.arange(first, last + 1)
@@ -223,8 +223,9 @@ def _components(
     return components(a, w, environment, heading=towards, phase=angle, first=first)
 
 
-def _harmonics(low: float, cutoff: float, period: float) -> tuple[int, int]:
-    """First and last harmonic of a period (s) from `low` to `cutoff` (Hz), both included."""
+def harmonics(low: float, cutoff: float, period: float) -> tuple[int, int]:
+    """First and last harmonic of a period (s) from `low` to `cutoff` (Hz), both included. Raises ValueError where there is
+    none."""
     if not (0 <= low < cutoff and math.isfinite(cutoff)):
         raise ValueError(f"a band has 0 <= low < cutoff, found {low} and {cutoff} Hz")
     first, last = max(math.ceil(low * period - 1e-6), 1), math.floor(cutoff * period + 1e-6)

@@ -103,11 +103,8 @@ class IrregularSea(AbstractSea):
         if np.ptp(np.asarray(waves.heading)) > 1e-12:
             raise ValueError("a short-crested sea is evaluated directly: it has no support wavenumbers of one heading")
         along = np.array([math.cos(heading), math.sin(heading)])
-        place = along @ points[:2]
-        middle, half = 0.5 * (place.max() + place.min()), 0.5 * np.ptp(place) + excursion
-        low = max(-depth, float(points[2].min()) - 0.3 * excursion)
+        middle, box = Box.of(points, heading, depth, excursion)
         free = float(waves.wavenumber[-1])
-        box = Box(0.0, 5.0 * math.ceil(half / 5.0), 2.0 * math.floor(low / 2.0), depth)
         found = supports(box, free, 2 * free if self.order == 2 and "sum" in self.kinds else 0.0)
         size = round(float(waves.period) / clock.step)
         highest = waves.harmonics[1] * (self.order if "sum" in self.kinds else 1)

@@ -23,12 +23,22 @@ MOST = 96
 
 
 class Box(NamedTuple):
-    """Where a field is wanted: along the waves from `middle` - `half` to `middle` + `half`, and from z = `low` to 0 (m)."""
+    """Where a field is wanted: along the waves up to `half` before and behind the middle, and from z = `low` to 0 (m)."""
 
-    middle: float
     half: float
     low: float
     depth: float
+
+    @classmethod
+    def of(
+        cls, points: Float[np.ndarray, "3 p"], heading: float, depth: float, excursion: float
+    ) -> "tuple[float, Box]":
+        """Middle (m), along waves that travel to `heading` (rad), of where points of a hull may be that moves by up to
+        `excursion` (m), and the box about it; a little larger, so that hulls and headings nearly alike have the same."""
+        place = np.array([math.cos(heading), math.sin(heading)]) @ points[:2]
+        half = 0.5 * np.ptp(place) + excursion
+        low = max(-depth, float(points[2].min()) - 0.3 * excursion)
+        return float(0.5 * (place.max() + place.min())), cls(5.0 * math.ceil(half / 5.0), 2.0 * math.floor(low / 2.0), depth)
 
 
 class Supports(NamedTuple):
@@ -49,6 +59,9 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
     ValueError where `MOST` supports do not do: a box of many wavelengths.
     """
     highest = max(free, bound)
+    # a box of far more wavelengths would fill the memory before it is refused
+    if 0.5 * highest * box.half + 8 > 2 * MOST:
+        raise ValueError(_too_short(highest, box))
     spacing = 0.05 / (box.half * math.sqrt(highest))
     grid = (spacing * np.arange(math.ceil(math.sqrt(highest) / spacing) + 3)) ** 2
     points = max(24, math.ceil(1.5 * highest * box.half / math.pi) + 12)
@@ -68,7 +81,11 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
         if (error <= allowed)[inside].all():
             return Supports(k, table.T.copy(), spacing, float(error[inside & (grid <= free)].max()))
         count += 4
-    raise ValueError(
+    raise ValueError(_too_short(highest, box))
+
+
+def _too_short(highest: float, box: Box) -> str:
+    return (
         f"waves as short as {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MOST} support "
         f"wavenumbers: cut the sea off at a lower frequency"
     )
