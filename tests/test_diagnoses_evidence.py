@@ -2,14 +2,17 @@
 
 from pathlib import Path
 
-from benchmarks.evidence.diagnoses import Case, Share, Tally, conclude, factors, outcome
+from benchmarks.evidence.diagnoses import Case, Share, Tally, conclude, doubts, factors, outcome
+from calibration.discovery.judgement import Verdict
 
 
-def said(effects, error, alike=None, verdict="found", sources="now", motions=None):
+def said(effects, error, alike=None, verdict="found", sources="now", motions=None, tried=None):
     """What is kept of one diagnosis."""
     return {
         "verdict": verdict, "effects": effects, "motions": motions or [None] * len(effects),
         "alike": alike or [[] for _ in effects], "error": [0.5, error], "sources": sources, "seconds": 1.0,
+        "tried": {words: Verdict(bic, 0.5, True, net, 5.0, 2.0, "" if in_it else "no")._asdict()
+                  for words, (bic, net, in_it) in (tried or {}).items()},
     }  # fmt: skip
 
 
@@ -29,6 +32,18 @@ RESULTS = {
     Case("current+wave_drift", 2, 1): said(["wave_drift", "current"], 0.1),
     Case("radiation_memory+sensor_lag", 2, 1): said(["sensor_lag"], 0.1),
 }
+
+
+def test_what_is_outdone_by_something_refused_is_said_to_be_unexplained():
+    """As a diagnosis says it: by what the last round tried; not where that let an effect in, or where one gains as much."""
+    case, tried = Case("cogging", 2, 2), {"1 hysteresis surge": (60.0, 90.0, True), "1 current": (300.0, -40.0, False)}
+    let_in = said(["hysteresis"], 0.4, motions=["surge"], tried=tried)
+    assert doubts(let_in) == [None] and outcome(case, let_in) == "another"
+    for bic, doubt, words in ((149.0, None, "another"), (151.0, "current", "unexplained")):
+        ended = said(["hysteresis"], 0.4, motions=["surge"], tried=tried | {"2 current": (bic, -40.0, False)})
+        assert doubts(ended) == [doubt] and outcome(case, ended) == words
+    text = conclude({Case("", 2, 2): RESULTS[Case("", 2, 1)], case: ended}, 0, Path("none.png")).text
+    assert "*unexplained* [in doubt: hysteresis] 4.00" in text
 
 
 def test_outcomes_are_counted_by_what_is_in_the_tank():

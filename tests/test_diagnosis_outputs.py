@@ -102,6 +102,25 @@ def test_every_figure_is_half_a_page_wide_and_named_in_the_document(written: Pat
             assert image.width == 1005 and 500 < image.height < 3000
 
 
+def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> None:
+    """In the verdict, beside the effect, and in the file; all of them, or one beside another that is sure."""
+    doubtful = replace(result.effects[0], indistinguishable=(), in_doubt="amplitude_dependent_drag")
+    other = replace(result.effects[0], effect="current", degree_of_freedom=None, indistinguishable=())
+    for effects, verdict, start in (
+        ((doubtful,), "unexplained", "The declared model lacks something, and no effect"),
+        ((other, doubtful), "found", "The declared model lacks a current: "),
+    ):
+        write_diagnosis(replace(result, verdict=verdict, effects=effects), tmp_path / verdict, figures=False)
+        saved = read_diagnosis(tmp_path / verdict)
+        assert words.verdict(saved).startswith(start)
+        assert " Coulomb friction in surge may stand for " in words.verdict(saved)
+        said = words.alternatives(saved.missing.effects[-1])
+        assert said.startswith("Amplitude dependent drag explains more of the fitted tests beside it than it does, and is")
+        assert said in Page(write_report(tmp_path / verdict).read_text()).text
+        if other in effects:
+            assert words.alternatives(saved.missing.effects[0]).startswith("No other effect that was tried does as well.")
+
+
 def nothing(**changes: Any) -> Diagnosis:
     """Nothing was found."""
     less = {"verdict": "nothing_missing", "effects": (), "rejected": (), "scores": (), "anatomy_before": (),

@@ -12,9 +12,9 @@ from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.conclusion import much
 from calibration.discovery.descent import fit
-from calibration.discovery.doubts import in_motion, like
+from calibration.discovery.doubts import in_motion, like, outdone
 from calibration.discovery.gathering import series_of_sea
-from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, refusal
+from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, Verdict, refusal
 from calibration.discovery.linear import likelihoods
 from calibration.discovery.looks import Look, Prior, Series
 from calibration.discovery.result import Finding
@@ -97,6 +97,18 @@ def test_what_barely_moves_in_a_sea_weighs_nothing():
     errors = [cut(np.stack([0 * TIME, size * np.sin(0.3 * TIME), 0 * TIME])) for size in (0.0, 3.0)]
     assert len({float(likelihoods(study, one).sum()) for one in errors}) == 1
     assert list(study.main) == [True, False, True]
+
+
+def test_what_something_refused_outdoes_is_in_doubt():
+    """By the last round alone, and only where that let nothing in."""
+    def verdict(bic: float, refused: str) -> Verdict:
+        return Verdict(bic, 0.9, True, -100.0, 30.0, 5.0, refused)
+
+    tried = {"drag": verdict(335.0, "the held-out tests do not gain"), "memory": verdict(20.0, "too little")}
+    assert outdone({"lag": 158.0, "umbilical": 1300.0}, tried) == {"lag": "drag"}
+    assert outdone({"lag": 158.0, "current": 60.0}, tried | {"current": verdict(40.0, "")}) == {}
+    assert outdone({"lag": 400.0}, tried) == {} == outdone({"lag": 400.0}, {})
+    assert outdone({"mass": np.nan}, tried) == {}  # told though no error shows it
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():

@@ -142,12 +142,36 @@ def found(result: dict[str, Any]) -> list[str]:
     return [name if motion in (None, ACTS.get(name, motion)) else f"{name} in {motion}" for name, motion in pairs]
 
 
+def doubts(result: dict[str, Any]) -> list[str | None]:
+    """What explains more than each effect found and is refused, None where nothing does: worked out from what was tried, so
+    that it is known of results, too, from before diagnoses told."""
+    from calibration.discovery.doubts import outdone
+    from calibration.discovery.judgement import Verdict
+
+    tried: dict[int, dict[str, Verdict]] = {}
+    for words, one in result["tried"].items():
+        number, name = words.split(" ", 1)
+        tried.setdefault(int(number), {})[name] = Verdict(**one)
+    names = [f"{one} {motion or ''}".strip() for one, motion in zip(result["effects"], result["motions"], strict=True)]
+    let_in = {name: one for some in tried.values() for name, one in some.items() if name in names and not one.refused}
+    worth = {name: one.bic + one.net for name, one in let_in.items()}
+    found = outdone(worth, tried.get(max(tried, default=0), {}))
+    return [found.get(name) for name in names]
+
+
+def in_doubt(result: dict[str, Any]) -> bool:
+    """Whether there are effects, and each of them is in doubt: then a diagnosis says that what is missing is unexplained."""
+    return bool(result["effects"]) and all(doubts(result))
+
+
 def outcome(case: Case, result: dict[str, Any]) -> str:
     """named: the right one first, or both of two; in the set: among those that cannot be told from the first, or found after
     it; of two, each named or among those that cannot be told from one that is; part: one of two; else what was said."""
     effects = found(result)
     if not effects:
         return "nothing" if result["verdict"] == "nothing_missing" else "unexplained"
+    if in_doubt(result):
+        return "unexplained"
     if not case.effect:
         return "false alarm"
     alike = {one for some in result["alike"] for one in some}
@@ -226,7 +250,8 @@ class Tally(NamedTuple):
         held = [case for case in known if case in ratio]
         near = {case for case in held if ratio[case] <= FACTOR}
         just = {case for case in held if set(found(results[case])) == set(case.effects)}
-        fallen = [after < before for before, after in (results[case]["error"] for case in outside)]
+        named = [case for case in outside if said[case] != "unexplained"]
+        fallen = [after < before for before, after in (results[case]["error"] for case in named)]
         return cls(
             saying(known, "named"), saying(known, "named", "in the set"), Share(len(near), len(held)),
             Share(len(near | just), len(held)), saying(nulls, "false alarm", "unexplained"), saying(pairs, "named"),
@@ -358,7 +383,7 @@ def draw(results: dict[Case, dict[str, Any]], path: Path) -> Path:
     from jaxhydro.plot import GREY, WIDTH, header, save, style
 
     def first(result: dict[str, Any]) -> str:
-        return next(iter(found(result)), result["verdict"])
+        return "unexplained" if in_doubt(result) else next(iter(found(result)), result["verdict"])
 
     one = {case: result for case, result in results.items() if len(case.effects) < 2}
     last = ("nothing_missing", "unexplained")
@@ -395,6 +420,8 @@ def _words(case: Case, said: str, result: dict[str, Any], ratio: float | None = 
     """An outcome in a cell."""
     effects = found(result)
     number = f" {ratio:.2f}" if ratio is not None else ""
+    if effects and said == "unexplained":
+        return f"*{said}* [in doubt: {', '.join(effects)}]{number}"
     if not effects:
         laws = result.get("laws", {}).items()
         words = "; ".join(f"{motion} by {', '.join(terms)} ({100 * part:.0f} %)" for motion, (terms, part) in laws if terms)

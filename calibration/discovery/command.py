@@ -79,8 +79,8 @@ def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
         say(f"Note: {note}")
     say(f"\n{words.verdict(saved)}", "bold")
     for one in saved.missing.effects:
-        name = words.called(one.effect, one.degree_of_freedom)
-        say(f"{name[:1].upper()}{name[1:]}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
+        name = words.capital(words.called(one.effect, one.degree_of_freedom))
+        say(f"{name}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
     say(words.left_over(saved))
     for force in saved.missing.unexplained.forces:
         say(force.words)

@@ -12,7 +12,7 @@ from calibration.campaign import Campaign
 from calibration.conclusion import strays
 from calibration.discovery.anatomy import anatomy, signature
 from calibration.discovery.candidates import Candidate, with_candidates, with_effects
-from calibration.discovery.doubts import doubts_of
+from calibration.discovery.doubts import doubts_of, in_doubt
 from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence, Finding
@@ -41,11 +41,13 @@ def conclude(
     """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
-    effects = (*first, *(effect_of(search, one, after) for one in after.chosen))
+    doubted = in_doubt(search, after)
+    effects = (*first, *(effect_of(search, one, after, doubted.get(one.name)) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
     more = much(search, left)
-    verdict = "found" if effects else ("unexplained" if more else "nothing_missing")
+    sure = [one for one in effects if one.in_doubt is None]
+    verdict = "found" if sure else ("unexplained" if effects or more else "nothing_missing")
     lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
@@ -202,8 +204,8 @@ def _bands(series: Sequence[Series], step: float, record: Record, campaign: Camp
     return found
 
 
-def effect_of(search: Search, one: Candidate, after: State) -> Effect:
-    """An effect that is in the model at the end, with its evidence."""
+def effect_of(search: Search, one: Candidate, after: State, doubt: str | None) -> Effect:
+    """An effect that is in the model at the end, with its evidence, and what explains more than it and is refused."""
     found, used = search.found[one.name], search.study.used
     left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
     meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)
@@ -212,5 +214,5 @@ def effect_of(search: Search, one: Candidate, after: State) -> Effect:
     return Effect(
         one.effect, one.dof, "; ".join(meanings), one.source, parameters,
         Evidence(found.score, found.verdict.bic, held, found.verdict.clear), max(0.0, 1 - now / left) if left > 0 else 0.0,
-        found.alike, one.telling or None,
+        found.alike, one.telling or None, doubt,
     )  # fmt: skip

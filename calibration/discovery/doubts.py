@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.judgement import State
+    from calibration.discovery.judgement import State, Verdict
     from calibration.discovery.search import Search
 
 MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
@@ -27,6 +27,30 @@ def doubts_of(search: Search, state: State, fitted: Calibration, more: Sequence[
     """Of the last fit; `more`, what is left of motions beyond noise."""
     beside = [like(state.chosen, more)] if state.chosen and more else []
     return [*in_motion(search, state), *beside, *far_off(search, fitted)]
+
+
+def outdone(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[str, str]:
+    """Effects that explain less than what was refused with all of them in the model, by name, and what that is: `tried` are the
+    verdicts of the last round, `worth` what an effect gained in fitted and held-out tests together.
+
+    Where the law that follows the fitted tests best by far is not the one that others follow, what acts has a law that no
+    candidate has, and one of a small gain is the next best likeness of it, not its name.
+    """
+    refused = {name: one.bic for name, one in tried.items() if one.refused}
+    if not refused or any(name in worth for name in tried if name not in refused):  # the round let something in: there is more
+        return {}
+    best = max(refused, key=refused.__getitem__)
+    return {name: best for name, gain in worth.items() if refused[best] > gain}
+
+
+def in_doubt(search: Search, state: State) -> dict[str, str]:
+    """`outdone` of a search that has come to its end."""
+    last = max((one.round for one in search.scores), default=0)
+    candidates = {(one.effect, one.dof): one.name for one in search.posed.candidates}
+    tried = {candidates[one.effect, one.degree_of_freedom]: one.verdict for one in search.scores
+             if one.round == last and one.verdict is not None}  # fmt: skip
+    verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
+    return outdone({name: one.bic + one.net for name, one in verdicts.items()}, tried)
 
 
 def like(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:

@@ -92,6 +92,7 @@ def _effect(one: Effect) -> dict[str, Any]:
         "share_of_residual_explained": _share(one.share),
         "indistinguishable_from": list(one.indistinguishable),
         "test_that_would_tell": one.telling_test,
+        **({} if one.in_doubt is None else {"in_doubt": one.in_doubt}),
     }
 
 

@@ -96,7 +96,7 @@ def _measured(saved: SavedDiagnosis) -> str:
 
 def _effect(saved: SavedDiagnosis, one: Found) -> Iterator[str]:
     name = words.called(one.effect, one.degree_of_freedom)
-    yield f"<h3>{escape(name[:1].upper() + name[1:])}</h3>"
+    yield f"<h3>{escape(words.capital(name))}</h3>"
     sizes = "; ".join(words.size(key, value) for key, value in one.parameters.items())
     yield f'<p class="size"><b>Size:</b> {escape(sizes)}.</p>' if sizes else ""
     if one.meaning:

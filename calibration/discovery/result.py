@@ -24,7 +24,8 @@ class Evidence:
 @dataclass(frozen=True, eq=False)
 class Effect:
     """An effect that was found: its name as in the contract, motion, parameters, evidence, the share of what was unexplained in
-    the fitted tests that it explains, the effects that the records cannot tell from it, and the test that would."""
+    the fitted tests that it explains, the effects that the records cannot tell from it, and the test that would; `in_doubt` is
+    an effect that explains more beside it and is refused, so that this one may stand for what neither has."""
 
     effect: str
     degree_of_freedom: str | None
@@ -35,6 +36,7 @@ class Effect:
     share: float
     indistinguishable: tuple[str, ...]
     telling_test: str | None
+    in_doubt: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,10 +149,10 @@ class LatentForce:
 class Diagnosis:
     """A campaign's model as declared and fitted (`baseline`), what it lacks, and the model with that (`augmented`).
 
-    `verdict` is "found", "nothing_missing" or "unexplained". `anatomy_before` and `anatomy_after` are the residuals of both,
-    motion by motion; `unexplained_share`, of the error's energy above the floor that is left at the end, `signature` what
-    is known of it in words; `next_test` what to measure next. `latent`, where the verdict is "unexplained", are the forces that
-    would make the model follow the records.
+    `verdict` is "found", "nothing_missing" or "unexplained", which may have effects: all in doubt. `anatomy_before` and
+    `anatomy_after` are the residuals of both, motion by motion; `unexplained_share`, of the error's energy above the floor
+    that is left at the end, `signature` what is known of it in words; `next_test` what to measure next. `latent`, where the
+    verdict is "unexplained", are the forces that would make the model follow the records.
     """
 
     campaign: str

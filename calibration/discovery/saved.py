@@ -30,6 +30,7 @@ class Found(Open):
     share_of_residual_explained: Number
     indistinguishable_from: list[str] = Field(default_factory=list)
     test_that_would_tell: str | None = None
+    in_doubt: str | None = None
 
 
 class Refused(Open):

@@ -38,6 +38,11 @@ def called(effect: str, motion: str | None = None) -> str:
     return f"{words} in {motion}" if motion else words
 
 
+def capital(words: str) -> str:
+    """With a capital first letter."""
+    return f"{words[:1].upper()}{words[1:]}"
+
+
 def several(words: list[str]) -> str:
     """a, b and c."""
     return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
@@ -89,16 +94,17 @@ def size(name: str, one: Parameter) -> str:
 def verdict(saved: SavedDiagnosis) -> str:
     """What a project lead has to know, in one sentence."""
     missing = saved.missing
-    names = several([called(one.effect, one.degree_of_freedom) for one in missing.effects])
+    named = [(called(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
+    names, doubted = (several([name for name, sure in named if sure is kind]) for kind in (True, False))
     if missing.verdict == "found":
-        return f"The declared model lacks {names}: {fall(saved)}."
-    if not saved.converged and not names:
+        more = f" {capital(doubted)} may stand for something that no effect tried explains." if doubted else ""
+        return f"The declared model lacks {names}: {fall(saved)}.{more}"
+    if not saved.converged and not named:
         return "The search did not come to its end: until then nothing was found that the declared model lacks."
     if missing.verdict == "nothing_missing":
         return "These records show nothing that the declared model lacks: no effect that was tried survives."
-    if names:
-        return f"The declared model lacks {names}, and something more that no effect tried explains."
-    return "The declared model lacks something, and no effect that was tried explains it."
+    lacks = "The declared model lacks something, and no effect that was tried explains it"
+    return f"{lacks}; {doubted} may stand for it: {fall(saved)}." if doubted else f"{lacks}."
 
 
 def fall(saved: SavedDiagnosis) -> str:
@@ -161,8 +167,14 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
 def alternatives(one: Found) -> str:
     """What else it could be, and the test that would tell."""
     names = several([called(other) for other in one.indistinguishable_from])
-    compared = one.evidence.score is not None
-    said = f"These records cannot tell it from {names}." if names else "No other effect that was tried does as well." * compared
+    said = f"These records cannot tell it from {names}." if names else ""
+    if one.in_doubt is not None:
+        said += (
+            f" {capital(called(one.in_doubt))} explains more of the fitted tests beside it than it does, and is refused (see "
+            "what was rejected): it may stand for something that neither is."
+        )
+    elif not names and one.evidence.score is not None:
+        said = "No other effect that was tried does as well."
     if one.test_that_would_tell:
         said += f" A test that would tell: {one.test_that_would_tell.rstrip('.')}."
     return said.strip()
