@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,12 +13,12 @@ from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.conclusion import much
 from calibration.discovery.descent import fit
-from calibration.discovery.doubts import in_motion, like, outdone
+from calibration.discovery.doubts import in_doubt, in_motion, like, outdone
 from calibration.discovery.gathering import series_of_sea
 from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, Verdict, refusal
 from calibration.discovery.linear import likelihoods
 from calibration.discovery.looks import Look, Prior, Series
-from calibration.discovery.result import Finding
+from calibration.discovery.result import Finding, Rejected, Score
 from calibration.discovery.study import Study
 from calibration.discovery.trials import Tried, in_order
 from calibration.records import Record
@@ -109,6 +110,25 @@ def test_what_something_refused_outdoes_is_in_doubt():
     assert outdone({"lag": 158.0, "current": 60.0}, tried | {"current": verdict(40.0, "")}) == {}
     assert outdone({"lag": 400.0}, tried) == {} == outdone({"lag": 400.0}, {})
     assert outdone({"mass": np.nan}, tried) == {}  # told though no error shows it
+
+
+def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
+    friction, drag = Candidate("coulomb_friction", "surge", ()), Candidate("amplitude_dependent_drag", None, ())
+    memory = Candidate("radiation_memory", "pitch", ())
+    good, small = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, ""), Verdict(8.0, 0.2, True, -6.0, 4.0, 2.0, "too little")
+
+    def score(number: int, one: Candidate, verdict: Verdict | None) -> Score:
+        return Score(number, one.effect, one.dof, 1.0, 1, 1.0, None, None, verdict)
+
+    scores = [score(1, drag, good), score(2, friction, good), score(3, memory, small)]
+    rejected = {memory.name: Rejected("radiation_memory", "pitch", "too little")}
+    search = SimpleNamespace(scores=scores, rejected=rejected, found={friction.name: SimpleNamespace(verdict=good)},
+                             posed=SimpleNamespace(candidates=[friction, drag, memory]))  # fmt: skip
+    state: Any = SimpleNamespace(chosen=(friction,))
+    assert in_doubt(search, state) == {}  # type: ignore[arg-type]
+    taken_out = small._replace(bic=350.0, refused="all in all the held-out tests do not gain by it")
+    rejected[drag.name] = Rejected(drag.effect, None, "", taken_out)
+    assert in_doubt(search, state) == {friction.name: drag.name}  # type: ignore[arg-type]
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():

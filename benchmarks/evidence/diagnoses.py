@@ -115,6 +115,8 @@ def of_case(name: str) -> dict[str, Any]:
         "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
         "tried": {f"{one.round} {one.effect} {one.degree_of_freedom or ''}".strip(): one.verdict._asdict()
                   for one in result.scores if one.verdict is not None},
+        "taken_out": {f"{one.effect} {one.degree_of_freedom or ''}".strip(): one.taken_out._asdict()
+                      for one in result.rejected if one.taken_out is not None},
         "laws": {one.motion: [[term.name for term in one.law.terms], one.law.share] for one in result.latent},
         "seconds": result.seconds,
         "sources": fingerprint(*TANK),
@@ -155,7 +157,8 @@ def doubts(result: dict[str, Any]) -> list[str | None]:
     names = [f"{one} {motion or ''}".strip() for one, motion in zip(result["effects"], result["motions"], strict=True)]
     let_in = {name: one for some in tried.values() for name, one in some.items() if name in names and not one.refused}
     worth = {name: one.bic + one.net for name, one in let_in.items()}
-    found = outdone(worth, tried.get(max(tried, default=0), {}))
+    taken_out = {name: Verdict(**one) for name, one in result.get("taken_out", {}).items()}
+    found = outdone(worth, tried.get(max(tried, default=0), {}) | taken_out)
     return [found.get(name) for name in names]
 
 

@@ -31,7 +31,8 @@ def doubts_of(search: Search, state: State, fitted: Calibration, more: Sequence[
 
 def outdone(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[str, str]:
     """Effects that explain less than what was refused with all of them in the model, by name, and what that is: `tried` are the
-    verdicts of the last round, `worth` what an effect gained in fitted and held-out tests together.
+    verdicts of the last round, and of what was taken out after it, `worth` what an effect gained in fitted and held-out tests
+    together.
 
     Where the law that follows the fitted tests best by far is not the one that others follow, what acts has a law that no
     candidate has, and one of a small gain is the next best likeness of it, not its name.
@@ -49,6 +50,7 @@ def in_doubt(search: Search, state: State) -> dict[str, str]:
     candidates = {(one.effect, one.dof): one.name for one in search.posed.candidates}
     tried = {candidates[one.effect, one.degree_of_freedom]: one.verdict for one in search.scores
              if one.round == last and one.verdict is not None}  # fmt: skip
+    tried |= {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
     verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
     return outdone({name: one.bic + one.net for name, one in verdicts.items()}, tried)
 

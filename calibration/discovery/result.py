@@ -41,11 +41,12 @@ class Effect:
 
 @dataclass(frozen=True, eq=False)
 class Rejected:
-    """An effect that was tried and is not in the model, and why."""
+    """An effect that was tried and is not in the model, and why; `taken_out`, the verdict that took it out of the model."""
 
     effect: str
     degree_of_freedom: str | None
     reason: str
+    taken_out: Verdict | None = None
 
 
 @dataclass(frozen=True, eq=False)

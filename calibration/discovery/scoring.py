@@ -8,7 +8,7 @@ from itertools import count
 from calibration.campaign import Campaign
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.fits import Fits
-from calibration.discovery.judgement import State
+from calibration.discovery.judgement import State, Verdict
 from calibration.discovery.linear import Predicted, predict
 from calibration.discovery.looks import Look
 from calibration.discovery.pose import Posed
@@ -73,10 +73,10 @@ class Scoring(Fits):
                 return True
         return False
 
-    def refuse(self, one: Candidate, why: str) -> None:
-        """Keep why a candidate is not in the model; "": nothing to keep."""
+    def refuse(self, one: Candidate, why: str, taken_out: Verdict | None = None) -> None:
+        """Keep why a candidate is not in the model; "": nothing to keep. `taken_out`, the verdict on one that was in it."""
         if why:
-            self.rejected[one.name] = Rejected(one.effect, one.dof, why)
+            self.rejected[one.name] = Rejected(one.effect, one.dof, why, taken_out)
 
     def attempt(self, state: State, scored: Scored, number: int, fraction: float) -> Tried:
         """A candidate refitted, everything else free: its shape too, once it is off its null."""

@@ -138,7 +138,7 @@ class Search(Scoring):
             without = self.refit(look, rest, f"without {one.name}", 0.97)
             verdict = self.judge(without, state, one, last=True)
             if verdict.refused:
-                self.refuse(one, f"with what was found after it, {verdict.refused}")
+                self.refuse(one, f"with what was found after it, {verdict.refused}", verdict)
                 state = without
             else:
                 self.found[one.name] = self.found[one.name]._replace(verdict=verdict)
