@@ -331,7 +331,8 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
         f"nothing missing; a force: the law proposed for what is unexplained, and the share that it gives in what was not "
-        f"fitted):\n\n" + table(("effect in the tank", *STRENGTHS.values()), rows)
+        f"fitted; in doubt: what helps, and is outdone by something that is refused):\n\n"
+        + table(("effect in the tank", *STRENGTHS.values()), rows)
     )  # fmt: skip
     nulls = {case: result for case, result in results.items() if not case.effect}
     if nulls:
@@ -423,9 +424,8 @@ def _words(case: Case, said: str, result: dict[str, Any], ratio: float | None = 
     """An outcome in a cell."""
     effects = found(result)
     number = f" {ratio:.2f}" if ratio is not None else ""
-    if effects and said == "unexplained":
-        return f"*{said}* [in doubt: {', '.join(effects)}]{number}"
-    if not effects:
+    if not effects or said == "unexplained":
+        number = f" [in doubt: {', '.join(effects)}]{number}" if effects else number
         laws = result.get("laws", {}).items()
         words = "; ".join(f"{motion} by {', '.join(terms)} ({100 * part:.0f} %)" for motion, (terms, part) in laws if terms)
         return f"*{said}*{number}" + (f", a force in {words}" if words else "")
