@@ -97,6 +97,11 @@ def made(names: Sequence[str]) -> None:
         say(f"  seed {seed}: {len(some)} campaigns made")
 
 
+def listed(effect: str, motion: str | None) -> str:
+    """An effect as results of campaigns list it."""
+    return f"{effect} {motion}" if motion else effect
+
+
 def of_case(name: str) -> dict[str, Any]:
     """What a diagnosis says of one campaign."""
     from calibration.campaign import load_campaign
@@ -111,11 +116,11 @@ def of_case(name: str) -> dict[str, Any]:
         "alike": [[text.split(" ")[0] for text in one.indistinguishable] for one in result.effects],
         "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (one.evidence for one in result.effects)],
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
-        "refused": {f"{one.effect} {one.degree_of_freedom or ''}".strip(): one.reason for one in result.rejected},
+        "refused": {listed(one.effect, one.degree_of_freedom): one.reason for one in result.rejected},
         "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
-        "tried": {f"{one.round} {one.effect} {one.degree_of_freedom or ''}".strip(): one.verdict._asdict()
+        "tried": {f"{one.round} {listed(one.effect, one.degree_of_freedom)}": one.verdict._asdict()
                   for one in result.scores if one.verdict is not None},
-        "taken_out": {f"{one.effect} {one.degree_of_freedom or ''}".strip(): one.taken_out._asdict()
+        "taken_out": {listed(one.effect, one.degree_of_freedom): one.taken_out._asdict()
                       for one in result.rejected if one.taken_out is not None},
         "laws": {one.motion: [[term.name for term in one.law.terms], one.law.share] for one in result.latent},
         "seconds": result.seconds,
@@ -154,7 +159,7 @@ def doubts(result: dict[str, Any]) -> list[str | None]:
     for words, one in result["tried"].items():
         number, name = words.split(" ", 1)
         tried.setdefault(int(number), {})[name] = Verdict(**one)
-    names = [f"{one} {motion or ''}".strip() for one, motion in zip(result["effects"], result["motions"], strict=True)]
+    names = [listed(*pair) for pair in zip(result["effects"], result["motions"], strict=True)]
     let_in = {name: one for some in tried.values() for name, one in some.items() if name in names and not one.refused}
     worth = {name: one.bic + one.net for name, one in let_in.items()}
     taken_out = {name: Verdict(**one) for name, one in result.get("taken_out", {}).items()}

@@ -121,7 +121,8 @@ class Plan:
             if moved is None:
                 # those of all others are divided by another sum
                 ratio = [math.log(b[1] / a[1]) for a, b in pairs]
-                away = [abs(one - statistics.median_low(ratio)) for one in ratio]
+                usual = statistics.median_low(ratio)
+                away = [abs(one - usual) for one in ratio]
                 moved = pairs[away.index(max(away))] if max(away) > 1e-9 else None
             if moved is not None:
                 before, after = (f"{text(value)}, with {share:.4%} of the life" for value, share in moved)

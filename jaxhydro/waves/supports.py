@@ -59,8 +59,8 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
     ValueError where `MOST` supports do not do: a box of many wavelengths.
     """
     highest = max(free, bound)
-    # a box of far more wavelengths would fill the memory before it is refused
-    if 0.5 * highest * box.half + 8 > 2 * MOST:
+    count = math.ceil((0.5 * highest * box.half + 8) / 4) * 4
+    if count > MOST:  # before arrays that would fill the memory
         raise ValueError(_too_short(highest, box))
     spacing = 0.05 / (box.half * math.sqrt(highest))
     grid = (spacing * np.arange(math.ceil(math.sqrt(highest) / spacing) + 3)) ** 2
@@ -70,7 +70,6 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
     wanted = _fields(grid, x, z, box.depth)
     allowed = np.where(grid <= free, tolerance, BOUND * tolerance)
     inside = grid <= highest
-    count = math.ceil((0.5 * highest * box.half + 8) / 4) * 4
     while count <= MOST:
         chebyshev = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
         k = highest * (0.5 * (1 + chebyshev)) ** (1 / POWER)
