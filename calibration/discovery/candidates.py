@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 
+from calibration.discovery.afar import Turns
 from calibration.discovery.splitting import Begins
 from calibration.discovery.swinging import Places
 from jaxhydro.environment import DOFS
@@ -48,8 +49,8 @@ class Candidate:
     nothing then, freed with it, and tried at the values of `grid` first, then at those that `places` finds in a look
     and slopes along the first amplitude, of each of the grid; `positive`, amplitudes that physics wants above zero;
     `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without the
-    effect may stand in its way; `begins`, the same, of coefficients too, as the records themselves say. `telling`: the test
-    that would tell it from others. One's own law comes with its `load` at null and, by label, `sizes` of its amplitudes that
+    effect may stand in its way; `begins`, the same, of coefficients too, as the records themselves say; `turns`, by which phase
+    a unit of its one amplitude turns waves, where it does nothing else. `telling`: the test that would tell it from others. One's own law comes with its `load` at null and, by label, `sizes` of its amplitudes that
     are noticeable."""
 
     effect: str
@@ -61,6 +62,7 @@ class Candidate:
     positive: tuple[str, ...] = ()
     begin: Mapping[str, float] = field(default_factory=dict)
     begins: Begins | None = None
+    turns: Turns | None = None
     telling: str = ""
     source: str = ""
     load: AbstractLoad | None = None

@@ -28,6 +28,7 @@ from jaxhydro.loads import (
 )
 from jaxhydro.loads.wave_reflection import COEFFICIENT, DELAY, LATER, LATEST, SEEN
 from jaxhydro.model import Model
+from jaxhydro.waves.dispersion import wavenumber
 
 SIZE = 27.0  # m, of a platform of 20 000 t
 CUTOFFS = (0.03, 0.015, 0.06)  # Hz: below which motion is slow, tried in turn
@@ -166,6 +167,7 @@ def _of_gauges(known: Listed) -> None:
         "sensor_lag",
         None,
         [known.linear("sensor_lag.delay", 0.05 * known.time)],
+        turns=lambda omega, water: -omega,
         telling="tap the wave gauge and the tracker at once",
         source=SensorLag.source,
     )
@@ -173,6 +175,7 @@ def _of_gauges(known: Listed) -> None:
         "wave_gauge_position",
         None,
         [known.linear("wave_gauge_position.distance", known.length)],
+        turns=lambda omega, water: np.asarray(wavenumber(omega, water.depth, water.gravity)),
         telling="regular waves of three periods with a second gauge",
         source=WaveGaugePosition.source,
     )

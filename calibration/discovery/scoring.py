@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import count
 
 from calibration.campaign import Campaign
+from calibration.discovery.afar import from_afar
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.fits import Fits
 from calibration.discovery.judgement import State, Verdict
@@ -58,12 +59,14 @@ class Scoring(Fits):
             self.scores.append(Score(number, one.effect, one.dof, found.fitted, len(one.amplitudes), found.held, None, None))
         return ranked
 
-    def begins(self, one: Candidate, state: State) -> tuple[Mapping[str, float], ...]:
-        """Values at which a refit begins, too: of another program, or what decays say."""
+    def begins(self, scored: Scored, state: State) -> tuple[Mapping[str, float], ...]:
+        """Values at which a refit begins, too: of another program, or what decays or the phases of waves say."""
+        one = scored.candidate
         place = self.renewed(state.look.place, self.posed.base)
         base, width = self.study.index(self.posed.base), self.posed.prior.width
         said = () if one.begins is None else one.begins(self.study, place, base, width)
-        return (*([one.begin] if one.begin else ()), *said)
+        far = () if one.turns is None else from_afar(self.study, scored.look, one.amplitudes[0], one.turns)
+        return (*([one.begin] if one.begin else ()), *said, *far)
 
     def wrong_sign(self, one: Candidate, look: Look, found: Predicted) -> bool:
         """Whether what physics wants above zero goes below it, and clearly so."""

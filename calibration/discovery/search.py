@@ -62,7 +62,7 @@ class Search(Scoring):
         """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
         done = 0.15 + 0.8 * (number - 1) / ROUNDS
         enough = 2 * math.log(self.count)
-        ranked = [item._replace(begins=self.begins(item.candidate, state)) for item in self.score(state, number, done)]
+        ranked = [item._replace(begins=self.begins(item, state)) for item in self.score(state, number, done)]
         some = [item for item in ranked if item.predicted.fitted > enough]
         for item in ranked:
             weak = item.predicted.fitted <= enough

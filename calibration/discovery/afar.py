@@ -1,0 +1,56 @@
+"""How far off a gauge or a clock is, where that is further than slopes tell: from a residual and what a little of it does.
+
+What turns first-order waves of every rate omega (rad/s) by a phase of c(omega) (rad) a unit, and does nothing else, makes the motion
+X exp(i c d) of a linear platform's motion X, and i c X is its slope where there is none of it. So one look tells of every d:
+
+    motion changes by (exp(i c d) - 1) / (i c) times its slope
+
+A fit that follows slopes does not cross a phase of half a wave: it ends on the wrong side of it, and bends what else is free.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calibration.discovery.linear import likelihoods
+from calibration.discovery.peaks import likeliest
+from jaxhydro.environment import Environment
+
+if TYPE_CHECKING:
+    from calibration.discovery.looks import Look
+    from calibration.discovery.study import Study
+
+Turns = Callable[[np.ndarray, Environment], np.ndarray]
+
+FINENESS = 0.2  # rad: phase from one value that is looked at to the next
+NEAR = 0.5  # rad: what is no further is found by slopes
+
+
+def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> tuple[Mapping[str, float], ...]:
+    """The likeliest value of a parameter that turns waves by `turns` (rad a unit, of rates and the water), null where a look
+    is that has its direction's slopes; none where that is near the null, or promises nothing."""
+    (i,) = study.index([label])
+    about = study.model.about(label)
+    unit = study.value(label, look.place.x + study.directions[i]) - study.value(label, look.place.x)
+    series = study.row_series[::2]
+    slow, seas = (np.array(each)[series] for each in zip(*((one.slow, one.kind != "decay") for one in study.series)))
+    waves = seas & (study.frequency > slow)
+    along = look.slopes[:, look.active.index(i)].reshape(-1, 2)[waves] @ [1, 1j] / unit
+    phase = turns(2 * math.pi * study.frequency[waves], study.model.environment)
+    weight = (study.share * study.used[study.row_series])[::2][waves]
+    motion = float(weight @ np.abs(along / phase) ** 2)
+    if motion == 0:
+        return ()
+    usual = math.sqrt(float(weight @ np.abs(along) ** 2) / motion)  # rad a unit
+    tried = np.arange(about.lower, about.upper, FINENESS / usual)
+
+    def left(value: float) -> float:
+        residual = look.residual.reshape(-1, 2).copy()
+        change = along * np.expm1(1j * phase * value) / (1j * phase)
+        residual[waves] += np.stack([change.real, change.imag], axis=1)
+        return float(likelihoods(study, residual.ravel())[study.used].sum())
+
+    best = likeliest(left(0.0) - np.array([left(value) for value in tried]))[:1]
+    return tuple({label: float(tried[k])} for k in best if abs(tried[k]) * usual > NEAR)
