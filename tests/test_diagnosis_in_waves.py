@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 from calibration import load_campaign
 from calibration.applied import applied
 from calibration.campaign import Campaign
+from calibration.discovery.afar import FINENESS, from_afar
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.looks import Place
 from calibration.discovery.outputs import write_diagnosis
@@ -141,6 +142,33 @@ def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
     for name, true in {"coefficient": share, "delay": delay}.items():
         assert said[name].value == pytest.approx(true, abs=0.003 + 3 * said[name].standard_deviation)
     assert said["coefficient"].standard_deviation < 0.01 and said["delay"].standard_deviation < 0.2
+
+
+@pytest.mark.parametrize(("label", "turns", "far", "near"), [
+    ("wave_gauge_position.distance", lambda omega: omega**2 / G, -25.0, 2.0),
+    ("sensor_lag.delay", lambda omega: -omega, 2.2, -0.1),
+])  # fmt: skip
+def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float, near: float) -> None:
+    """By one look where it is null: within a step of what is looked at; nothing where slopes tell of it."""
+    found = []
+    for shift in (far, near):
+        (folder := tmp_path / f"{shift}").mkdir()
+        campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
+        posed = pose(campaign, options_for(campaign)[0])
+        (one,) = (one for one in posed.candidates if label in one.amplitudes)
+        look = posed.study.look(Place(np.asarray(posed.study.space.start), np.zeros((0, 0))), posed.study.index([label]))
+        found.append(from_afar(posed.study, look, label, one.turns))
+    there, nothing = found
+    assert there.values[label] == pytest.approx(far, abs=FINENESS / abs(turns(0.65))) and there.gain > 500
+    assert nothing is None
+
+
+def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
+    """And nothing beside it, a wave's phase further off than slopes lead."""
+    campaign = campaign_of(tmp_path, lambda omega: pressure(omega) * np.exp(-25j * omega**2 / G))
+    found = diagnose(campaign.model, campaign)
+    assert [one.effect for one in found.effects] == ["wave_gauge_position"]
+    assert found.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
 
 
 def test_a_wrong_sign_is_found(tmp_path: Path) -> None:

@@ -159,6 +159,8 @@ def test_interpolation_is_of_sixth_order() -> None:
         assert errors[-1] < step**6 / (64 * 720) * 1.01
         knots = grid.at(t[:-1], (1,))
         assert_allclose(knots[0][:, 0], jnp.sin(t[:-1]), rtol=1e-14, atol=1e-14)
+        moved = jax.jvp(lambda times, grid=grid: grid.at(times, (1,))[0][:, 0], (t[:-1],), (jnp.ones(59),))[1]
+        assert_allclose(moved, jnp.cos(t[:-1]), rtol=0, atol=1e-12)  # at a step's time as well: so begins a clock's delay
     assert math.log2(errors[0] / errors[1]) == pytest.approx(6, abs=0.2)
 
 

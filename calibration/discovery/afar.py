@@ -1,6 +1,6 @@
 """How far off a gauge or a clock is, where that is further than slopes tell: from a residual and what a little of it does.
 
-What turns first-order waves of every rate omega (rad/s) by a phase of c(omega) (rad) a unit, and does nothing else, makes the motion
+What turns first-order waves of every rate omega (rad/s) by a phase of c(omega) (rad) a unit, and does nothing else, makes
 X exp(i c d) of a linear platform's motion X, and i c X is its slope where there is none of it. So one look tells of every d:
 
     motion changes by (exp(i c d) - 1) / (i c) times its slope
@@ -10,7 +10,7 @@ A fit that follows slopes does not cross a phase of half a wave: it ends on the 
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -28,9 +28,16 @@ FINENESS = 0.2  # rad: phase from one value that is looked at to the next
 NEAR = 0.5  # rad: what is no further is found by slopes
 
 
-def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> tuple[Mapping[str, float], ...]:
+class Afar(NamedTuple):
+    """Values by label where a refit begins, and what -2 ln L of the fitted tests would gain there, nothing else moved."""
+
+    values: Mapping[str, float]
+    gain: float
+
+
+def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> Afar | None:
     """The likeliest value of a parameter that turns waves by `turns` (rad a unit, of rates and the water), null where a look
-    is that has its direction's slopes; none where that is near the null, or promises nothing."""
+    is that has its direction's slopes; None where that is near the null, or promises nothing."""
     (i,) = study.index([label])
     about = study.model.about(label)
     unit = study.value(label, look.place.x + study.directions[i]) - study.value(label, look.place.x)
@@ -42,7 +49,7 @@ def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> tuple[M
     weight = (study.share * study.used[study.row_series])[::2][waves]
     motion = float(weight @ np.abs(along / phase) ** 2)
     if motion == 0:
-        return ()
+        return None
     usual = math.sqrt(float(weight @ np.abs(along) ** 2) / motion)  # rad a unit
     tried = np.arange(about.lower, about.upper, FINENESS / usual)
 
@@ -52,5 +59,7 @@ def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> tuple[M
         residual[waves] += np.stack([change.real, change.imag], axis=1)
         return float(likelihoods(study, residual.ravel())[study.used].sum())
 
-    best = likeliest(left(0.0) - np.array([left(value) for value in tried]))[:1]
-    return tuple({label: float(tried[k])} for k in best if abs(tried[k]) * usual > NEAR)
+    gain = left(0.0) - np.array([left(value) for value in tried])
+    best = likeliest(gain)[:1]
+    far = best[np.abs(tried[best]) * usual > NEAR]
+    return Afar({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None

@@ -50,8 +50,8 @@ class Candidate:
     and slopes along the first amplitude, of each of the grid; `positive`, amplitudes that physics wants above zero;
     `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without the
     effect may stand in its way; `begins`, the same, of coefficients too, as the records themselves say; `turns`, by which phase
-    a unit of its one amplitude turns waves, where it does nothing else. `telling`: the test that would tell it from others. One's own law comes with its `load` at null and, by label, `sizes` of its amplitudes that
-    are noticeable."""
+    a unit of its one amplitude turns waves, where it does nothing else. `telling`: the test that would tell it from others.
+    One's own law comes with its `load` at null and, by label, `sizes` of its amplitudes that are noticeable."""
 
     effect: str
     dof: str | None

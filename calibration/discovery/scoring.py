@@ -52,21 +52,20 @@ class Scoring(Fits):
                 if self.wrong_sign(one, look, found):
                     found = found._replace(gain=0 * found.gain)
                 if one.name not in best or found.fitted > best[one.name].predicted.fitted:
-                    best[one.name] = Scored(one, found, look)
-        ranked = sorted(best.values(), key=lambda item: -item.predicted.fitted)
+                    far = None if one.turns is None else from_afar(self.study, look, one.amplitudes[0], one.turns)
+                    best[one.name] = Scored(one, found, look, far)
+        ranked = sorted(best.values(), key=lambda item: -item.promise)
         for item in ranked:
             one, found = item.candidate, item.predicted
             self.scores.append(Score(number, one.effect, one.dof, found.fitted, len(one.amplitudes), found.held, None, None))
         return ranked
 
-    def begins(self, scored: Scored, state: State) -> tuple[Mapping[str, float], ...]:
-        """Values at which a refit begins, too: of another program, or what decays or the phases of waves say."""
-        one = scored.candidate
+    def begins(self, one: Candidate, state: State) -> tuple[Mapping[str, float], ...]:
+        """Values at which a refit begins, too: of another program, or what decays say."""
         place = self.renewed(state.look.place, self.posed.base)
         base, width = self.study.index(self.posed.base), self.posed.prior.width
         said = () if one.begins is None else one.begins(self.study, place, base, width)
-        far = () if one.turns is None else from_afar(self.study, scored.look, one.amplitudes[0], one.turns)
-        return (*([one.begin] if one.begin else ()), *said, *far)
+        return (*([one.begin] if one.begin else ()), *said)
 
     def wrong_sign(self, one: Candidate, look: Look, found: Predicted) -> bool:
         """Whether what physics wants above zero goes below it, and clearly so."""
@@ -91,7 +90,7 @@ class Scoring(Fits):
             look = self.study.look(reached.look.place, self.active(chosen))
             reached = self.fit(look, chosen, ITERATIONS, 0, name, fraction)
         after = self.state(chosen, reached)
-        for values in scored.begins:
+        for values in (*scored.begins, *([scored.afar.values] if scored.afar else ())):
             place = self.shaped(self.renewed(state.look.place, self.posed.base), values)
             other = self.refit(self.study.look(place, self.active(chosen)), chosen, f"{name}, from afar", fraction)
             after = self.likeliest(after, other)

@@ -62,10 +62,10 @@ class Search(Scoring):
         """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
         done = 0.15 + 0.8 * (number - 1) / ROUNDS
         enough = 2 * math.log(self.count)
-        ranked = [item._replace(begins=self.begins(item, state)) for item in self.score(state, number, done)]
-        some = [item for item in ranked if item.predicted.fitted > enough]
+        ranked = [item._replace(begins=self.begins(item.candidate, state)) for item in self.score(state, number, done)]
+        some = [item for item in ranked if item.promise > enough]
         for item in ranked:
-            weak = item.predicted.fitted <= enough
+            weak = item.promise <= enough
             self.refuse(item.candidate, f"{'explains too little' if weak else 'others explain more'} at first order")
         known = [item for item in ranked if item.begins]  # worth a trial whatever they are at first order
         some = [item for item in some if not item.begins]
@@ -90,7 +90,7 @@ class Search(Scoring):
         tried: list[Tried] = []
         for item in short:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
-            if item.predicted.fitted < FAR * highest and not item.begins:
+            if item.promise < FAR * highest and not item.begins:
                 self.refuse(item.candidate, "explains far less than others")
             else:
                 tried.append(self.attempt(state, item, number, done + 0.02 * (len(tried) + 1)))

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from calibration.discovery.afar import Afar
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.judgement import State, Verdict
 from calibration.discovery.linear import Predicted
@@ -13,13 +14,20 @@ SENSORS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
 
 
 class Scored(NamedTuple):
-    """A candidate at its null, at the best of its shapes: what it would gain at first order, and the look that says so; values
-    at which a refit begins, too, whatever is said at first order."""
+    """A candidate at its null, at the best of its shapes: what it would gain at first order, and the look that says so; where
+    it may be, what it gains there, further off than first order tells; and values at which a refit begins, too, whatever is
+    said at first order."""
 
     candidate: Candidate
     predicted: Predicted
     look: Look
+    afar: Afar | None = None
     begins: tuple[Mapping[str, float], ...] = ()
+
+    @property
+    def promise(self) -> float:
+        """What -2 ln L of the fitted tests may gain."""
+        return max(self.predicted.fitted, self.afar.gain if self.afar else 0.0)
 
 
 class Tried(NamedTuple):
