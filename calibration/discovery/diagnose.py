@@ -79,6 +79,8 @@ def diagnose(
         for again in range(2 * ROUNDS):
             if len(states) > ROUNDS:  # an earlier run may have reached them
                 break
+            if len(states) > 1 and (second := search.in_second_order(states[-1], len(states))) is not None:
+                states[0], states[-1] = second
             states[-1], after = search.grow(fitted := states[-1], len(states))
             if after is not None:
                 reach(after)

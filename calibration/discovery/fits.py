@@ -11,6 +11,7 @@ from calibration.campaign import Campaign
 from calibration.discovery.blocks import Blocks
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.descent import Reached, fit
+from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.expected import expected
 from calibration.discovery.judgement import Grounds, Left, State, Verdict, judge
 from calibration.discovery.linear import likelihoods
@@ -30,7 +31,6 @@ class Fits:
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
-        self.linear = False  # whether seas are those without the second order that their records have
         self.base = self.study.index([*posed.base, *posed.nuisances])
         # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only
         self.count = max(2.0, float(self.study.dof[self.study.used].sum()) / 4)
@@ -82,9 +82,9 @@ class Fits:
         """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
         self.study = replace(self.study, expected=expected(self.study, place))
 
-    def take_linear_seas(self) -> None:
-        """Seas without the second order that their records have, from now on."""
-        self.study, self.linear = replace(self.study, seas=self.study.linear_seas), True
+    def take_seas(self, seas: tuple[SeaRecord, ...]) -> None:
+        """These seas from now on: with the second order that their records have, or without."""
+        self.study = replace(self.study, seas=seas)
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""

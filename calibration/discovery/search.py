@@ -15,6 +15,10 @@ from calibration.discovery.trials import Found, Scored, Tried, in_order
 
 ROUNDS = 10  # effects at most
 SHORTLIST = 5
+FIRST_ORDER = (
+    "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions are "
+    "followed worse"
+)
 HOPELESS = 300.0  # of -2 ln L, by which waves of first order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
@@ -28,6 +32,7 @@ class Search(Scoring):
         self.notes: list[str] = []
         self.alone: Left | None = None  # of a calibration to the decays, where there are seas, too
         self.found: dict[str, Found] = {}
+        self.declared_in_second_order: State | None = None  # where waves of first order were taken in place of theirs
 
     def declared(self) -> State:
         """The declared model, fitted."""
@@ -43,20 +48,36 @@ class Search(Scoring):
         if not self.study.linear_seas:
             return state
         study, name, better, first = self.study, "declared model in waves of first order", 0.0, state
-        self.take_linear_seas()
+        self.take_seas(self.study.linear_seas)
         there = likelihoods(self.study, self.study.residual(state.look.place))
         if float((there - state.likelihood)[study.used].sum()) < HOPELESS:
             look = self.study.look(state.look.place, self.base)
             first = self.state((), self.fit(look, (), ITERATIONS, 0, name, 0.12))
             better = float((state.likelihood - first.likelihood)[study.used].sum())
         if better < LEAST_TOGETHER:
-            self.study, self.linear = study, False
+            self.study = study
             return state
-        self.notes.append(
-            "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions "
-            f"are followed worse (by {better:.0f} in -2 ln L)"
-        )
+        self.declared_in_second_order = state
+        self.notes.append(f"{FIRST_ORDER} (by {better:.0f} in -2 ln L)")
         return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
+
+    def in_second_order(self, state: State, number: int) -> tuple[State, State] | None:
+        """The declared model and a state in waves with the second order of their records, where those of first order were taken
+        and follow the motions no better any more: what the model lacked then may have made the second order look wrong."""
+        if (declared := self.declared_in_second_order) is None:
+            return None
+        first, name, done = self.study, f"round {number}: waves of second order again", 0.15 + 0.8 * (number - 1) / ROUNDS
+        self.take_seas(self.posed.study.seas)
+        there = likelihoods(self.study, self.study.residual(state.look.place))
+        if float((there - state.likelihood)[first.used].sum()) < HOPELESS:
+            look = self.study.look(state.look.place, self.active(state.chosen))
+            second = self.state(state.chosen, self.fit(look, state.chosen, ITERATIONS, 0, name, done))
+            if float((second.likelihood - state.likelihood)[first.used].sum()) < LEAST_TOGETHER:
+                self.notes = [note for note in self.notes if not note.startswith(FIRST_ORDER)]
+                self.declared_in_second_order = None
+                return declared, self.refit(self.study.look(second.look.place, look.active), state.chosen, name, done)
+        self.study = first
+        return None
 
     def grow(self, state: State, number: int) -> tuple[State, State | None]:
         """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
