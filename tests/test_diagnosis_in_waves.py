@@ -19,6 +19,7 @@ from calibration.discovery.looks import Place
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.pose import pose
 from calibration.discovery.records import options_for
+from calibration.discovery.search import FIRST_ORDER, Search
 from calibration.discovery.signs import turned
 from calibration.report import write_report
 from calibration.runs import runs
@@ -169,6 +170,24 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     found = diagnose(campaign.model, campaign)
     assert [one.effect for one in found.effects] == ["wave_gauge_position"]
     assert found.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
+
+
+def test_second_order_is_taken_again(tmp_path: Path) -> None:
+    """Where waves of first order were taken, and follow no better any more, those of the record; with the declared model that
+    was fitted in them."""
+    campaign = campaign_of(tmp_path, pressure)
+    search = Search(campaign, pose(campaign, options_for(campaign)[0]), lambda *_: None)
+    declared = search.declared()
+    assert search.declared_in_second_order is None and search.in_second_order(declared, 1) is None
+    search.take_seas(search.study.linear_seas)
+    search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER} (by 30 in -2 ln L)", "another"]
+    lost = dataclasses.replace(declared, likelihood=declared.likelihood - 1e3)  # waves of first order follow far better
+    assert search.in_second_order(lost, 1) is None and search.study.seas is search.study.linear_seas
+    again = search.in_second_order(declared, 1)
+    assert again is not None and again[0] is declared and search.study.seas is search.posed.study.seas
+    assert search.notes == ["another"] and search.declared_in_second_order is None
+    used = search.study.used
+    assert_allclose(again[1].likelihood[used].sum(), declared.likelihood[used].sum(), atol=1.0)
 
 
 def test_a_wrong_sign_is_found(tmp_path: Path) -> None:
