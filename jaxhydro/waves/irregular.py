@@ -14,6 +14,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, components
+from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.second_order import KINDS, Kind, elevation_spectrum
 
@@ -149,10 +150,10 @@ def separated_record(
 ) -> Separation:
     """Long-crested first-order waves of an elevation (m) recorded at even `times` (s) by a gauge at `position` (m, earth axes).
 
-    Fourier components over the record's own length, n steps, less its mean, from `low` to `cutoff` (Hz); phases are those at
-    the origin, on the clock of `times`. No taper: at the gauge the components are the band-passed record at every sample, where
-    a taper would lower the waves near the ends. A step from the record's end to its start then rings, within about 1 / `low`
-    of the ends, and adds some (step / pi)^2 / (2 `low` length) of variance.
+    Fourier components of the record, less its mean, from `low` to `cutoff` (Hz); phases are those at the origin, on the clock
+    of `times`. No taper: at the gauge the components are the band-passed record at every sample, where a taper would lower the
+    waves near the ends. The period is the record's own length, n steps, where its end meets its start; else it is some twenty
+    of the shortest waves longer, and the record `continued` until there, as it would ring near its ends.
 
     order 1: the record is taken for linear. order 2: eta1 = eta - eta2(eta1) within the band, iterated, by half steps where it
     does not come nearer; the best found is returned, with its mismatch. The bound low-frequency set-down and the sums above
@@ -169,13 +170,14 @@ def separated_record(
         raise ValueError(f"order is 1 or 2, found {order}")
     if cutoff > 0.5 / step:
         raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
-    count = len(times)
+    level = continued(elevation - elevation.mean(), step, low, cutoff)
+    count = len(level)
     period = count * step
     first, last = harmonics(low, cutoff, period)
     last = min(last, (count - 1) // 2)  # at half the sampling rate a phase is not seen
     band = slice(first, last + 1)
     omega = 2 * math.pi / period * np.arange(first, last + 1)
-    measured = 2 / count * np.fft.rfft(elevation - elevation.mean())[band] * np.exp(-1j * omega * times[0])
+    measured = 2 / count * np.fft.rfft(level)[band] * np.exp(-1j * omega * times[0])
     if not measured.any():
         raise ValueError(f"the record has no waves from {low:g} to {cutoff:g} Hz")
     k = np.asarray(wavenumber(jnp.asarray(omega), jnp.asarray(environment.depth), jnp.asarray(environment.gravity)))
