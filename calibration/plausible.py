@@ -16,7 +16,7 @@ from jaxhydro.statics import equilibrium, natural_modes
 
 ODD, WRONG = 3.0, 20.0  # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
 HEAVE = (0.5, 3.0)  # motions that are odd or wrong: of the radius of gyration
-LEVEL = (3.0, 20.0)  # ... in surge and sway, where moorings may be slack
+LEVEL = (3.0, 6.0)  # ... in surge and sway, where moorings may be slack
 TURNED = (np.radians(60.0), np.radians(180.0))
 SMALL = 1e-3  # of the radius of gyration, or rad: what nobody would release a platform from
 OFF = 0.02  # of the radius of gyration, or rad: where a platform is at rest

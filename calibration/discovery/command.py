@@ -18,14 +18,15 @@ from jaxhydro.console import complain, progress, say, table
 
 
 def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
-    """Diagnose a campaign, write and print the result; of a search that the user stops, what was reached. One that was killed
-    goes on from the last effect that it had let in.
+    """Diagnose a campaign, write and print the result; of a search that the user stops, what was reached. One that was stopped
+    or killed goes on from the last effect that it had let in.
 
     False where a fit did not converge: the result is marked so, or there is none. Raises InputError, and KeyboardInterrupt
     where nothing was reached.
     """
     from calibration.discovery.diagnose import diagnose
 
+    stopped = False
     campaign = load(path, out, lambda c: calibrations.counted(c, ("decay", *IN_WAVES)))
     try:
         with progress() as show:
@@ -33,8 +34,8 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     except Diverged as error:
         complain(f"{error}; nothing was written")
         return False
-    except KeyboardInterrupt as stopped:
-        partial = getattr(stopped, "partial", None)
+    except KeyboardInterrupt as stop:
+        partial, stopped = getattr(stop, "partial", None), True
         if not isinstance(partial, Diagnosis):
             if (out / FILE).exists():
                 raise KeyboardInterrupt(f"stopped; the same command goes on from what was reached, which is in {out}") from None
@@ -45,20 +46,22 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     except NotFinite as error:
         complain(f"not converged: {error}; nothing was written")
         return False
-    (out / FILE).unlink(missing_ok=True)
+    if not stopped:
+        (out / FILE).unlink(missing_ok=True)
     saved = read_diagnosis(out / DIAGNOSIS)
     warned = {str(finding) for finding in campaign.findings}
     show_diagnosis(saved, [note for note in saved.notes if note not in warned])
     say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
-    if not saved.converged:
+    if stopped:
+        complain("stopped before it was done: the results are marked so, and the same command goes on from what was reached")
+    elif not saved.converged:
         complain("not converged: the results are marked so")
     return saved.converged
 
 
 def unfinished(partial: Diagnosis) -> Diagnosis:
     """What was reached when the user stopped the search, marked as not converged."""
-    stopped = "stopped by the user before it was done: what follows is what was found until then"
-    return replace(partial, augmented=replace(partial.augmented, converged=False), notes=(stopped, *partial.notes))
+    return replace(partial, augmented=replace(partial.augmented, converged=False), notes=(words.STOPPED, *partial.notes))
 
 
 def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:

@@ -72,7 +72,8 @@ def diagnose(
     def concluded() -> Diagnosis:
         lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
         unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
-        every, seconds = (*notes, *search.notes, *lost, *unknown), clock.monotonic() - begun
+        warnings = [str(finding) for finding in campaign.findings]
+        every, seconds = (*notes, *search.notes, *lost, *unknown, *warnings), clock.monotonic() - begun
         return conclude(campaign, search, states[0], states[-1], every, seconds, tuple(wrong.values()))
 
     try:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calibration.discovery.candidates import Candidate
-from calibration.discovery.result import Finding
+from calibration.discovery.result import SECOND_ORDER, Finding
 from calibration.discovery.words import called, several
 from calibration.formatting import number, percent
 from calibration.result import Calibration
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
 MEMORY = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
+DRIFTS = ("wave_drift", "wave_drift_damping")  # of waves' squares, as what they bind is
 FAR_OFF = 3.0  # times what is declared, or a third of it
 
 
@@ -45,14 +46,18 @@ def outdone(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[st
 
 
 def in_doubt(search: Search, state: State) -> dict[str, str]:
-    """`outdone` of a search that has come to its end."""
+    """`outdone` of a search that has come to its end; and drift, where the waves' own second order was left out since motions
+    follow worse with it: what acts in its place goes with the waves' square as well."""
     last = max((one.round for one in search.scores), default=0)
     candidates = {(one.effect, one.dof): one.name for one in search.posed.candidates}
     tried = {candidates[one.effect, one.degree_of_freedom]: one.verdict for one in search.scores
              if one.round == last and one.verdict is not None}  # fmt: skip
     tried |= {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
     verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
-    return outdone({name: one.bic + one.net for name, one in verdicts.items()}, tried)
+    found = outdone({name: one.bic + one.net for name, one in verdicts.items()}, tried)
+    if search.declared_in_second_order is not None:
+        found |= {one.name: SECOND_ORDER for one in state.chosen if one.effect in DRIFTS}
+    return found
 
 
 def like(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:

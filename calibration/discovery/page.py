@@ -34,7 +34,9 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
         """The figures whose names begin so, each shown once."""
         return figures([drawn.pop(name) for name in list(drawn) if name.startswith(starts)])
 
-    if not saved.converged:
+    if words.STOPPED in saved.notes:
+        yield f'<p class="warning">{escape(words.capital(words.STOPPED))}.</p>'
+    elif not saved.converged:
         yield UNCONVERGED.format("a diagnosis")
     yield f'<p class="verdict">{escape(words.verdict(saved))}</p>'
     yield "<h2>What was measured</h2>"

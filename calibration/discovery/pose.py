@@ -81,6 +81,13 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     for own in extra:
         if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
             raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
+        if own.dof is not None and own.dof not in DOFS:
+            raise ValueError(f"{own.name}: a motion is one of {', '.join(DOFS)}, or None")
+        if unknown := set(own.sizes) - set(own.load.values):
+            raise ValueError(
+                f"{own.name}: amplitudes are labels of its load's values, {', '.join(own.load.values)}; found "
+                f"{', '.join(sorted(unknown))}"
+            )
         for label, size in own.sizes.items():
             null = float(own.load.values[label])
             scaled[label], units[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)

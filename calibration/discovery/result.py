@@ -7,6 +7,8 @@ import numpy as np
 from calibration.discovery.judgement import Verdict
 from calibration.result import Calibration, Estimate
 
+SECOND_ORDER = "second_order"  # what an effect is in doubt for where the waves' own second order was left out
+
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
@@ -25,7 +27,8 @@ class Evidence:
 class Effect:
     """An effect that was found: its name as in the contract, motion, parameters, evidence, the share of what was unexplained in
     the fitted tests that it explains, the effects that the records cannot tell from it, and the test that would; `in_doubt` is
-    an effect that explains more beside it and is refused, so that this one may stand for what neither has."""
+    an effect that explains more beside it and is refused, so that this one may stand for what neither has; or
+    `SECOND_ORDER`."""
 
     effect: str
     degree_of_freedom: str | None

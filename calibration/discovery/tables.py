@@ -9,6 +9,7 @@ from calibration.tables import USE, Rows
 
 KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
 ORDER = list(USE)
+STILL = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
 VARIED = (
     f"Let vary, as it is only nearly known (one standard deviation: mass {percent(MASS)}, inertia {percent(INERTIA)}, centre "
@@ -115,7 +116,7 @@ def anatomy(saved: SavedDiagnosis) -> Rows:
         now = after.get((one.test, one.channel))
         rows.append((
             one.test, USE.get(one.use, one.use), one.channel, one.words,
-            f"{number(one.rms, 2)} {one.unit}", percent(one.relative),
+            f"{number(one.rms, 2)} {one.unit}", percent(one.relative if (one.relative or 0.0) < STILL else None),
             number(one.over_noise, 2), number(now.over_noise if now else None, 2),
         ))  # fmt: skip
     return ("Test", "Use", "Motion", "What is left", "Residual", "Of motion", "Over noise", "After"), rows

@@ -3,6 +3,7 @@
 import math
 import re
 
+from calibration.discovery.result import SECOND_ORDER
 from calibration.discovery.saved import Found, Grounds, SavedDiagnosis
 from calibration.formatting import number, percent, with_deviation
 from calibration.saved import Parameter
@@ -24,6 +25,7 @@ NAMES = {
     "wave_excitation": "another wave excitation",
     "potential_flow": "what the platform's tables of potential flow have",
 }
+STOPPED = "stopped by the user before it was done: what follows is what was found until then"
 WHERE = "In the motion and at the frequencies where the error falls most"
 CLEAR = 2.0  # standard deviations from none: below, one of several parameters says nothing alone
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
@@ -97,7 +99,7 @@ def verdict(saved: SavedDiagnosis) -> str:
     named = [(called(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
     names, doubted = (several([name for name, sure in named if sure is kind]) for kind in (True, False))
     if missing.verdict == "found":
-        more = f" {capital(doubted)} may stand for something that no effect tried explains." if doubted else ""
+        more = f" {capital(doubted)} may stand for something else (see below)." if doubted else ""
         return f"The declared model lacks {names}: {fall(saved)}.{more}"
     if not saved.converged and not named:
         return "The search did not come to its end: until then nothing was found that the declared model lacks."
@@ -155,7 +157,8 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
         said.append(f"The squared error of tests that were not fitted grows by {percent(-gain)}.")
     share = one.share_of_residual_explained
     whole = share is not None and 0.99 < share < 1
-    said.append(f"It explains {'more than 99 %' if whole else percent(share)} of what the fitted tests left unexplained.")
+    part = "more than 99 %" if whole else percent(share)
+    said.append(f"Of the squared error of all fitted tests, over the noise, it explains {part}.")
     if evidence.clear is not None:
         said.append(f"Its size is {number(evidence.clear, 2)} standard deviations away from none.")
     if evidence.score is not None:
@@ -168,7 +171,12 @@ def alternatives(one: Found) -> str:
     """What else it could be, and the test that would tell."""
     names = several([called(other) for other in one.indistinguishable_from])
     said = f"These records cannot tell it from {names}." if names else ""
-    if one.in_doubt is not None:
+    if one.in_doubt == SECOND_ORDER:
+        said += (
+            " The second order of the waves, which the motions follow worse with, was left out (see the notes), and goes with "
+            "their square as well: this may stand for what acts in its place."
+        )
+    elif one.in_doubt is not None:
         said += (
             f" {capital(called(one.in_doubt))} explains more of the fitted tests beside it than it does, and is refused (see "
             "what was rejected): it may stand for something that neither is."
@@ -183,6 +191,6 @@ def alternatives(one: Found) -> str:
 def left_over(saved: SavedDiagnosis) -> str:
     """What nothing explains."""
     left = saved.missing.unexplained
-    share = f"{percent(left.share)} of the error's energy is left unexplained"
+    share = f"{percent(left.share)} of the squared error of all tests, over the motions, is left unexplained"
     said = share if saved.missing.effects else "What is left"
     return f"{said}: {left.signature.rstrip('.')}." if left.signature else f"{said}."

@@ -2,8 +2,6 @@
 
 import numpy as np
 from jaxtyping import Float
-from scipy.fft import next_fast_len
-from scipy.linalg import solve_toeplitz
 
 PERIODS = 20.0  # of the shortest waves: how long the least continuation is
 RIDGE = 1e-4  # share of the continuation's energy that counts beside what is outside the band
@@ -19,6 +17,9 @@ def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: 
     (1 - B)_pp p + RIDGE p = B_px x. Without a ridge it is the limit of Papoulis 1975 (IEEE Transactions on Circuits and Systems
     22, 735-742): band-limited extrapolation, of a record whose noise and bound waves outside the band are left as they are.
     """
+    from scipy.fft import next_fast_len
+    from scipy.linalg import solve_toeplitz
+
     count = len(record)
     length = next_fast_len(count + int(np.ceil(PERIODS / (cutoff * step))), real=True)
     if length > 1.5 * count:
