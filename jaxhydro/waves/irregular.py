@@ -20,6 +20,7 @@ from jaxhydro.waves.second_order import KINDS, Kind, elevation_spectrum
 
 JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
 TOLERANCE = 1e-4  # of the record in the band, by root mean square, that first and second order together may miss
+BEYOND, LONGEST = 20.0, 1.5  # of the shortest waves: how far records are continued at least; times a record, at most
 ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
 
 _second_order = eqx.filter_jit(elevation_spectrum)  # once per band and record length, not once per round
@@ -170,7 +171,9 @@ def separated_record(
         raise ValueError(f"order is 1 or 2, found {order}")
     if cutoff > 0.5 / step:
         raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
-    level = continued(elevation - elevation.mean(), step, low, cutoff)
+    level = elevation - elevation.mean()
+    if cutoff > 0 and (length := fourier_length(len(times) + BEYOND / (cutoff * step))) <= LONGEST * len(times):
+        level = continued(level, step, low, cutoff, length)
     count = len(level)
     period = count * step
     first, last = harmonics(low, cutoff, period)
