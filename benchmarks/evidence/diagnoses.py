@@ -116,6 +116,7 @@ def of_case(name: str) -> dict[str, Any]:
         "alike": [[text.split(" ")[0] for text in one.indistinguishable] for one in result.effects],
         "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (one.evidence for one in result.effects)],
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
+        "in_doubt": [one.in_doubt for one in result.effects],
         "refused": {listed(one.effect, one.degree_of_freedom): one.reason for one in result.rejected},
         "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
         "tried": {f"{one.round} {listed(one.effect, one.degree_of_freedom)}": one.verdict._asdict()
@@ -150,11 +151,13 @@ def found(result: dict[str, Any]) -> list[str]:
 
 
 def doubts(result: dict[str, Any]) -> list[str | None]:
-    """What explains more than each effect found and is refused, None where nothing does: worked out from what was tried, so
-    that it is known of results, too, from before diagnoses told."""
+    """What explains more than each effect found and is refused, None where nothing does: worked out from what was tried where
+    a result is from before diagnoses told."""
     from calibration.discovery.doubts import outdone
     from calibration.discovery.judgement import Verdict
 
+    if "in_doubt" in result:
+        return list(result["in_doubt"])
     tried: dict[int, dict[str, Verdict]] = {}
     for words, one in result["tried"].items():
         number, name = words.split(" ", 1)
