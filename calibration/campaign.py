@@ -14,6 +14,7 @@ from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.statics import EquilibriumError
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +78,10 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
                      for f in findings)
     records = tuple(record for record in records_of(manifest, series) if record.id not in faulty)
     campaign = Campaign(manifest, folder, platform, records, findings)
-    doubtful = check_plausible(records, campaign.model, manifest.zero is not None)
+    try:
+        doubtful = check_plausible(records, campaign.model, manifest.zero is not None)
+    except EquilibriumError as error:
+        raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, grave)
     return replace(campaign, findings=(*findings, *doubtful))

@@ -113,8 +113,8 @@ class _Check:
         elif count < LEAST_SAMPLES:
             yield self.found("error", "", None, f"{count} samples", f"{LEAST_SAMPLES} samples or more in the window")
         elif self.test.transient > 0 and after < LEAST_SAMPLES:
-            yield self.found("error", "", None, f"{self.at(self.test.transient)}, which leaves {after}",
-                             f"a transient that leaves {LEAST_SAMPLES} samples or more")
+            left = f"{self.at(self.test.transient)} of a record of {self.at(end - start)}, which leaves {after}"
+            yield self.found("error", "", None, left, f"a transient that leaves {LEAST_SAMPLES} samples or more")
 
     def zero(self) -> Iterator[Finding]:
         """Is there still water to take off?"""

@@ -462,7 +462,7 @@ WORDS = {
     "unit": "channels.surge.unit: expected a unit of length: m, cm, mm, ft, found 'inch'",
     "kind": "tests[0].kind: expected one of decay, regular, irregular, static, forced, found 'decai'",
     "window": "expected a window in the file's range, 0 s to 39.9 s, found a window from 0 s to 100 s",
-    "left": "expected a transient that leaves 20 samples or more, found 39 s, which leaves 10",
+    "left": "expected a transient that leaves 20 samples or more, found 39 s of a record of 39.9 s, which leaves 10",
     "repeat": "tests[1].repeat_of: expected the id of another test: d-2",
 }
 D2 = {"id": "d-2", "kind": "decay", "degree_of_freedom": "pitch", "file": "d.csv"}

@@ -30,14 +30,32 @@ def stated(folder: Path, **channels: dict) -> Path:
     return folder
 
 
-def with_heave(folder: Path, change: Callable[[np.ndarray], np.ndarray]) -> Path:
-    """The demo campaign, its heave recorded otherwise."""
+def with_motion(folder: Path, column: int, change: Callable[[np.ndarray], np.ndarray]) -> Path:
+    """The demo campaign, a column of its files (1: surge, 2: heave) recorded otherwise."""
     stated(folder)
     for path in folder.glob("*.csv"):
         header, rows = path.read_text().splitlines()[0], np.loadtxt(path, delimiter=",", skiprows=1)
-        rows[:, 2] = change(rows[:, 2])
+        rows[:, column] = change(rows[:, column])
         np.savetxt(path, rows, "%.5f", ",", header=header, comments="")
     return folder
+
+
+def test_a_platform_that_does_not_float_is_told_with_its_file(tmp_path):
+    """A mass in tonnes: where it says so, before anything is simulated."""
+    folder = stated(tmp_path / "campaign")
+    text = (folder / "platform.yaml").read_text()
+    mass = re.search(r"mass: (\S+?)[,\s}]", text)
+    assert mass is not None
+    (folder / "platform.yaml").write_text(text.replace(f"mass: {mass[1]}", f"mass: {float(mass[1]) / 1e3}", 1))
+    with pytest.raises(InputError, match=r"platform\.yaml: expected a platform that floats at rest, found no static"):
+        load_campaign(folder)
+
+
+def test_a_surge_that_no_mooring_allows_is_an_error(tmp_path):
+    """Centimetres read as metres: more than six times the platform's radius of gyration."""
+    folder = with_motion(tmp_path / "campaign", 1, lambda surge: 100 * surge)
+    with pytest.raises(InputError, match=r"surge-3, channel surge: expected a motion .* radius of gyration"):
+        load_campaign(folder)
 
 
 def test_a_sound_campaign_has_nothing_odd():
@@ -61,7 +79,7 @@ def test_a_wrong_unit_is_an_error(tmp_path, channels, where, told):
 
 
 def test_a_motion_in_millimetres_is_an_error(tmp_path):
-    folder = with_heave(tmp_path / "campaign", lambda heave: 1000 * heave)
+    folder = with_motion(tmp_path / "campaign", 2, lambda heave: 1000 * heave)
     with pytest.raises(InputError, match=r"heave-1, channel heave: expected a motion .*, found a motion of"):
         load_campaign(folder)
 
@@ -75,7 +93,7 @@ def test_what_is_odd_is_a_warning(tmp_path):
 
 
 def test_a_sensor_with_a_zero_of_its_own_is_a_warning(tmp_path):
-    folder = with_heave(tmp_path / "campaign", lambda heave: heave + 2.5)
+    folder = with_motion(tmp_path / "campaign", 2, lambda heave: heave + 2.5)
     (found,) = load_campaign(folder).findings
     assert found.channel == "heave" and found.message.startswith("decays end 2.5 m from where the declared platform floats")
 
