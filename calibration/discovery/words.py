@@ -191,6 +191,6 @@ def alternatives(one: Found) -> str:
 def left_over(saved: SavedDiagnosis) -> str:
     """What nothing explains."""
     left = saved.missing.unexplained
-    share = f"{percent(left.share)} of the squared error of all tests, over the motions, is left unexplained"
+    share = f"{percent(left.share)} of the squared error above the noise, motion by motion, is left unexplained"
     said = share if saved.missing.effects else "What is left"
     return f"{said}: {left.signature.rstrip('.')}." if left.signature else f"{said}."
