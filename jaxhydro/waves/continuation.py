@@ -15,7 +15,8 @@ def continued(
     record: Float[np.ndarray, " t"], step: float, low: float, cutoff: float, length: int
 ) -> Float[np.ndarray, " n"]:
     """A record (m) at even steps (s), of mean 0, and what most likely follows until it begins anew after `length` steps; the
-    record alone where that gains nothing.
+    record alone where its end meets its start: where what it has above the band is no larger there than in between, or its
+    components follow its ends no better for it.
 
     Of all continuations p it is the one with the least energy outside the band from `low` to `cutoff` (Hz), and little of its
     own, |(1 - B)(x, p)|^2 + `RIDGE` |p|^2 with B the band-pass over record and continuation: (1 - B)_pp p + RIDGE p = B_px x.
@@ -23,6 +24,10 @@ def continued(
     extrapolation, of a record whose noise and bound waves outside the band are left as they are.
     """
     count = len(record)
+    edge = int(np.ceil(1 / (cutoff * step)))
+    above = np.abs(record - _passed(record, step, 0.0, cutoff))
+    if count <= 4 * edge or max(above[:edge].max(), above[-edge:].max()) <= above[edge:-edge].max():
+        return record
     inside = jnp.asarray(_inside(length, step, low, cutoff))
 
     def passed(continuation: Float[Array, " p"], beside: Float[Array, " t"]) -> Float[Array, " p"]:
