@@ -236,7 +236,8 @@ class Tally(NamedTuple):
     """What was said, counted. At the middle strength: the right effect first, or in the set; held-out error `near` the one with
     nothing missing; near it, or just what is in the tank found (`told`: a model that was told of it is the same one). Of
     campaigns with nothing missing: false alarms, an effect or something unexplained. Of pairs: both found, or in the sets. Of
-    laws outside the catalogue: said to be unexplained, or answered with a law that makes the held-out error lower."""
+    laws outside the catalogue, at the middle strength: said to be unexplained, or answered with a law that makes the held-out
+    error lower."""
 
     named: Share
     listed: Share
@@ -253,7 +254,7 @@ class Tally(NamedTuple):
         known = [case for case in said if case.effect in EFFECTS and case.strength == 2]
         nulls = [case for case in said if not case.effect]
         pairs = [case for case in said if case.effect in PAIRS]
-        outside = [case for case in said if case.effect in OUTSIDE]
+        outside = [case for case in said if case.effect in OUTSIDE and case.strength == 2]
 
         def saying(some: Sequence[Case], *outcomes: str) -> Share:
             return Share(sum(said[case] in outcomes for case in some), len(some))
@@ -276,8 +277,8 @@ class Tally(NamedTuple):
             f"{self.in_sets}"
         ) if self.both.of else ""  # fmt: skip
         others = (
-            f" Of effects that no candidate has the law of, {self.unexplained} are said to be unexplained, and {self.lower} "
-            f"are answered with a law that lowers the error of the tests that were not fitted."
+            f" Of effects of this strength that no candidate has the law of, {self.unexplained} are said to be unexplained, "
+            f"and {self.lower} are answered with a law that lowers the error of the tests that were not fitted."
         ) if self.lower.of else ""  # fmt: skip
         return (
             f"At the middle strength the right effect is named first in {self.named}, and among those told apart by nothing, "
@@ -305,8 +306,8 @@ class Tally(NamedTuple):
             yield f"diagnosis: false alarms in {self.alarms}, goal 1 of 20"
 
 
-def other_strengths(said: dict[Case, str]) -> str:
-    """What is said of strong and of weak effects, in sentences."""
+def other_strengths(said: dict[Case, str], results: dict[Case, dict[str, Any]]) -> str:
+    """What is said of strong and of weak effects, and of laws from outside, in sentences."""
     words = {
         "named": "{} named first", "in the set": "{} among others alike", "nothing": "{} not seen", "unexplained":
         "{} unexplained", "another": "{} called by another name",
@@ -316,6 +317,16 @@ def other_strengths(said: dict[Case, str]) -> str:
         found = [one for case, one in said.items() if case.effect in EFFECTS and case.strength == strength]
         counted = ", ".join(text.format(found.count(one)) for one, text in words.items() if one in found)
         sentences += [f"Of {len(found)} {STRENGTHS[strength]} effects: {counted}."] if found else []
+        outside = [case for case in said if case.effect in OUTSIDE and case.strength == strength]
+        named = [results[case]["error"] for case in outside if said[case] == "another"]
+        counts = {
+            "not seen": sum(said[case] == "nothing" for case in outside),
+            "unexplained": sum(said[case] == "unexplained" for case in outside),
+            "answered with a law that lowers the held-out error": sum(after < before for before, after in named),
+            "with one that does not": sum(after >= before for before, after in named),
+        }
+        counted = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
+        sentences += [f"Of {len(outside)} {STRENGTHS[strength]} laws from outside: {counted}."] if outside else []
     return " ".join(sentences)
 
 
@@ -335,7 +346,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     text = (
         f"Nine decays and two seas of 1600 s each, from `benchmarks/tank.py`, a plain NumPy tank that shares no code with the "
         f"package: noise, imperfect releases, mass and mooring not quite as declared. {len(results)} of {total} campaigns were "
-        f"run{by}. {tally.text()} {other_strengths(said)}\n\n{LAWS}\n\n"
+        f"run{by}. {tally.text()} {other_strengths(said, results)}\n\n{LAWS}\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
         f"nothing missing; a force: the law proposed for what is unexplained, and the share that it gives in what was not "
