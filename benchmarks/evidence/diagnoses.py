@@ -40,6 +40,7 @@ LAWS = (
     "strip's own speed; where it is apart for slow motion, the tank filters the flow relative to the strips, as HydroDyn does, "
     "the package the platform's motion."
 )
+UNEXPLAINED, LOWER = "unexplained", "answered with a law that lowers the held-out error"
 UNKEPT = ("refused", "left")  # long, and not on the page
 
 
@@ -232,6 +233,18 @@ class Share(NamedTuple):
         return f"{self.count} of {self.of}"
 
 
+def answers(said: dict[Case, str], results: dict[Case, dict[str, Any]], strength: int) -> dict[str, int]:
+    """How many laws from outside, of a strength, are answered how."""
+    outside = [case for case in said if case.effect in OUTSIDE and case.strength == strength]
+    named = [results[case]["error"] for case in outside if said[case] not in ("nothing", "unexplained")]
+    return {
+        "not seen": sum(said[case] == "nothing" for case in outside),
+        UNEXPLAINED: sum(said[case] == "unexplained" for case in outside),
+        LOWER: sum(after < before for before, after in named),
+        "with one that does not": sum(after >= before for before, after in named),
+    }
+
+
 class Tally(NamedTuple):
     """What was said, counted. At the middle strength: the right effect first, or in the set; held-out error `near` the one with
     nothing missing; near it, or just what is in the tank found (`told`: a model that was told of it is the same one). Of
@@ -254,7 +267,7 @@ class Tally(NamedTuple):
         known = [case for case in said if case.effect in EFFECTS and case.strength == 2]
         nulls = [case for case in said if not case.effect]
         pairs = [case for case in said if case.effect in PAIRS]
-        outside = [case for case in said if case.effect in OUTSIDE and case.strength == 2]
+        outside = answers(said, results, 2)
 
         def saying(some: Sequence[Case], *outcomes: str) -> Share:
             return Share(sum(said[case] in outcomes for case in some), len(some))
@@ -262,12 +275,11 @@ class Tally(NamedTuple):
         held = [case for case in known if case in ratio]
         near = {case for case in held if ratio[case] <= FACTOR}
         just = {case for case in held if set(found(results[case])) == set(case.effects)}
-        named = [case for case in outside if said[case] != "unexplained"]
-        fallen = [after < before for before, after in (results[case]["error"] for case in named)]
         return cls(
             saying(known, "named"), saying(known, "named", "in the set"), Share(len(near), len(held)),
             Share(len(near | just), len(held)), saying(nulls, "false alarm", "unexplained"), saying(pairs, "named"),
-            saying(pairs, "named", "in the set"), saying(outside, "unexplained"), Share(sum(fallen), len(outside)),
+            saying(pairs, "named", "in the set"), Share(outside[UNEXPLAINED], sum(outside.values())),
+            Share(outside[LOWER], sum(outside.values())),
         )  # fmt: skip
 
     def text(self) -> str:
@@ -317,16 +329,9 @@ def other_strengths(said: dict[Case, str], results: dict[Case, dict[str, Any]]) 
         found = [one for case, one in said.items() if case.effect in EFFECTS and case.strength == strength]
         counted = ", ".join(text.format(found.count(one)) for one, text in words.items() if one in found)
         sentences += [f"Of {len(found)} {STRENGTHS[strength]} effects: {counted}."] if found else []
-        outside = [case for case in said if case.effect in OUTSIDE and case.strength == strength]
-        named = [results[case]["error"] for case in outside if said[case] == "another"]
-        counts = {
-            "not seen": sum(said[case] == "nothing" for case in outside),
-            "unexplained": sum(said[case] == "unexplained" for case in outside),
-            "answered with a law that lowers the held-out error": sum(after < before for before, after in named),
-            "with one that does not": sum(after >= before for before, after in named),
-        }
-        counted = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
-        sentences += [f"Of {len(outside)} {STRENGTHS[strength]} laws from outside: {counted}."] if outside else []
+        counts = answers(said, results, strength)
+        counted = ", ".join(f"{count} {text}" for text, count in counts.items() if count)
+        sentences += [f"Of {sum(counts.values())} {STRENGTHS[strength]} laws from outside: {counted}."] if counted else []
     return " ".join(sentences)
 
 
