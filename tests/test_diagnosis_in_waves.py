@@ -179,7 +179,10 @@ def test_second_order_is_taken_again(tmp_path: Path) -> None:
     search = Search(campaign, pose(campaign, options_for(campaign)[0]), lambda *_: None)
     declared = search.declared()
     assert search.declared_in_second_order is None and search.in_second_order(declared, 1) is None
-    search.take_seas(search.study.linear_seas)
+    of_second = search.blocks
+    search.take_seas("first")
+    assert of_second is not None and search.blocks is not None  # which are of the seas in hand
+    assert search.blocks.study.seas[0].sea is search.study.seas[0].sea is not of_second.study.seas[0].sea
     search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER} (by 30 in -2 ln L)", "another"]
     lost = dataclasses.replace(declared, likelihood=declared.likelihood - 1e3)  # waves of first order follow far better
     assert search.in_second_order(lost, 1) is None and search.study.seas is search.study.linear_seas

@@ -41,9 +41,7 @@ def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> Afar | 
     (i,) = study.index([label])
     about = study.model.about(label)
     unit = study.value(label, look.place.x + study.directions[i]) - study.value(label, look.place.x)
-    series = study.row_series[::2]
-    slow, seas = (np.array(each)[series] for each in zip(*((one.slow, one.kind != "decay") for one in study.series)))
-    waves = seas & (study.frequency > slow)
+    waves = study.first_order
     along = look.slopes[:, look.active.index(i)].reshape(-1, 2)[waves] @ [1, 1j] / unit
     phase = turns(2 * math.pi * study.frequency[waves], study.model.environment)
     weight = (study.share * study.used[study.row_series])[::2][waves]

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from calibration.campaign import Campaign
 from calibration.discovery.blocks import Blocks
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.descent import Reached, fit
-from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.expected import expected
 from calibration.discovery.judgement import Grounds, Left, State, Verdict, judge
 from calibration.discovery.linear import likelihoods
@@ -19,6 +19,8 @@ from calibration.discovery.looks import Look, Place, Prior
 from calibration.discovery.pose import WIDE, Posed
 from calibration.fit import prepare, run
 from calibration.residuals import first_guess
+
+Order = Literal["first", "second"]
 
 LAST = 50  # iterations of what is let in
 LOOKS = 8  # slopes taken anew in that
@@ -82,9 +84,10 @@ class Fits:
         """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
         self.study = replace(self.study, expected=expected(self.study, place))
 
-    def take_seas(self, seas: tuple[SeaRecord, ...]) -> None:
-        """These seas from now on: with the second order that their records have, or without."""
-        self.study = replace(self.study, seas=seas)
+    def take_seas(self, order: Order) -> None:
+        """From now on the seas of this order: with the second order that their records have, or without."""
+        self.study = replace(self.study, seas=self.study.linear_seas if order == "first" else self.posed.study.seas)
+        self.__dict__.pop("blocks", None)  # which were cut from others
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
         """All directions of a look, until nothing is gained."""

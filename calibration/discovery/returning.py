@@ -28,7 +28,7 @@ def delays(study: Study, look: Look, slopes: np.ndarray) -> tuple[Mapping[str, f
         left, there = (one[rows].reshape(-1, 2) @ [1, 1j] for one in (look.residual, slopes))
         duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
         line = cut.take % cut.lines
-        share = np.where(line / duration > record.slow, weight[rows][::2], 0.0)
+        share = weight[rows][::2] * study.first_order[rows.start // 2 : rows.stop // 2]
         both = np.zeros(cut.lines, complex)
         np.add.at(both, line, share * np.conj(there) * left)
         for i in np.flatnonzero(both):

@@ -7,6 +7,7 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.candidates import Candidate
+from calibration.discovery.fits import Order
 from calibration.discovery.judgement import LEAST_BIC, LEAST_CLEAR, LEAST_NET, LEAST_TOGETHER, Left, State
 from calibration.discovery.linear import away, likelihoods, predict
 from calibration.discovery.pose import Posed
@@ -19,7 +20,7 @@ FIRST_ORDER = (
     "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions are "
     "followed worse"
 )
-HOPELESS = 300.0  # of -2 ln L, by which waves of first order may be worse, not fitted, and yet be fitted
+HOPELESS = 300.0  # of -2 ln L, by which waves of another order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
 
@@ -47,15 +48,10 @@ class Search(Scoring):
         state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
         if not self.study.linear_seas:
             return state
-        study, name, better, first = self.study, "declared model in waves of first order", 0.0, state
-        self.take_seas(self.study.linear_seas)
-        there = likelihoods(self.study, self.study.residual(state.look.place))
-        if float((there - state.likelihood)[study.used].sum()) < HOPELESS:
-            look = self.study.look(state.look.place, self.base)
-            first = self.state((), self.fit(look, (), ITERATIONS, 0, name, 0.12))
-            better = float((state.likelihood - first.likelihood)[study.used].sum())
-        if better < LEAST_TOGETHER:
-            self.study = study
+        name = "declared model in waves of first order"
+        first = self.in_seas("first", state, name, 0.12)
+        if first is None or (better := self.gain(state, first)) < LEAST_TOGETHER:
+            self.take_seas("second")
             return state
         self.declared_in_second_order = state
         self.notes.append(f"{FIRST_ORDER} (by {better:.0f} in -2 ln L)")
@@ -66,18 +62,29 @@ class Search(Scoring):
         and follow the motions no better any more: what the model lacked then may have made the second order look wrong."""
         if (declared := self.declared_in_second_order) is None:
             return None
-        first, name, done = self.study, f"round {number}: waves of second order again", 0.15 + 0.8 * (number - 1) / ROUNDS
-        self.take_seas(self.posed.study.seas)
+        name, done = f"round {number}: waves of second order again", 0.15 + 0.8 * (number - 1) / ROUNDS
+        second = self.in_seas("second", state, name, done)
+        if second is None or self.gain(second, state) > LEAST_TOGETHER:
+            self.take_seas("first")
+            return None
+        self.notes = [note for note in self.notes if not note.startswith(FIRST_ORDER)]
+        self.declared_in_second_order = None
+        look = self.study.look(second.look.place, self.active(state.chosen))
+        return declared, self.refit(look, state.chosen, name, done)
+
+    def in_seas(self, order: Order, state: State, name: str, fraction: float) -> State | None:
+        """A state fitted a little in the seas of an order, which are the search's from then on; None where they make it so much
+        worse, not fitted, that it is left at that."""
+        self.take_seas(order)
         there = likelihoods(self.study, self.study.residual(state.look.place))
-        if float((there - state.likelihood)[first.used].sum()) < HOPELESS:
-            look = self.study.look(state.look.place, self.active(state.chosen))
-            second = self.state(state.chosen, self.fit(look, state.chosen, ITERATIONS, 0, name, done))
-            if float((second.likelihood - state.likelihood)[first.used].sum()) < LEAST_TOGETHER:
-                self.notes = [note for note in self.notes if not note.startswith(FIRST_ORDER)]
-                self.declared_in_second_order = None
-                return declared, self.refit(self.study.look(second.look.place, look.active), state.chosen, name, done)
-        self.study = first
-        return None
+        if float((there - state.likelihood)[self.study.used].sum()) > HOPELESS:
+            return None
+        look = self.study.look(state.look.place, self.active(state.chosen))
+        return self.state(state.chosen, self.fit(look, state.chosen, ITERATIONS, 0, name, fraction))
+
+    def gain(self, before: State, after: State) -> float:
+        """By how much the fitted tests are followed better by another state (-2 ln L)."""
+        return float((before.likelihood - after.likelihood)[self.study.used].sum())
 
     def grow(self, state: State, number: int) -> tuple[State, State | None]:
         """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
@@ -148,8 +155,7 @@ class Search(Scoring):
         over what held it up, and is not to be believed for that."""
         place, name = self.renewed(after.look.place, one.labels), f"without {one.name}"
         other = self.refit(self.study.look(place, without.look.active), without.chosen, name, fraction)
-        gain = float((without.likelihood - other.likelihood)[self.study.used].sum())
-        return other if gain > LEAST_TOGETHER else without
+        return other if self.gain(without, other) > LEAST_TOGETHER else without
 
     def pruned(self, state: State) -> State:
         """The model without what later effects have made needless: every effect but the last is tried to be taken out."""
@@ -181,7 +187,7 @@ class Search(Scoring):
         far = (np.abs(self.study.steps(after.look.place.x)[mine]) - BEYOND * width) / deviation
         squares = [float((away(self.study, at.look.place, by)[0][mine] ** 2).sum())
                    for at, by in ((state, self.prior(state.chosen)), (after, prior))]  # fmt: skip
-        gain = float((state.likelihood - after.likelihood)[self.study.used].sum()) + squares[0] - squares[1]
+        gain = self.gain(state, after) + squares[0] - squares[1]
         off = [label for label, beyond in zip(one.amplitudes, far) if beyond > LEAST_CLEAR]
         if not off or gain - len(off) * math.log(self.count) < LEAST_BIC:
             return state

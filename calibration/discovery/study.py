@@ -112,6 +112,13 @@ class Study:
         return np.concatenate([cut.take % cut.lines / length[cut.take // cut.lines] for cut, length in found])
 
     @cached_property
+    def first_order(self) -> np.ndarray:
+        """Which pairs of rows are of tests in waves, where there are waves of first order."""
+        slow, seas = (np.array(each) for each in zip(*((one.slow, one.kind != "decay") for one in self.series)))
+        mine = self.row_series[::2]
+        return seas[mine] & (self.frequency > slow[mine])
+
+    @cached_property
     def pooled(self) -> np.ndarray:
         """Degrees of freedom by pool (s, b), zeros where a band is no pool's first."""
         found = np.zeros_like(self.dof)
