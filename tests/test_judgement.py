@@ -18,7 +18,7 @@ from calibration.discovery.gathering import series_of_sea
 from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, Verdict, refusal
 from calibration.discovery.linear import likelihoods
 from calibration.discovery.looks import Look, Prior, Series
-from calibration.discovery.result import SECOND_ORDER, Finding, Rejected, Score
+from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
 from calibration.discovery.study import Study
 from calibration.discovery.trials import Tried, in_order
 from calibration.records import Record
@@ -127,14 +127,15 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
         posed=SimpleNamespace(candidates=[friction, drag, memory]), declared_in_second_order=None,
     )  # fmt: skip
     state: Any = SimpleNamespace(chosen=(friction,))
-    assert in_doubt(search, state) == {}  # type: ignore[arg-type]
+    assert in_doubt(search, state, None, None) == {}  # type: ignore[arg-type]
     taken_out = small._replace(bic=350.0, refused="all in all the held-out tests do not gain by it")
     rejected[drag.name] = Rejected(drag.effect, None, "", taken_out)
-    assert in_doubt(search, state) == {friction.name: drag.name}  # type: ignore[arg-type]
+    assert in_doubt(search, state, None, None) == {friction.name: drag.name}  # type: ignore[arg-type]
 
 
-def test_drift_is_in_doubt_where_the_waves_own_second_order_was_left_out():
-    """It goes with the square of the waves as well; other effects do not."""
+def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
+    """Everything where the held-out error is larger with it; drift where waves are of first order: it goes with the
+    square of the waves as well; other effects do not."""
     good = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, "")
     drift, friction = Candidate("wave_drift", "pitch", ()), Candidate("coulomb_friction", "surge", ())
     search = SimpleNamespace(
@@ -142,9 +143,10 @@ def test_drift_is_in_doubt_where_the_waves_own_second_order_was_left_out():
         posed=SimpleNamespace(candidates=[drift, friction]), declared_in_second_order=None,
     )  # fmt: skip
     state: Any = SimpleNamespace(chosen=(drift, friction))
-    assert in_doubt(search, state) == {}  # type: ignore[arg-type]
+    assert in_doubt(search, state, 0.40, 0.41) == {}  # type: ignore[arg-type]
+    assert in_doubt(search, state, 0.40, 0.48) == {drift.name: HELD_OUT_ERROR, friction.name: HELD_OUT_ERROR}  # type: ignore[arg-type]
     search.declared_in_second_order = "a state"
-    assert in_doubt(search, state) == {drift.name: SECOND_ORDER}  # type: ignore[arg-type]
+    assert in_doubt(search, state, 0.40, 0.41) == {drift.name: SECOND_ORDER}  # type: ignore[arg-type]
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():

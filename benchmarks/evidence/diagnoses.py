@@ -152,11 +152,14 @@ def found(result: dict[str, Any]) -> list[str]:
 
 
 def doubts(result: dict[str, Any]) -> list[str | None]:
-    """What explains more than each effect found and is refused, None where nothing does: worked out from what was tried where
-    a result is from before diagnoses told."""
-    from calibration.discovery.doubts import outdone
+    """What each effect found is in doubt for, None where it is for nothing: worked out from errors, and from what was tried
+    where a result is from before diagnoses told."""
+    from calibration.discovery.doubts import outdone, risen
     from calibration.discovery.judgement import Verdict
+    from calibration.discovery.result import HELD_OUT_ERROR
 
+    if risen(*result["error"]):
+        return [HELD_OUT_ERROR] * len(result["effects"])
     if "in_doubt" in result:
         return list(result["in_doubt"])
     tried: dict[int, dict[str, Verdict]] = {}

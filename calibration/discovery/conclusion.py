@@ -41,7 +41,7 @@ def conclude(
     """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
-    doubted = in_doubt(search, after)
+    doubted = in_doubt(search, after, baseline.objective("holdout"), augmented.objective("holdout"))
     effects = (*first, *(effect_of(search, one, after, doubted.get(one.name)) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
@@ -205,7 +205,7 @@ def _bands(series: Sequence[Series], step: float, record: Record, campaign: Camp
 
 
 def effect_of(search: Search, one: Candidate, after: State, doubt: str | None) -> Effect:
-    """An effect that is in the model at the end, with its evidence, and what explains more than it and is refused."""
+    """An effect that is in the model at the end, with its evidence, and what it is in doubt for."""
     found, used = search.found[one.name], search.study.used
     left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
     meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)

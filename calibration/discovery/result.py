@@ -7,7 +7,9 @@ import numpy as np
 from calibration.discovery.judgement import Verdict
 from calibration.result import Calibration, Estimate
 
-SECOND_ORDER = "second_order"  # what an effect is in doubt for where the waves' own second order was left out
+# what an effect is in doubt for beside others that explain more
+SECOND_ORDER = "second_order"  # where the waves' own second order was left out
+HELD_OUT_ERROR = "held_out_error"  # where all that was found makes the error of the tests that were not fitted larger
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +30,7 @@ class Effect:
     """An effect that was found: its name as in the contract, motion, parameters, evidence, the share of what was unexplained in
     the fitted tests that it explains, the effects that the records cannot tell from it, and the test that would; `in_doubt` is
     an effect that explains more beside it and is refused, so that this one may stand for what neither has; or
-    `SECOND_ORDER`."""
+    `SECOND_ORDER` or `HELD_OUT_ERROR`."""
 
     effect: str
     degree_of_freedom: str | None

@@ -3,7 +3,7 @@
 import math
 import re
 
-from calibration.discovery.result import SECOND_ORDER
+from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER
 from calibration.discovery.saved import Found, Grounds, SavedDiagnosis
 from calibration.formatting import number, percent, with_deviation
 from calibration.saved import Parameter
@@ -175,6 +175,11 @@ def alternatives(one: Found) -> str:
         said += (
             " The second order of the waves, which the motions follow worse with, was left out (see the notes), and goes with "
             "their square as well: this may stand for what acts in its place."
+        )
+    elif one.in_doubt == HELD_OUT_ERROR:
+        said += (
+            " With all that was found in the model the error of the tests that were not fitted is larger than without: it may "
+            "stand for something else."
         )
     elif one.in_doubt is not None:
         said += (
