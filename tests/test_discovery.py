@@ -296,7 +296,7 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         posed=SimpleNamespace(candidates=[one], prior=nearly), found={}, rejected={}, notes=[], count=500.0,
         study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], look=lambda *_: None, steps=lambda x: x),
         active=lambda chosen: [0, 1], refit=lambda *_: after, prior=lambda chosen: free if chosen else nearly,
-        judge=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
+        gain=lambda *_: 0.0, judge=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
     )  # fmt: skip
     found = Search.weighed(under_way, state([0.1, 0.9 * inertia]))
     assert (found is after) == told == ("mass_properties" in under_way.found)

@@ -112,7 +112,8 @@ def verdict(saved: SavedDiagnosis) -> str:
 def fall(saved: SavedDiagnosis) -> str:
     """How much smaller errors are, of the held-out tests where there are any."""
     before, after = saved.baseline.objective, saved.augmented.objective
-    added = f"with {'them' if len(saved.missing.effects) > 1 else 'it'} in the model, the error"
+    many, doubted = len(saved.missing.effects) > 1, any(one.in_doubt is not None for one in saved.missing.effects)
+    added = f"with {'all that was found' if many and doubted else 'them' if many else 'it'} in the model, the error"
     if before.holdout and after.holdout is not None:
         return f"{added} of tests that were not fitted {change(before.holdout, after.holdout)}"
     said = f"{added} of the fitted tests {change(before.fit, after.fit)}"
