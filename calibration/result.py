@@ -104,7 +104,8 @@ class Calibration:
     platform: str = ""
     identifiability: "Identifiability | None" = None
 
-    def objective(self, use: str) -> float | None:
-        """J over the tests of one use (fit, holdout)."""
-        parts = [s.relative for test in self.tests if test.use == use for s in test.series if s.scored]
+    def objective(self, use: str, channel: str | None = None) -> float | None:
+        """J over the tests of one use (fit, holdout): of all motions that are scored, or what one of them has in it."""
+        scored = [s for test in self.tests if test.use == use for s in test.series if s.scored]
+        parts = [s.relative for s in scored if channel in (None, s.channel)]
         return float(sum(parts)) if parts else None

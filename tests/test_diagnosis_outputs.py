@@ -118,7 +118,7 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
         assert said.startswith("Amplitude dependent drag explains more of the fitted tests beside it than it does, and is")
         assert said in Page(write_report(tmp_path / verdict).read_text()).text
         raising = saved.missing.effects[-1].model_copy(update={"in_doubt": "held_out_error"})
-        assert words.alternatives(raising).startswith("With all that was found in the model the error of the tests that")
+        assert words.alternatives(raising).startswith("With all that was found in the model the tests that were not")
         if other in effects:
             assert words.alternatives(saved.missing.effects[0]).startswith("No other effect that was tried does as well.")
 

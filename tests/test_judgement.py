@@ -100,6 +100,13 @@ def test_what_barely_moves_in_a_sea_weighs_nothing():
     assert list(study.main) == [True, False, True]
 
 
+def errors(**motions: float) -> Any:
+    """Of a model that leaves so much of motions in the held-out tests."""
+    return SimpleNamespace(
+        objective=lambda use, channel=None: sum(motions.values()) or None if channel is None else motions.get(channel)
+    )
+
+
 def test_what_something_refused_outdoes_is_in_doubt():
     """By the last round alone, and only where that let nothing in."""
     def verdict(bic: float, refused: str) -> Verdict:
@@ -127,10 +134,10 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
         posed=SimpleNamespace(candidates=[friction, drag, memory]), declared_in_second_order=None,
     )  # fmt: skip
     state: Any = SimpleNamespace(chosen=(friction,))
-    assert in_doubt(search, state, None, None) == {}  # type: ignore[arg-type]
+    assert in_doubt(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
     taken_out = small._replace(bic=350.0, refused="all in all the held-out tests do not gain by it")
     rejected[drag.name] = Rejected(drag.effect, None, "", taken_out)
-    assert in_doubt(search, state, None, None) == {friction.name: drag.name}  # type: ignore[arg-type]
+    assert in_doubt(search, state, errors(), errors()) == {friction.name: drag.name}  # type: ignore[arg-type]
 
 
 def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
@@ -143,10 +150,14 @@ def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
         posed=SimpleNamespace(candidates=[drift, friction]), declared_in_second_order=None,
     )  # fmt: skip
     state: Any = SimpleNamespace(chosen=(drift, friction))
-    assert in_doubt(search, state, 0.40, 0.41) == {}  # type: ignore[arg-type]
-    assert in_doubt(search, state, 0.40, 0.48) == {drift.name: HELD_OUT_ERROR, friction.name: HELD_OUT_ERROR}  # type: ignore[arg-type]
+    assert in_doubt(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
+    worse, better = errors(surge=0.38, pitch=0.1), errors(surge=0.1, pitch=0.13)
+    both = {drift.name: HELD_OUT_ERROR, friction.name: HELD_OUT_ERROR}
+    assert in_doubt(search, state, errors(surge=0.3, pitch=0.1), worse) == both  # type: ignore[arg-type]
+    of_motion = in_doubt(search, state, errors(surge=0.3, pitch=0.1), better)  # type: ignore[arg-type]
+    assert of_motion == {drift.name: HELD_OUT_ERROR}
     search.declared_in_second_order = "a state"
-    assert in_doubt(search, state, 0.40, 0.41) == {drift.name: SECOND_ORDER}  # type: ignore[arg-type]
+    assert in_doubt(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {drift.name: SECOND_ORDER}  # type: ignore[arg-type]
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():

@@ -41,7 +41,7 @@ def conclude(
     """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
-    doubted = in_doubt(search, after, baseline.objective("holdout"), augmented.objective("holdout"))
+    doubted = in_doubt(search, after, baseline, augmented)
     effects = (*first, *(effect_of(search, one, after, doubted.get(one.name)) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)

@@ -48,10 +48,10 @@ def outdone(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[st
     return {name: best for name, gain in worth.items() if refused[best] > gain}
 
 
-def in_doubt(search: Search, state: State, before: float | None, after: float | None) -> dict[str, str]:
-    """What is `outdone` in a search that has come to its end; everything where the held-out error (J `before`, `after`) has
-    `risen`; drift where the waves' own second order was left out as motions follow worse with it: what acts in its place goes
-    with the waves' square as well."""
+def in_doubt(search: Search, state: State, before: Calibration, after: Calibration) -> dict[str, str]:
+    """What is `outdone` in a search that has come to its end; everything where the held-out error has `risen` from the declared
+    model's (`before`), and what acts in a motion of which it has; drift where the waves' own second order was left out as
+    motions follow worse with it: what acts in its place goes with the waves' square as well."""
     last = max((one.round for one in search.scores), default=0)
     candidates = {(one.effect, one.dof): one.name for one in search.posed.candidates}
     tried = {candidates[one.effect, one.degree_of_freedom]: one.verdict for one in search.scores
@@ -59,8 +59,9 @@ def in_doubt(search: Search, state: State, before: float | None, after: float | 
     tried |= {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
     verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
     found = outdone({name: one.bic + one.net for name, one in verdicts.items()}, tried)
-    if risen(before, after):
-        found |= {one.name: HELD_OUT_ERROR for one in state.chosen}
+    every = risen(before.objective("holdout"), after.objective("holdout"))
+    worse = [dof for dof in DOFS if risen(before.objective("holdout", dof), after.objective("holdout", dof))]
+    found |= {one.name: HELD_OUT_ERROR for one in state.chosen if every or one.dof in worse}
     if search.declared_in_second_order is not None:
         found |= {one.name: SECOND_ORDER for one in state.chosen if one.effect in DRIFTS}
     return found

@@ -9,7 +9,7 @@ from calibration.result import Calibration, Estimate
 
 # what an effect is in doubt for beside others that explain more
 SECOND_ORDER = "second_order"  # where the waves' own second order was left out
-HELD_OUT_ERROR = "held_out_error"  # where all that was found makes the error of the tests that were not fitted larger
+HELD_OUT_ERROR = "held_out_error"  # where all that was found makes the held-out error larger, or its motion's part of it
 
 
 @dataclass(frozen=True, eq=False)

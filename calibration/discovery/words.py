@@ -179,8 +179,8 @@ def alternatives(one: Found) -> str:
         )
     elif one.in_doubt == HELD_OUT_ERROR:
         said += (
-            " With all that was found in the model the error of the tests that were not fitted is larger than without: it may "
-            "stand for something else."
+            " With all that was found in the model the tests that were not fitted are followed worse than without, altogether "
+            "or in this motion: it may stand for something else."
         )
     elif one.in_doubt is not None:
         said += (
