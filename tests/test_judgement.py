@@ -226,6 +226,22 @@ def test_gain_is_of_what_is_asked():
     assert Grounds(study, np.array([True, True]), nothing, nothing, False).gain() == (0.0, False)
 
 
+def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
+    """By what is left of it in held-out tests, as a share of the motion: beyond rounding, and by what matters."""
+    of_sea = replace(series("heave", 0.01), test="sea", kind="irregular")
+    study = study_of(series("surge", 0.01, spread=2.0), of_sea, series("surge", 0.01, use="fit"))
+    held_out = np.array([True, True, False])
+
+    def refused(dof: str, *after: float) -> str:
+        return Grounds(study, held_out, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after), True).worse(dof)
+
+    assert refused("surge", 0.5, 0.9, 0.9) == "" == refused("surge", 0.83, 0.1, 0.1) == refused("pitch", 0.5, 0.9, 0.9)
+    said = "surge in the held-out tests is followed worse with it (60 % is left, 40 % without it)"
+    assert refused("surge", 1.2, 0.05, 0.05) == said
+    assert refused("heave", 0.5, 0.11, 0.05) == ""  # a tenth of what is little
+    assert "heave in the held-out tests" in refused("heave", 0.5, 0.12, 0.05)
+
+
 def test_gain_in_waves_is_where_an_effect_acts():
     """Slow motion of one test halves, waves are as before: a gain of three quarters, of what is slow; none where another test
     becomes worse by as much."""

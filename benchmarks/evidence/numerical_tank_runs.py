@@ -194,7 +194,7 @@ def diagnosed(which: str) -> dict[str, Any]:
             {
                 "effect": one.effect, "motion": one.degree_of_freedom, "parameters": values_of(one.parameters),
                 "score": one.evidence.score, "bic": one.evidence.delta_bic, "held": one.evidence.holdout_gain,
-                "clear": one.evidence.clear, "share": one.share, "alike": list(one.indistinguishable),
+                "clear": one.evidence.clear, "share": one.share, "alike": list(one.indistinguishable), "in_doubt": one.in_doubt,
             }
             for one in result.effects
         ],

@@ -64,9 +64,14 @@ def effects_table(found: dict[str, Any]) -> str:
         for i, (label, (value, deviation, unit)) in enumerate(one["parameters"].items()):
             size = quantity(value, deviation, unit) if deviation is not None else f"({quantity(value, None, unit)})"
             name = plain(label.removeprefix(f"{head}.").removeprefix(f"{one['effect']}."))
-            about, rest = (called(one["effect"], one["motion"]), evidence) if i == 0 else ("", ("", "", ""))
+            about, rest = (named(one), evidence) if i == 0 else ("", ("", "", ""))
             rows.append((about, name, size, *rest))
     return table(("Effect", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "sd from none"), rows)
+
+
+def named(one: dict[str, Any]) -> str:
+    """An effect that was found, and whether it is in doubt."""
+    return called(one["effect"], one["motion"]) + ("" if one["in_doubt"] is None else " (in doubt)")
 
 
 def said_of(found: dict[str, Any], effect: str, motion: str | None) -> str:
@@ -221,7 +226,7 @@ its linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0]
 
 def verdict_of(found: dict[str, Any]) -> str:
     """The verdict in a sentence or two."""
-    names = several([called(one["effect"], one["motion"]) for one in found["effects"]])
+    names = several([named(one) for one in found["effects"]])
     share, signature = found["unexplained"]
     head = {"found": f"*found*, {names}", "nothing_missing": "*nothing missing*"}.get(found["verdict"], "*unexplained*")
     left = f"{head}. {percent(share)} of the error's energy is left: {signature.rstrip('.')}."
