@@ -18,9 +18,10 @@ from test_discovery import NOISE, PLATFORM
 
 from calibration.discovery.gathering import highest_of
 from calibration.discovery.latent import Force, Moved, forces_of, latent_forces, latent_of
-from calibration.discovery.latent_law import Part, best, law_of
-from calibration.discovery.latent_words import described
+from calibration.discovery.latent_law import IN_STILL_WATER, LAGGED, Part, best, law_of
+from calibration.discovery.latent_words import described, law_in_words
 from calibration.discovery.outputs import write_diagnosis
+from calibration.discovery.result import Law, LawTerm
 from calibration.discovery.saved import read_diagnosis
 from calibration.report import write_report
 from calibration.result import Series, TestFit
@@ -135,6 +136,16 @@ def test_the_law_is_named(model, torque, damping, expected, power):
     assert follows[along].correlation < (-0.8 if damping == 2.4 else -0.5)
     assert np.cos(follows[along].phase) < -0.95 and abs(follows[across].correlation) < 0.1
     assert_allclose(follows[across].phase, np.pi / 2 if torque is cubic else -np.pi / 2, atol=0.1)
+
+
+def test_a_law_is_said_in_seconds_and_units():
+    """Not in omegas: the time constant of a lag, the speed at which friction turns."""
+    lag, turns = LAGGED[1], [kind.name for kind in IN_STILL_WATER].index("tanh(v/v0)")
+    terms = tuple(LawTerm(IN_STILL_WATER[i].name, -2.0, "N m", i) for i in (lag, turns))
+    said = law_in_words(Law(terms, 0.8, 0.9, "held-out tests", v0=0.02, pace=0.5), "N m")
+    assert "v lagged by a time constant of 2.0 s" in said and said.endswith("v0 = 0.020 rad/s")
+    said = law_in_words(Law(terms[1:], 0.8, 0.9, "held-out tests", v0=0.02), "N")
+    assert "lagged" not in said and said.endswith("v0 = 0.020 m/s")
 
 
 def test_blocks_left_out_in_turn(model):

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import signal
 
-from calibration.discovery.latent_law import columns_of, squared_envelope
-from calibration.discovery.result import Followed, LatentForce, Law, Shown
+from calibration.discovery.latent_law import LAGGED, LAGS, columns_of, squared_envelope
+from calibration.discovery.result import Followed, LatentForce, Law, LawTerm, Shown
 from calibration.discovery.words import pretty, quantity, several
 from calibration.formatting import number, percent
 from calibration.seas_results import bands_of
@@ -195,7 +195,7 @@ def sentence(one: LatentForce) -> str:
     grows = [f"it grows as the power {number(p, 2)} of the {_size(name)}" for name, p in told.items()]
     parts = [f"{one.motion.capitalize()}: the model lacks a {'moment' if one.unit == 'N m' else 'force'} of {several(said)}"]
     parts += [", ".join(with_what)] if with_what else []
-    return "; ".join([*parts, *grows, law_in_words(one.law)]) + "."
+    return "; ".join([*parts, *grows, law_in_words(one.law, one.unit)]) + "."
 
 
 def _size(name: str) -> str:
@@ -203,11 +203,18 @@ def _size(name: str) -> str:
     return f"significant wave height {BANDS[band]}" if height == "significant_height" else "motion's amplitude"
 
 
-def law_in_words(law: Law) -> str:
-    """The law and what it explains, or that there is none."""
+def law_in_words(law: Law, unit: str) -> str:
+    """The law of a force of this unit and what it explains, or that there is none."""
     if not law.terms:
         return f"no law of up to three terms explains it (the best {percent(law.share)} of it in {law.checked or 'the tests'})"
-    parts = [f"({number(term.coefficient, 3)} {pretty(term.unit)}) {term.name}".removesuffix(" 1") for term in law.terms]
-    text = " + ".join(parts)
-    v0 = f", v0 = {number(law.v0, 2)} in SI" if any("v0" in term.name for term in law.terms) else ""
+    parts = [f"({number(one.coefficient, 3)} {pretty(one.unit)}) {_term(one, law)}".removesuffix(" 1") for one in law.terms]
+    text, speed = " + ".join(parts), "rad/s" if unit == "N m" else "m/s"
+    v0 = f", v0 = {number(law.v0, 2)} {speed}" if any("v0" in term.name for term in law.terms) else ""
     return f"{text} explains {percent(law.share)} of it in {law.checked}{v0}"
+
+
+def _term(one: LawTerm, law: Law) -> str:
+    """Its name; that of lagged velocity by the time constant."""
+    if one.kind not in LAGGED:
+        return one.name
+    return f"v lagged by a time constant of {number(LAGS[one.kind - LAGGED.start] / law.pace, 2)} s"
