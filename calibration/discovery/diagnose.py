@@ -46,10 +46,13 @@ def diagnose(
 
     states: list[State] = []
 
+    def spent() -> float:
+        return search.earlier + clock.monotonic() - begun
+
     def reach(state: State) -> None:
         states.append(state)
         if kept is not None:
-            keep(kept, search, states)
+            keep(kept, search, states, spent())
 
     say("reading the records", 0.0)
 
@@ -73,8 +76,8 @@ def diagnose(
         lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
         unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
         warnings = [str(finding) for finding in campaign.findings]
-        every, seconds = (*notes, *search.notes, *lost, *unknown, *warnings), clock.monotonic() - begun
-        return conclude(campaign, search, states[0], states[-1], every, seconds, tuple(wrong.values()))
+        every = (*notes, *search.notes, *lost, *unknown, *warnings)
+        return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 
     try:
         for again in range(2 * ROUNDS):

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 FILE = ".diagnosis-under-way"
 
 
-def keep(path: Path, search: "Search", states: list[State]) -> None:
-    """Write what was reached, whole or not at all. Raises InputError where it cannot be written."""
+def keep(path: Path, search: "Search", states: list[State], seconds: float) -> None:
+    """Write what was reached, and what it took (s), whole or not at all. Raises InputError where it cannot be written."""
     content = {
         "of": fingerprint(search),
         "declared_in_second_order": None if (second := search.declared_in_second_order) is None else named(second),
@@ -33,6 +33,7 @@ def keep(path: Path, search: "Search", states: list[State]) -> None:
         "notes": search.notes,
         "alone": search.alone,
         "begun": search.begun,
+        "seconds": seconds,
     }  # fmt: skip
     with staged(path.parent) as temporary:
         (temporary / path.name).write_bytes(pickle.dumps(content))
@@ -57,7 +58,7 @@ def resumed(path: Path, search: "Search") -> list[State]:
         search.declared_in_second_order = whole(second)
     found = {name: one._replace(before=whole(one.before), after=whole(one.after)) for name, one in content["found"].items()}
     search.found, search.scores, search.rejected = found, content["scores"], content["rejected"]
-    search.notes, search.alone = content["notes"], content["alone"]
+    search.notes, search.alone, search.earlier = content["notes"], content["alone"], content["seconds"]
     search.anchor(content["begun"])
     return [whole(state) for state in content["states"]]
 

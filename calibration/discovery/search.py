@@ -31,6 +31,7 @@ class Search(Scoring):
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         super().__init__(campaign, posed, say)
         self.notes: list[str] = []
+        self.earlier = 0.0  # s, that runs of it took which were stopped
         self.alone: Left | None = None  # of a calibration to the decays, where there are seas, too
         self.found: dict[str, Found] = {}
         self.declared_in_second_order: State | None = None  # where waves of first order were taken in place of theirs
