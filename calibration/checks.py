@@ -24,6 +24,7 @@ LEAST_SAMPLES = 20                # in a window
 GAP = 3.5                         # median steps
 COARSE, TOO_COARSE = 15, 8        # samples per cycle
 TOO_COARSE_WAVES = 4              # these only drive: what is slower is worth having still
+FEW_WAVES = 20                    # after the transient
 SHOWN = 5                         # of one kind in one channel
 
 Severity = Literal["warning", "error"]
@@ -188,7 +189,7 @@ class _Check:
             yield self.found("warning", self.driven, None, f"only {cycles:.1f} cycles of about {self.at(self.period)}")
 
     def sea(self) -> Iterator[Finding]:
-        """Is the sea what the manifest says, and known where it was measured?"""
+        """Is the sea what the manifest says, known where it was measured, and long enough?"""
         test, irregular = self.test, self.test.kind == "irregular"
         if self.driven != WAVE or WAVE not in self.values:
             return
@@ -200,6 +201,10 @@ class _Check:
         height = wave_height(self.values[WAVE][self.compared], irregular) * metres
         if stated is not None and not 0.7 < height / stated < 1.4:
             yield self.found("warning", WAVE, None, f"{name} is stated as {stated:g} m, and recorded as {height:.3g} m")
+        left = float(self.time[-1] - self.time[0]) - test.transient
+        if irregular and self.period is not None and left < FEW_WAVES * self.period:
+            yield self.found("warning", WAVE, None, f"only {self.at(left)} after the transient, {left / self.period:.1f} waves "
+                             f"of about {self.at(self.period)}: too few to tell a sea by")
 
     def signal(self, channel: str) -> Iterator[Finding]:
         """Frozen, clipped, spiked, drifting?"""

@@ -308,6 +308,19 @@ def test_froude_scaling_units_and_signs(tmp_path):
         "d.csv": table(w=wave)}))[0]
 
 
+def test_a_sea_of_few_waves_is_told(tmp_path):
+    """Of those after the transient, which are what is compared."""
+    document = manifest(wave_channel={"column": "w", "unit": "m", "position": [0.0, 0.0]})
+    sea = {"id": "sea", "kind": "irregular", "file": "d.csv", "window": [0.0, 39.0], "transient": 9.0}
+    document["tests"] = [sea]
+    content = {"d.csv": table(w=np.cos(2 * np.pi * T / 2) + 0.2 * np.cos(2 * np.pi * T / 2.5))}
+    said = [message for message in messages(write(tmp_path, document, content)) if "too few" in message]
+    assert len(said) == 1 and "only 30 s after the transient, 15" in said[0]
+    sea["transient"] = 0.0
+    content["d.csv"] = table(w=np.cos(2 * np.pi * T / 1.2) + 0.2 * np.cos(2 * np.pi * T / 1.5))
+    assert not any("too few" in message for message in messages(write(tmp_path, document, content)))
+
+
 def test_zero_by_a_window_of_the_same_file(tmp_path):
     quiet = (T < 8)
     values = [np.where(quiet, 0.0, column) + offset for column, offset in ((SURGE, 5.0), (PITCH, -3.0))]
@@ -579,7 +592,7 @@ def test_waves_that_are_not_in_the_file_and_zero_tests_without_a_channel(tmp_pat
     document = manifest(wave_channel={"column": "w", "unit": "m"})
     document["tests"][0] |= {"kind": "irregular"}
     assert "channel wave of test d-1: expected a column 'w'" in failure(load_campaign, write(tmp_path, document))
-    wave = np.cos(2 * np.pi * T / 3)
+    wave = np.cos(2 * np.pi * T / 1.8)
     found = messages(write(tmp_path, document, {"d.csv": table(w=wave)}))
     assert ["wave_channel has no position" in message for message in found] == [True]
     document = manifest(zero={"test": "d-2"})
