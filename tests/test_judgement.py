@@ -15,7 +15,7 @@ from calibration.discovery.conclusion import much
 from calibration.discovery.descent import fit
 from calibration.discovery.doubts import in_doubt, in_motion, like, outdone
 from calibration.discovery.gathering import series_of_sea
-from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, Verdict, refusal
+from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, Verdict, refusal, worse
 from calibration.discovery.linear import likelihoods
 from calibration.discovery.looks import Look, Prior, Series
 from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
@@ -227,19 +227,18 @@ def test_gain_is_of_what_is_asked():
 
 
 def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
-    """By what is left of it in held-out tests, as a share of the motion: beyond rounding, and by what matters."""
+    """By J of it, of all tests and of those held out, and by what matters; other motions are no matter of it."""
     of_sea = replace(series("heave", 0.01), test="sea", kind="irregular")
     study = study_of(series("surge", 0.01, spread=2.0), of_sea, series("surge", 0.01, use="fit"))
-    held_out = np.array([True, True, False])
 
-    def refused(dof: str, *after: float) -> str:
-        return Grounds(study, held_out, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after), True).worse(dof)
+    def refused(dof: str | None, *after: float) -> str:
+        return worse(study, dof, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after))
 
-    assert refused("surge", 0.5, 0.9, 0.9) == "" == refused("surge", 0.83, 0.1, 0.1) == refused("pitch", 0.5, 0.9, 0.9)
-    said = "surge in the held-out tests is followed worse with it (60 % is left, 40 % without it)"
-    assert refused("surge", 1.2, 0.05, 0.05) == said
-    assert refused("heave", 0.5, 0.11, 0.05) == ""  # a tenth of what is little
-    assert "heave in the held-out tests" in refused("heave", 0.5, 0.12, 0.05)
+    assert refused("surge", 0.5, 0.9, 0.1) == "" == refused("surge", 0.82, 0.1, 0.1) == refused("pitch", 2.0, 2.0, 2.0)
+    said = "surge is followed worse with it (J of it in {}: {} without it, {} with it)"
+    assert refused("surge", 0.6, 0.1, 0.22) == said.format("all tests", "0.500", "0.520")
+    assert refused("surge", 0.84, 0.1, 0.01) == said.format("the held-out tests", "0.400", "0.420")
+    assert refused("surge", 0.6, 0.1, 0.21) == "" and refused("heave", 0.1, 0.12, 0.1) and not refused(None, 2.0, 2.0, 2.0)
 
 
 def test_gain_in_waves_is_where_an_effect_acts():

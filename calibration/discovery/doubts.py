@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calibration.discovery.candidates import Candidate
-from calibration.discovery.judgement import RISEN
 from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding
 from calibration.discovery.words import called, several
 from calibration.formatting import number, percent
@@ -22,6 +21,9 @@ if TYPE_CHECKING:
 MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
 MEMORY = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
 DRIFTS = ("wave_drift", "wave_drift_damping")  # of waves' squares, as what they bind is
+# times the held-out error of the declared model: what is rightly found makes it 1.01 times as large at most in the campaigns of
+# docs/validation.md, as scores are of likelihoods and of bands
+RISEN = 1.05
 FAR_OFF = 3.0  # times what is declared, or a third of it
 
 

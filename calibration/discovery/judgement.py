@@ -21,9 +21,6 @@ LEAST_CLEAR = 3.0  # standard deviations
 LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
 LEAST_SEEN = 3.0  # ... and less than that many times the floor, is no business of engineers, nor sure of its name
 FITTED, HELD_OUT, BLOCKS = "fitted tests", "held-out tests", "blocks left out in turn"
-# times the held-out error without it; what is rightly found makes that of the declared model 1.01 times as large at most in the
-# campaigns of docs/validation.md, as scores are of likelihoods and of bands
-RISEN = 1.05
 LOST, TIMES = 0.1, 3.0  # of a decay's motion, and of what is left alone: what a joint fit may leave of it
 
 
@@ -96,19 +93,6 @@ class Grounds(NamedTuple):
         """By how much -2 ln L of all that is asked falls."""
         return float((self.before.likelihood - self.after.likelihood)[self.asked].sum())
 
-    def worse(self, dof: str) -> str:
-        """Why an effect of a motion is refused for what is left of that motion in all that is asked; "" where it is not.
-        Likelihoods weigh slow motion little, as unknown forces could do it (`Study.expected`), and engineers ask for it."""
-        study = self.study
-        mine = self.asked & study.main & np.array([one.channel == dof and one.spread > 0 for one in study.series])
-        if not mine.any():
-            return ""
-        spread = np.array([one.spread for one in study.series])[mine]
-        before, after = (float((left.error[mine] / spread).mean()) for left in (self.before, self.after))
-        if after <= max(RISEN * before, before + LEAST_MATTER):
-            return ""
-        return f"{dof} in the {HELD_OUT} is followed worse with it ({percent(after)} is left, {percent(before)} without it)"
-
     def matters(self) -> float:
         """By how much the error of a motion in a region falls at most, over what matters. Of what a decay is not about, the
         floor alone is a measure."""
@@ -149,8 +133,7 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
     refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow" if wrong else ""
     where = FITTED if not grounds.unseen else HELD_OUT if grounds.study is study else BLOCKS
     refused = refused or refusal(bic, held if told else None, net, clear, matters, where)
-    if not refused and one.dof is not None and where == HELD_OUT:
-        refused = grounds.worse(one.dof)
+    refused = refused or worse(study, one.dof, before.left, after.left)
     return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
 
 
@@ -171,6 +154,18 @@ def refusal(bic: float, held: float | None, net: float, clear: float, matters: f
         return f"its parameters are no more than {clear:.1f} standard deviations from none"
     if matters < 1:
         return f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
+    return ""
+
+
+def worse(study: Study, dof: str | None, before: Left, after: Left) -> str:
+    """Why an effect of a motion is refused for J of that motion, in all tests or the held-out ones; "" where it is not.
+    Likelihoods weigh little what is slow, as unknown forces could do it (`Study.expected`), and engineers ask for it."""
+    mine = study.main & np.array([one.channel == dof and one.spread > 0 for one in study.series])
+    spread = np.array([one.spread if one.spread > 0 else 1.0 for one in study.series])
+    for some, where in ((mine, "all tests"), (mine & ~study.used, f"the {HELD_OUT}")):
+        was, now = (float((left.error / spread)[some].sum()) for left in (before, after))
+        if now > was + LEAST_MATTER:
+            return f"{dof} is followed worse with it (J of it in {where}: {was:.3f} without it, {now:.3f} with it)"
     return ""
 
 
