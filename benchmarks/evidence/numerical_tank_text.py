@@ -15,11 +15,13 @@ BANDS = {"low_frequency": "low", "wave_frequency": "wave"}
 ONCE = {"wave_excitation": (None,), "mooring_nonlinearity": ("surge",)}
 MISSING = [
     (effect, motion)
-    for effect in ("wave_excitation", "wave_drift", "mooring_nonlinearity", "radiation_memory")
+    for effect in ("wave_excitation", "wave_drift", "quadratic_damping", "mooring_nonlinearity", "radiation_memory")
     for motion in ONCE.get(effect, DECAYS)
 ]
 MENDED = 0.3  # of a band's energy: what is further off with what was found is said to fall short
-OF_TABLES = [("potential_flow", None), *(pair for pair in MISSING if pair[0] in ("mooring_nonlinearity", "radiation_memory"))]
+IN_TABLES = ("wave_excitation", "wave_drift")
+OF_TABLES = [("potential_flow", None), *(pair for pair in MISSING if pair[0] not in IN_TABLES)]
+IN_WAVES = (*IN_TABLES, "quadratic_damping")  # of decays alone the last is what drag of strips is
 
 
 def stages(results: dict[str, Any]) -> dict[str, dict[str, Any]]:
@@ -89,7 +91,7 @@ def missing_table(results: dict[str, Any], known: dict[str, Any]) -> str:
     """What the tank has and strips do not, its size, and what the diagnoses say of it."""
     rows = []
     for effect, motion in MISSING:
-        alone = "–" if effect.startswith("wave") else said_of(results["decays"], effect, motion)
+        alone = "–" if effect in IN_WAVES else said_of(results["decays"], effect, motion)
         said = said_of(results["all"], effect, motion)
         rows.append((called(effect, motion), size_of(effect, motion, known), said, alone))
     return table(("In the tank", "Its size", "Decays and sea", "Decays alone"), rows)
@@ -114,6 +116,9 @@ def size_of(effect: str, motion: str | None, known: dict[str, Any]) -> str:
     if effect == "wave_drift":
         one = known["drift"][motion]
         return f"mean {quantity(one['mean'], None, unit)}, slow sd {quantity(one['slow'], None, unit)}"
+    if effect == "quadratic_damping":
+        per = "N s²/m²" if motion != "pitch" else "N m s²/rad²"
+        return f"{quantity(known['quadratic'][motion], None, per)}, by the platform's own velocity"
     one = known["radiation"][motion]
     per = "N s/m" if motion != "pitch" else "N m s/rad"
     waves, natural = (quantity(one["damping"][k], None, per) for k in ("waves", "natural"))
@@ -214,8 +219,9 @@ wave-frequency surge is {waves[0]:+.0f} % with the decays' coefficients, {waves[
 well, and {waves[2]:+.0f} % with what was found.
 
 **Slow motion.** `linear_damping.B11` is {damping[0]} by the decays, {damping[1]} fitted to decays and sea, {damping[2]} with
-what was found; of the surge decay {decay[0]}, {decay[1]} and {decay[2]} are left.{settled} Strips drift themselves (their mean
-surge as declared is {drifts:.2f} m, the tank's {drifted:.2f} m), so a law of drift that is found beside them is no estimate of
+what was found; of the surge decay {decay[0]}, {decay[1]} and {decay[2]} are left.{settled} The tank's quadratic damping goes
+with the platform's own velocity, drag of strips with that by the water, which in waves drifts them (their mean surge as
+declared is {drifts:.2f} m, the tank's {drifted:.2f} m): a law of drift that is found beside it is no estimate of
 the tank's force, as the table of their sizes shows.
 
 **Radiation** damps motions at the waves' frequencies and is next to nothing at the natural periods: decays cannot tell it.

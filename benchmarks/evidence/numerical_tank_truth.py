@@ -128,6 +128,12 @@ def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
     return found
 
 
+def quadratic() -> dict[str, float]:
+    """Quadratic damping (N s2/m2, N m s2/rad2) by the platform's own velocity; no water's velocity goes into it."""
+    matrix = json.loads((FOLDER / SEA / "setup.json").read_text())["AddBQuad"]
+    return {motion: float(matrix[dof - 1][dof - 1]) for motion, dof in DOF.items()}
+
+
 def excitation() -> dict[str, list[float]]:
     """First-order excitation at the waves' peak by motion (N/m, N m/m): amplitude by strips without drag on the platform held
     upright, the same by WAMIT, and how far WAMIT's is ahead (rad)."""
