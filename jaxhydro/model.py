@@ -76,7 +76,9 @@ class Model(eqx.Module):
     what is under still water when the platform is upright at its reference position, in the flow at that depth. `diffraction`
     of waves by the members that do: "maccamy_fuchs", "ramp", the same with coefficients tuned away from Ca = 1 kept in
     long waves (`diffraction.long_waves`), "none". `directions` of strips and ends: "body", those of the displaced member, or
-    "earth", those of the undisplaced one, as in OpenFAST. `lag` and `bound` are those of `Cylinders`.
+    "earth", those of the undisplaced one, as in OpenFAST. `waves_at`: "displaced", where the platform is, or "mean", at its
+    reference position horizontally, as in OpenFAST with WaveDisp = 0 and ExctnDisp = 0: waves then do not tell where it has
+    gone. `lag` and `bound` are those of `Cylinders`.
 
     The default replaces Ca in the excitation altogether: that is the theory, for a Ca that was tuned to the added mass, and
     the step from 1 + Ca to 2 which it makes is part of what a calibration in still water cannot know.
@@ -89,6 +91,7 @@ class Model(eqx.Module):
     wetting: str = eqx.field(static=True, default="instantaneous")
     diffraction: str = eqx.field(static=True, default="maccamy_fuchs")
     directions: str = eqx.field(static=True, default="body")
+    waves_at: str = eqx.field(static=True, default="displaced")
     lag: bool = eqx.field(static=True, default=True)
     bound: bool = eqx.field(static=True, default=True)
 
@@ -191,13 +194,14 @@ class Model(eqx.Module):
         hull = self.hull if self.directions == "body" else self.hull.turned(matrix.T)
         strips, ends, place = hull.strips, hull.ends, state.position[:3]
         n, m = len(strips.element), ends.area.shape[0]
+        above, follows = (place[:2], matrix[:2]) if self.waves_at == "displaced" else (jnp.zeros(2), jnp.eye(3)[:2])
         roots = jnp.concatenate([hull.elements.start, ends.position], axis=1)
         if self.wetting == "mean":
             vertical, depth = jnp.array([0.0, 0.0, 1.0]), -roots[2]
         else:
             vertical = matrix[2]
             depth = -(place[2] + vertical @ roots)
-            surface = sea.surface(time, place[:2, None] + matrix[:2] @ hull.gauges)
+            surface = sea.surface(time, above[:, None] + follows @ hull.gauges)
             depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
         wetted = hull.wetted(vertical, depth[: roots.shape[1] - m])
         of = jnp.array(strips.element, dtype=int)
@@ -219,7 +223,8 @@ class Model(eqx.Module):
         end_wet = end_wetted(depth[roots.shape[1] - m :])
         points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
         where = place[:, None] + turned(matrix, points)
-        where = where if self.wetting == "instantaneous" else jnp.concatenate([where[:2], points[2:]])
+        level = points if self.waves_at == "mean" else where
+        where = jnp.concatenate([level[:2], (where if self.wetting == "instantaneous" else points)[2:]])
         flow, replaced = sea.flow(time, where, self.cylinders), _sum([load.replaces() for load in self.loads])
         if flow is not None and replaced is not None:
             flow = flow.weakened(1 - replaced)
@@ -250,7 +255,7 @@ class Model(eqx.Module):
             past_end,
             lines,
             sea.drift(time),
-            None if replaced is None else sea.excitation(time, place[:2]),
+            None if replaced is None else sea.excitation(time, above),
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":

@@ -101,7 +101,8 @@ def build(platform: schema.Platform) -> Model:
             EndInertia(pick(of_ends["Ca"])),
             EndDrag(pick(of_ends["Cd"])),
         ]
-    model = Model(environment, body, hull, tuple(loads), platform.wetting, platform.diffraction, platform.directions)
+    forms = (platform.wetting, platform.diffraction, platform.directions, platform.waves_at)
+    model = Model(environment, body, hull, tuple(loads), *forms)
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
 

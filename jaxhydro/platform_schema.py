@@ -256,7 +256,7 @@ class SeaStateLaws(Schema):
 
 
 class Platform(Consistent):
-    """A platform file. `wetting`, `drag_speed`, `diffraction` and `directions` choose between
+    """A platform file. `wetting`, `drag_speed`, `diffraction`, `directions` and `waves_at` choose between
     forms of the strip loads (see the loads and `Model`)."""
 
     name: Text
@@ -280,6 +280,7 @@ class Platform(Consistent):
     wetting: Literal["mean", "instantaneous"] = "instantaneous"
     diffraction: Literal["maccamy_fuchs", "ramp", "none"] = "maccamy_fuchs"
     directions: Literal["body", "earth"] = "body"
+    waves_at: Literal["displaced", "mean"] = "displaced"
     drag_speed: Literal["vector", "component"] = "vector"
     sea_state_laws: SeaStateLaws | None = None
 

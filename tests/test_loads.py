@@ -14,6 +14,7 @@ from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
+from benchmarks.reference_waves import WaveModel, Waves
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     LOADS,
@@ -104,17 +105,21 @@ EXCITATION = Excitation.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(4).no
 TRANSFER = Transfer.of(np.linspace(0.2, 2.0, 5), np.random.default_rng(3).normal(0, 2e4, (6, 5, 5)) + 3e4j * np.tri(5))
 
 
-def build(*members: dict, **changes) -> jh.Model:
+def data_of(*members: dict) -> dict:
     """A platform of these members, all with the same coefficients."""
-    members = members or tuple(changes.pop("members", ()))
-    data = {
+    return {
         "name": "test",
         "water": {"density": RHO, "depth": 200.0, "gravity": G},
         "rigid_body": BODY,
         "members": members,
         "coefficients": {member["name"]: COEFFICIENTS for member in members},
     }
-    return jh.build(jh.Platform.model_validate(data | changes))
+
+
+def build(*members: dict, **changes) -> jh.Model:
+    """Of the same, or of a mapping's members, with what else it declares."""
+    members = members or tuple(changes.pop("members", ()))
+    return jh.build(jh.Platform.model_validate(data_of(*members) | changes))
 
 
 FOUND = {  # what no platform file declares: effects that were found to be missing, by their labels' ends
@@ -267,6 +272,28 @@ def test_contract(name: str) -> None:
     if load.values:
         null = model.with_values({label: load.about(label).null for label in load.values})
         assert all(bool((part == 0).all()) for part in wrench(null, positions[0], velocities[0]))
+
+
+def test_waves_at_the_reference_position() -> None:
+    """They then do not tell where the platform has gone; where it leans they are those of its points upright, as the separate
+    NumPy model has them."""
+    waves = Waves(1.5, 2 * np.pi / 9.0, 0.4, 0.3, 200.0, G)
+    sea = jh.regular_wave(3.0, 9.0, jh.Environment(RHO, 200.0, G), heading=0.4, phase=0.3, stretching="none")
+    moved = np.array([30.0, -8.0, 1.0, 0.0, 0.0, 0.0])
+    leaning = moved + np.array([0, 0, 0, 0.05, -0.1, 0.2])
+    members = [{**member, "group": member["name"]} for member in (COLUMN, PONTOON, LEG)]
+    data = data_of(*members) | {"diffraction": "none"}
+    for waves_at, stays in (("mean", "z"), ("displaced", "xyz")):
+        model = jh.build(jh.Platform.model_validate(data | {"waves_at": waves_at}))
+        plain = WaveModel(data, waves, 0.1, 0.5, pontoon_ends=True, displaced=stays)
+        for position in (moved, leaning):
+            turn = Rotation.from_euler("ZYX", position[:2:-1]).as_matrix()
+            found = force(model, position=position, sea=sea) - force(model, position=position)
+            found = np.concatenate([turn @ found[:3], turn @ found[3:]])
+            assert_allclose(found, plain.wave_load(0.0, position), atol=2e-3 * np.abs(found).max())
+    model, there = jh.build(jh.Platform.model_validate(data | {"waves_at": "mean"})), moved * [1, 1, 0, 0, 0, 0]
+    along = [force(model, position=x, sea=sea) - force(model, position=x) for x in (there, 0 * there)]
+    assert_allclose(*along, atol=1e-9 * np.abs(along).max())
 
 
 def test_gradients_at_rest_are_finite() -> None:
