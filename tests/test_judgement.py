@@ -227,7 +227,8 @@ def test_gain_is_of_what_is_asked():
 
 
 def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
-    """By J of it, of all tests and of those held out, and by what matters; other motions are no matter of it."""
+    """By J of it, of all tests and of those held out, and by what matters; other motions are no matter of it. One of no single
+    motion by J of all."""
     of_sea = replace(series("heave", 0.01), test="sea", kind="irregular")
     study = study_of(series("surge", 0.01, spread=2.0), of_sea, series("surge", 0.01, use="fit"))
 
@@ -238,7 +239,9 @@ def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
     said = "surge is followed worse with it (J of it in {}: {} without it, {} with it)"
     assert refused("surge", 0.6, 0.1, 0.22) == said.format("all tests", "0.500", "0.520")
     assert refused("surge", 0.84, 0.1, 0.01) == said.format("the held-out tests", "0.400", "0.420")
-    assert refused("surge", 0.6, 0.1, 0.21) == "" and refused("heave", 0.1, 0.12, 0.1) and not refused(None, 2.0, 2.0, 2.0)
+    assert refused("surge", 0.6, 0.1, 0.21) == "" and refused("heave", 0.1, 0.12, 0.1)
+    assert refused(None, 0.2, 0.3, 0.1) == "" != refused(None, 0.6, 0.32, 0.1)
+    assert refused(None, 0.9, 0.1, 0.01).startswith("what moves is followed worse with it (J in the held-out tests: 0.500")
 
 
 def test_gain_in_waves_is_where_an_effect_acts():

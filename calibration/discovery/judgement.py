@@ -158,14 +158,15 @@ def refusal(bic: float, held: float | None, net: float, clear: float, matters: f
 
 
 def worse(study: Study, dof: str | None, before: Left, after: Left) -> str:
-    """Why an effect of a motion is refused for J of that motion, in all tests or the held-out ones; "" where it is not.
-    Likelihoods weigh little what is slow, as unknown forces could do it (`Study.expected`), and engineers ask for it."""
-    mine = study.main & np.array([one.channel == dof and one.spread > 0 for one in study.series])
+    """Why an effect is refused for J of the motion that it acts in (None: of all), in all tests or the held-out ones; "" where
+    it is not. Likelihoods weigh little what is slow, as unknown forces could do it (`Study.expected`); engineers ask for it."""
+    mine = study.main & np.array([one.channel == (dof or one.channel) and one.spread > 0 for one in study.series])
     spread = np.array([one.spread if one.spread > 0 else 1.0 for one in study.series])
     for some, where in ((mine, "all tests"), (mine & ~study.used, f"the {HELD_OUT}")):
         was, now = (float((left.error / spread)[some].sum()) for left in (before, after))
         if now > was + LEAST_MATTER:
-            return f"{dof} is followed worse with it (J of it in {where}: {was:.3f} without it, {now:.3f} with it)"
+            what, its = ("what moves is", "J") if dof is None else (f"{dof} is", "J of it")
+            return f"{what} followed worse with it ({its} in {where}: {was:.3f} without it, {now:.3f} with it)"
     return ""
 
 
