@@ -3,8 +3,8 @@
     python -m benchmarks.bench [--quick] [--only decay|sea|batch|sweep|fit] [--budget SECONDS] [--searches DE ...] [--out FILE]
 
 writes benchmarks/results.md, whole or not at all, and prints it. Everything is process CPU time on one core,
-contestants in turns, medians; so the machine may be busy. `--quick` is a smoke run, `--only` a part; these write only where
-`--out` says.
+contestants in turns, medians; so the machine may be busy. On a GPU, which `--only batch` is for, what it does is wall time.
+`--quick` is a smoke run, `--only` a part; these write only where `--out` says.
 """
 
 import argparse
@@ -50,12 +50,13 @@ def revision() -> str:
     return done.stdout.strip() or "unknown"
 
 
-def machine(cores: int) -> list[str]:
+def machine(cores: int, gpu: str | None) -> list[str]:
     """Where and with what it was measured."""
     versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in PACKAGES)
     load = " / ".join(f"{value:.1f}" for value in os.getloadavg())
+    used = f"{cores} cores, of which one was used" + ("" if gpu is None else f", and {gpu}")
     return [
-        f"Machine: {processor()}, {cores} cores, of which one was used; load averages {load}.",
+        f"Machine: {processor()}, {used}; load averages {load}.",
         f"Python {platform.python_version()}, {versions}; jaxhydro {revision()}.",
     ]
 
@@ -90,6 +91,12 @@ def main() -> None:
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
     from jaxhydro.files import write_whole
 
+    device = jax.devices()[0]
+    gpu = None if device.platform == "cpu" else device.device_kind
+    if gpu is not None:
+        # programs for it are compiled by many cores; the CPU's threads, which are there by now, stay on one
+        jax.devices("cpu")
+        os.sched_setaffinity(0, range(cores))
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
     parts = [arguments.only] if arguments.only else [name for name in PARTS if not (arguments.quick and name == SLOW)]
@@ -112,7 +119,7 @@ def main() -> None:
     begun = [
         f"{datetime.date.today().isoformat()}, `python -m benchmarks.bench{options}`. Process CPU time on one core, "
         "contestants in turns, medians; ratios are medians over turns. Compilation is apart everywhere.",
-        *machine(cores),
+        *machine(cores, gpu),
     ]
     if arguments.quick:
         begun.insert(0, "A smoke run: short decays, one record, few turns. These numbers say nothing.")

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import jax
@@ -284,9 +285,11 @@ def test_a_cluster_that_loses_a_worker_gives_the_same(file, whole, tmp_path) -> 
     assert_bitwise(tmp_path / "o", whole)
 
 
-def test_runs_at_once_are_runs_one_by_one(whole) -> None:
+@pytest.mark.parametrize("order", [1, 2])
+def test_runs_at_once_are_runs_one_by_one(whole, order) -> None:
     """The way of GPUs, here on the CPU: to rounding."""
     setup = setup_in(whole / INPUTS)
+    setup = setup._replace(plan=replace(setup.plan, order=order))
     runs = [setup.plan.run(number) for number in (0, 9, 16, 10)]
     for run, one in zip(runs, outcomes(setup, runs)):
         alone = outcome(setup, run)

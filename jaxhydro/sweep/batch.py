@@ -4,27 +4,27 @@ import math
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Complex, Float
 
 from jaxhydro.command import Used, model_of, with_calibration
 from jaxhydro.environment import DOFS
-from jaxhydro.integrate import clock, integrate
 from jaxhydro.loads import MooringLines
-from jaxhydro.model import Model, State
+from jaxhydro.model import Model
 from jaxhydro.platform_schema import load_platform
 from jaxhydro.plot import for_people
 from jaxhydro.problems import InputError
 from jaxhydro.rotations import rotation
 from jaxhydro.sea_command import build_sea
 from jaxhydro.sea_options import Asked
-from jaxhydro.simulate import farthest, largest_step, simulate, steps_in
-from jaxhydro.statics import EquilibriumError, equilibrium
+from jaxhydro.simulate import largest_step, simulate
+from jaxhydro.statics import EquilibriumError
+from jaxhydro.sweep.at_once import in_halves, shared_by
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.statistics import Kept, kept_of
 from jaxhydro.waves.irregular_sea import IrregularSea
@@ -92,7 +92,7 @@ def outcome(setup: Setup, run: Run) -> Kept | str:
     try:
         sea = sea_of(setup, run)
         position = np.asarray(simulate(setup.model, setup.times, sea, step=setup.limit).position)
-        return _kept(setup, run, sea, position)
+        return _kept(setup, run, sea, position, elevation(sea, setup.times))
     except Exception as error:  # whatever it is, it is this run's, and the others go on
         return reason_of(error)
 
@@ -106,12 +106,12 @@ def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
             seas[run.number] = sea_of(setup, run)
         except Exception as error:
             found[run.number] = reason_of(error)
-    positions = _in_halves(setup, list(seas.values()))
-    moved = dict(zip(seas, positions))
+    every = dict(zip(seas, in_halves(setup.model, list(seas.values()), setup.times, setup.limit)))
     for run in runs:
-        if (position := moved.get(run.number)) is not None:
+        if (moved := every.get(run.number)) is not None:
+            sea = seas[run.number]
             try:
-                found[run.number] = _kept(setup, run, seas[run.number], position)
+                found[run.number] = _kept(setup, run, sea, moved.position, elevation(sea, setup.times, moved.bound))
             except Exception as error:
                 found[run.number] = reason_of(error)
         elif run.number in seas:  # out of the box that its sea was made for, or without equilibrium
@@ -119,73 +119,19 @@ def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
     return [found[run.number] for run in runs]
 
 
-def _in_halves(setup: Setup, seas: list[IrregularSea]) -> list[np.ndarray | None]:
-    """`together`, half as many at once where the memory does not hold all."""
-    if not seas:
-        return []
-    try:
-        return together(setup.model, seas, setup.times, setup.limit)
-    except jax.errors.JaxRuntimeError:
-        half = len(seas) // 2
-        return _in_halves(setup, seas[:half]) + _in_halves(setup, seas[half:]) if half else [None]
-
-
-def together(
-    model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float
-) -> list[Float[np.ndarray, "t 6"] | None]:
-    """Positions (m, rad) in seas of one band and period, in steps of at most `limit` (s), by one vectorised program for all
-    seas of one shape; None where the platform leaves the box that the sea was prepared for, or does not rest."""
-    found: list[np.ndarray | None] = [None] * len(seas)
-    shapes: dict[Any, list[tuple[int, Any]]] = {}
-    for i, sea in enumerate(seas):
-        here = model.in_sea(state_of(sea.components))
-        try:
-            start = State(equilibrium(here), jnp.zeros(6), here.settled(jnp.zeros(6)))
-        except EquilibriumError:
-            continue
-        prepared, step, steps = prepared_for(here, sea, times, limit)
-        one = (here, prepared, start)
-        shape = tuple(x.shape for x in jax.tree.leaves(eqx.filter(one, eqx.is_array)))
-        key = (jax.tree.structure(one), shape, step, steps)
-        shapes.setdefault(key, []).append((i, one))
-    points = jnp.asarray(model.hull.extremities())
-    for (_, _, step, steps), same in shapes.items():
-        parts = [eqx.partition(one, eqx.is_array) for _, one in same]
-        stacked = jax.tree.map(lambda *x: jnp.stack(x), *(arrays for arrays, _ in parts))
-        at = jnp.asarray(times)
-        position, reached = _vectorised(stacked, parts[0][1], points, at, jnp.asarray(step), steps)
-        for (i, one), moved, far in zip(same, np.asarray(position), np.asarray(reached)):
-            if not far > one[1].half:
-                found[i] = moved
-    return found
-
-
 def prepared_for(
     model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
 ) -> tuple[SupportSea, float, int]:
     """The sea for the model's hull, and the steps taken: size (s) and number, those of `simulate`."""
-    step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
-    instants = clock("ab4", float(times[0]), step, steps)
-    hull, computed = (model.hull.extremities(), model.cylinders), {"transfer": model.transfer, "exciting": model.excitation}
-    return sea.prepared(*hull, instants, **computed), step, steps  # type: ignore[arg-type]
+    shared, step, steps = shared_by(model, sea, times, limit)
+    return shared.of(sea.components), step, steps
 
 
-@eqx.filter_jit
-def _vectorised(stacked, rest, points, times, step, steps):
-    def one(arrays):
-        model, sea, start = eqx.combine(arrays, rest)
-        position = integrate(model, sea, start, times[0], step, steps, "ab4").at(times)[0]
-        return position, farthest(position, points, model.through(sea))
-
-    return jax.vmap(one)(stacked)
-
-
-def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray) -> Kept:
+def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wave: np.ndarray) -> Kept:
     plan, times = setup.plan, setup.times
     if not (numbers := np.isfinite(position).all(axis=1)).all():
         raise ValueError(f"the motion grows beyond all bounds at {times[np.argmin(numbers)]:.4g} s: a smaller step, perhaps")
-    channels = {"wave": elevation(sea, times)}
-    channels |= {dof: for_people(dof, position[:, DOFS.index(dof)]) for dof in plan.motions}
+    channels = {"wave": wave} | {dof: for_people(dof, position[:, DOFS.index(dof)]) for dof in plan.motions}
     if _line_count(setup.model):
         model = setup.model.in_sea(state_of(sea.components))
         tension = np.asarray(_tensions(model, jnp.asarray(position)))
@@ -194,9 +140,11 @@ def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray) -> Ke
     return kept if plan.time_series else kept._replace(series=None)
 
 
-def elevation(sea: IrregularSea, times: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
+def elevation(
+    sea: IrregularSea, times: Float[np.ndarray, " t"], bound: Complex[np.ndarray, " b"] | None = None
+) -> Float[np.ndarray, " t"]:
     """`IrregularSea.gauge` at the origin (m) at even times (s) from 0 on, by one Fourier transform where they divide the
-    period."""
+    period; `bound` is its `elevation_spectrum` (m), where that is known."""
     waves, step = sea.components, float(times[1] - times[0])
     period, (first, last) = float(waves.period), waves.harmonics
     count = round(period / step)
@@ -205,7 +153,7 @@ def elevation(sea: IrregularSea, times: Float[np.ndarray, " t"]) -> Float[np.nda
     spectrum = np.zeros(count // 2 + 1, complex)
     spectrum[first : last + 1] = np.asarray(waves.complex_amplitude())
     if sea.order == 2:
-        bound = np.asarray(_bound(waves, sea.environment, jnp.zeros(2), sea.kinds))
+        bound = np.asarray(_bound(waves, sea.environment, jnp.zeros(2), sea.kinds)) if bound is None else bound
         spectrum[: len(bound)] += bound
     spectrum[0] *= 2
     return np.resize(np.fft.irfft(spectrum, count) * (count / 2), len(times))

@@ -66,7 +66,7 @@ class Worker:
 
 
 def simulated(folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = ()) -> Iterator[Found]:
-    """Each batch's runs when they are in the store, in the order in which they come. `devices` are GPUs, one per worker."""
+    """Each batch's runs when they are in the store, in the order in which they come. `devices` is the GPU of each worker."""
     left: queue.SimpleQueue[Sequence[int]] = queue.SimpleQueue()
     for batch in batches:
         left.put(batch)

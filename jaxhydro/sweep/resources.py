@@ -10,6 +10,7 @@ import numpy as np
 import psutil
 
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.sweep.at_once import power_of_two
 from jaxhydro.sweep.batch import Setup
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import fourier_length, harmonics, repeat_period
@@ -20,11 +21,12 @@ COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
 PROCESS = 700e6  # bytes of a worker before its first sea
 SHARE = 0.6  # of what is available, that is used
 MOST_AT_ONCE = 512  # runs: beyond, a GPU gains nothing
+PER_GPU = 4  # workers: while one makes statistics on its core, the others keep the GPU busy
 
 
 class Chosen(NamedTuple):
-    """Worker processes, runs that each takes at a time, GPUs by number (none: the cores), bytes of a run, and all that in
-    words."""
+    """Worker processes, runs that each takes at a time, the GPU of each as CUDA names it (none: the cores), bytes of a run, and
+    all that in words."""
 
     workers: int
     batch: int
@@ -69,19 +71,26 @@ def bytes_of_run(setup: Setup) -> float:
 
 
 def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Chosen:
-    """Workers and batch as given, else those that fit: on the CPU one run per core at a time (more at once are no faster), on
-    GPUs as many as their memory holds, at most `MOST_AT_ONCE`."""
+    """Workers and batch as given, else those that fit: on the CPU one run per core at a time (more at once are no faster); on
+    GPUs `PER_GPU` workers each and as many runs as its memory holds, a power of two, at most `MOST_AT_ONCE`."""
     size = bytes_of_run(setup)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     gpus = [device for device in jax.local_devices() if device.platform == "gpu"]
     if gpus:
         available = min(float((device.memory_stats() or {}).get("bytes_limit", 8e9)) for device in gpus)
-        count = min(workers or len(gpus), len(gpus))
-        fits = max(1, min(MOST_AT_ONCE, int(SHARE * available / size), -(-runs // count)))
-        taken = fits if batch is None else batch
-        words = f"{count} GPU{'s' * (count > 1)}, {taken} runs at once: {taken * size / 1e9:.2g} of {available / 1e9:.0f} GB"
-        return Chosen(count, taken, tuple(str(i) for i in range(count)), size, words)
+        count = workers or max(len(gpus), min(PER_GPU * len(gpus), cores))
+        each = -(-count // len(gpus))  # workers of one GPU
+        names = os.environ.get("CUDA_VISIBLE_DEVICES", "").split(",")
+        names = names if len(names) == len(gpus) and all(names) else [str(i) for i in range(len(gpus))]
+        fits = max(1, min(MOST_AT_ONCE, int(SHARE * available / each / size)))
+        taken = min(1 << (fits.bit_length() - 1), power_of_two(-(-runs // count))) if batch is None else batch
+        count = min(count, -(-runs // taken))
+        words = (
+            f"{count} process{'es' * (count > 1)} on {len(gpus)} GPU{'s' * (len(gpus) > 1)}, {taken} runs at once each: "
+            f"{min(each, count) * taken * size / 1e9:.2g} of {available / 1e9:.0f} GB"
+        )
+        return Chosen(count, taken, tuple(names[i % len(gpus)] for i in range(count)), size, words)
     available = float(psutil.virtual_memory().available)
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     taken = 1 if batch is None else batch
     fits = max(1, min(cores, int(SHARE * available / (size + PROCESS))))
     count = max(1, min(fits if workers is None else workers, -(-runs // taken)))

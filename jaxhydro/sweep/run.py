@@ -125,6 +125,8 @@ def run_all(
     progress: Callable[[Progress], None] = lambda now: None,
 ) -> Ran:  # fmt: skip
     """Simulate runs, each written as it is done."""
+    if how.devices:  # what is simulated at once has one heading
+        numbers = sorted(numbers, key=lambda number: made.inputs.plan.run(number).case.heading)
     batches = [numbers[i : i + how.batch] for i in range(0, len(numbers), how.batch)]
     before = Store(folder).status()
     total, earlier = len(before), int((before == DONE).sum())

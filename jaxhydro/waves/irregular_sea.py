@@ -12,7 +12,7 @@ from jaxtyping import Array, Complex, Float
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
-from jaxhydro.waves.envelope import Envelope, envelope
+from jaxhydro.waves.envelope import envelope
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth
@@ -98,52 +98,106 @@ class IrregularSea(AbstractSea):
         Raises ValueError for components of several headings, that are no harmonics, or where the clock's steps do not divide
         the period or are too long for the highest frequency.
         """
+        shared = self.preparation(points, cylinders, clock, excursion, linear, transfer, exciting)
+        return shared.of(self.components)
+
+    def preparation(
+        self,
+        points: Float[np.ndarray, "3 p"],
+        cylinders: Cylinders | None,
+        clock: Clock,
+        excursion: float = EXCURSION,
+        linear: bool = False,
+        transfer: Transfer | None = None,
+        exciting: Excitation | None = None,
+    ) -> "Preparation":
+        """What `prepared` works out of frequencies and heading alone, for all seas that have these. Raises as it does."""
         waves, depth = self.components, float(self.environment.depth)
-        heading = float(waves.heading[0])
+        heading, period = float(waves.heading[0]), float(waves.period)
         if np.ptp(np.asarray(waves.heading)) > 1e-12:
             raise ValueError("a short-crested sea is evaluated directly: it has no support wavenumbers of one heading")
-        along = np.array([math.cos(heading), math.sin(heading)])
         middle, box = Box.of(points, heading, depth, excursion)
         free = float(waves.wavenumber[-1])
         found = supports(box, free, 2 * free if self.order == 2 and "sum" in self.kinds else 0.0)
-        size = round(float(waves.period) / clock.step)
+        size = round(period / clock.step)
         highest = waves.harmonics[1] * (self.order if "sum" in self.kinds else 1)
-        if abs(size * clock.step - float(waves.period)) > 1e-6 * clock.step:
-            raise ValueError(f"steps of {clock.step:g} s do not divide the sea's period of {float(waves.period):g} s")
+        if abs(size * clock.step - period) > 1e-6 * clock.step:
+            raise ValueError(f"steps of {clock.step:g} s do not divide the sea's period of {period:g} s")
         if highest >= size:
             raise ValueError(
-                f"a step of {clock.step:g} s is too long for waves of {highest / float(waves.period):.3g} Hz: "
-                f"below {float(waves.period) / highest:.3g} s expected"
+                f"a step of {clock.step:g} s is too long for waves of {highest / period:.3g} Hz: "
+                f"below {period / highest:.3g} s expected"
             )
-        radius = jnp.zeros(0) if cylinders is None else cylinders.radius
-        options = (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp)
-        arrays = (jnp.asarray(found.table), found.spacing, jnp.asarray(middle), jnp.asarray(along), radius)
-        spectrum = _spectrum(waves, self.environment, 1 if linear else self.order, self.kinds, options, *arrays, exciting)
-        series, fine = _series(spectrum, 2 * math.pi / float(waves.period), size, clock, self.ramp)
-        wavenumber = jnp.asarray(found.wavenumber)
-        return SupportSea(
-            self.environment,
-            series,
-            fine,
-            wavenumber,
+        share = np.asarray(growth(clock.start + clock.step * np.arange(clock.steps + 1), self.ramp)) ** 2
+        return Preparation(
+            self,
+            jnp.asarray(found.table),
+            found.spacing,
+            jnp.asarray(found.wavenumber),
             jnp.asarray(np.exp(-2 * found.wavenumber * depth)),
             jnp.asarray(middle),
-            jnp.asarray(along),
-            jnp.asarray(clock.start),
-            jnp.asarray(clock.step),
-            clock.nodes,
-            self.stretching,
+            jnp.asarray(np.array([math.cos(heading), math.sin(heading)])),
+            jnp.zeros(0) if cylinders is None else cylinders.radius,
+            (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp),
+            exciting,
+            transfer,
+            jnp.asarray((np.asarray(waves.omega) / MIDDLE) ** 2),
+            jnp.asarray(share),
+            2 * math.pi / period,
+            size,
+            clock,
             box.half,
-            0 if exciting is None else 6,
-            self._envelope(clock, size, transfer),
+            linear,
         )
 
-    def _envelope(self, clock: Clock, size: int, transfer: Transfer | None) -> Envelope:
-        """Of the first-order waves on a clock of which `size` steps are a period."""
-        share = np.asarray(growth(clock.start + clock.step * np.arange(clock.steps + 1), self.ramp)) ** 2
-        weight = (np.asarray(self.components.omega) / MIDDLE) ** 2
-        arrays = jnp.asarray(weight), jnp.asarray(share)
-        return envelope(self.components, self.environment, *arrays, size, jnp.asarray(clock.start), transfer)
+
+class Preparation(eqx.Module):
+    """Supports, their weights, a hull's cylinders and computed forces, a clock: what seas of the frequencies, the heading and
+    all else of `like` share, whose amplitudes and phases are their own. `of` may be vectorised over these."""
+
+    like: IrregularSea
+    table: Float[Array, "g r"]
+    spacing: float
+    wavenumber: Float[Array, " r"]
+    fade: Float[Array, " r"]
+    middle: Float[Array, ""]
+    along: Float[Array, "2"]
+    radius: Float[Array, " c"]
+    options: tuple[bool, bool, bool] = eqx.field(static=True)
+    exciting: Excitation | None
+    transfer: Transfer | None
+    weight: Float[Array, " w"]  # of `envelope`
+    share: Float[Array, " t"]
+    fundamental: float  # rad/s
+    size: int = eqx.field(static=True)  # steps in a period
+    clock: Clock = eqx.field(static=True)
+    half: float = eqx.field(static=True)  # m, of the box
+    linear: bool = eqx.field(static=True)
+
+    def of(self, waves: Components) -> SupportSea:
+        """The sea of these components, made ready."""
+        like, clock = self.like, self.clock
+        arrays = (self.table, self.spacing, self.middle, self.along, self.radius)
+        order = 1 if self.linear else like.order
+        spectrum = _spectrum(waves, like.environment, order, like.kinds, self.options, *arrays, self.exciting)
+        series, fine = _series(spectrum, self.fundamental, self.size, clock, like.ramp)
+        start = jnp.asarray(clock.start)
+        return SupportSea(
+            like.environment,
+            series,
+            fine,
+            self.wavenumber,
+            self.fade,
+            self.middle,
+            self.along,
+            start,
+            jnp.asarray(clock.step),
+            clock.nodes,
+            like.stretching,
+            self.half,
+            0 if self.exciting is None else 6,
+            envelope(waves, like.environment, self.weight, self.share, self.size, start, self.transfer),
+        )
 
 
 _elevation = eqx.filter_jit(elevation_spectrum)

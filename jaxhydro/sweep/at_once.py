@@ -1,0 +1,98 @@
+"""Seas in which a platform is simulated at once, by one vectorised program: what a GPU is for."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Complex, Float
+
+from jaxhydro.integrate import clock, integrate
+from jaxhydro.model import Model, State
+from jaxhydro.simulate import farthest, steps_in
+from jaxhydro.statics import EquilibriumError, equilibrium
+from jaxhydro.waves.irregular_sea import IrregularSea, Preparation
+from jaxhydro.waves.sea_state import state_of
+from jaxhydro.waves.second_order import elevation_spectrum
+
+
+class Moved(NamedTuple):
+    """Positions (m, rad) in a sea, and its `elevation_spectrum` (m; None of first order)."""
+
+    position: Float[np.ndarray, "t 6"]
+    bound: Complex[np.ndarray, " b"] | None
+
+
+def in_halves(
+    model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+) -> list[Moved | None]:
+    """`together`, half as many at once where the memory does not hold all."""
+    if not seas:
+        return []
+    try:
+        return together(model, seas, times, limit)
+    except jax.errors.JaxRuntimeError:
+        half = len(seas) // 2
+        return in_halves(model, seas[:half], times, limit) + in_halves(model, seas[half:], times, limit) if half else [None]
+
+
+def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float) -> list[Moved | None]:
+    """The platform in seas that differ in amplitudes, phases and heading only, in steps of at most `limit` (s): by one
+    vectorised program, preparations included, for all of one heading. None where the platform leaves the box that the sea was
+    prepared for, or does not rest."""
+    found: list[Moved | None] = [None] * len(seas)
+    alike: dict[Any, list[tuple[int, Any]]] = {}
+    for i, sea in enumerate(seas):
+        waves = sea.components
+        here = model.in_sea(state_of(waves))
+        try:
+            start = State(equilibrium(here), jnp.zeros(6), here.settled(jnp.zeros(6)))
+        except EquilibriumError:
+            continue
+        own = (here, start, waves.amplitude, waves.phase)
+        shape = tuple(x.shape for x in jax.tree.leaves(eqx.filter(own, eqx.is_array)))
+        alike.setdefault((float(waves.heading[0]), jax.tree.structure(own), shape), []).append((i, own))
+    points, at = jnp.asarray(model.hull.extremities()), jnp.asarray(times)
+    for same in alike.values():
+        shared, step, steps = shared_by(model, seas[same[0][0]], times, limit)
+        padded = [own for _, own in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
+        parts = [eqx.partition(own, eqx.is_array) for own in padded]
+        stacked = jax.tree.map(lambda *x: jnp.stack(x), *(arrays for arrays, _ in parts))
+        position, reached, bound = _vectorised(stacked, parts[0][1], shared, points, at, jnp.asarray(step), steps)
+        spectra = [None] * len(padded) if bound is None else np.asarray(bound)
+        for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
+            if not far > shared.half:
+                found[i] = Moved(moved, spectrum)
+    return found
+
+
+def power_of_two(count: int) -> int:
+    """The smallest that is not below: seas at once are made up to one, so that few programs are compiled."""
+    return 1 << (count - 1).bit_length()
+
+
+def shared_by(
+    model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
+) -> tuple[Preparation, float, int]:
+    """What all seas like this one share for the model's hull, and the steps as in `prepared_for`."""
+    step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
+    instants = clock("ab4", float(times[0]), step, steps)
+    hull, computed = (model.hull.extremities(), model.cylinders), {"transfer": model.transfer, "exciting": model.excitation}
+    return sea.preparation(*hull, instants, **computed), step, steps  # type: ignore[arg-type]
+
+
+@eqx.filter_jit
+def _vectorised(stacked, rest, shared, points, times, step, steps):
+    like = shared.like
+
+    def one(arrays):
+        model, start, amplitude, phase = eqx.combine(arrays, rest)
+        waves = eqx.tree_at(lambda w: (w.amplitude, w.phase), like.components, (amplitude, phase))
+        sea = shared.of(waves)
+        position = integrate(model, sea, start, times[0], step, steps, "ab4").at(times)[0]
+        bound = elevation_spectrum(waves, like.environment, jnp.zeros(2), like.kinds) if like.order == 2 else None
+        return position, farthest(position, points, model.through(sea)), bound
+
+    return jax.vmap(one)(stacked)
