@@ -21,7 +21,7 @@ from jaxhydro.model import Model
 
 SHORT, HOUR = 120.0, 3600.0  # s
 DISTINCT = 8  # seas; larger batches repeat them
-SIZES = {"cpu": (1, 2, 4, 8, 16, 32, 64, 128, 256, 512), "gpu": (1, 8, 64, 256, 512, 1024, 2048, 4096, 8192)}
+SIZES = {"cpu": (1, 2, 4, 8, 16, 32, 64, 128, 256, 512), "gpu": (1, 8, 64, 256, 1024, 4096)}
 PRECISIONS = {"float64": np.float64, "float32": np.float32}
 ROUNDS = 3
 SEEN = ("surge", "heave", "pitch")

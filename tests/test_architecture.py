@@ -44,7 +44,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.sea_options",),
     ("jaxhydro.command", "jaxhydro.arguments"),
     ("jaxhydro.sea_command",),
-    ("jaxhydro.sweep.schema", "jaxhydro.sweep.lifetime", "jaxhydro.sweep.statistics"),
+    ("jaxhydro.sweep.schema", "jaxhydro.sweep.lifetime", "jaxhydro.sweep.statistics", "jaxhydro.sweep.at_once"),
     ("jaxhydro.sweep.load", "jaxhydro.sweep.cases", "jaxhydro.sweep.plot"),
     ("jaxhydro.sweep.batch",),
     ("jaxhydro.sweep.notes", "jaxhydro.sweep.store", "jaxhydro.sweep.resources", "jaxhydro.sweep.sensitivity"),

@@ -58,9 +58,8 @@ def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray
     for same in alike.values():
         shared, step, steps = shared_by(model, seas[same[0][0]], times, limit)
         padded = [own for _, own in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
-        parts = [eqx.partition(own, eqx.is_array) for own in padded]
-        stacked = jax.tree.map(lambda *x: jnp.stack(x), *(arrays for arrays, _ in parts))
-        position, reached, bound = _vectorised(stacked, parts[0][1], shared, points, at, jnp.asarray(step), steps)
+        own, axes = _stacked(padded)
+        position, reached, bound = _vectorised(own, axes, shared, points, at, jnp.asarray(step), steps)
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
@@ -83,16 +82,24 @@ def shared_by(
     return sea.preparation(*hull, instants, **computed), step, steps  # type: ignore[arg-type]
 
 
+def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:
+    """Trees of one structure in one, and the axes along which it is to be vectorised: what all share stays as it is."""
+    leaves, tree = zip(*(jax.tree.flatten(one) for one in each))
+    alike = [all(x is column[0] for x in column) or not eqx.is_array(column[0]) for column in zip(*leaves)]
+    found = [c[0] if same else np.stack([np.asarray(x) for x in c]) for same, c in zip(alike, zip(*leaves))]
+    return jax.tree.unflatten(tree[0], found), jax.tree.unflatten(tree[0], [None if same else 0 for same in alike])
+
+
 @eqx.filter_jit
-def _vectorised(stacked, rest, shared, points, times, step, steps):
+def _vectorised(own, axes, shared, points, times, step, steps):
     like = shared.like
 
-    def one(arrays):
-        model, start, amplitude, phase = eqx.combine(arrays, rest)
+    def one(own):
+        model, start, amplitude, phase = own
         waves = eqx.tree_at(lambda w: (w.amplitude, w.phase), like.components, (amplitude, phase))
         sea = shared.of(waves)
         position = integrate(model, sea, start, times[0], step, steps, "ab4").at(times)[0]
         bound = elevation_spectrum(waves, like.environment, jnp.zeros(2), like.kinds) if like.order == 2 else None
         return position, farthest(position, points, model.through(sea)), bound
 
-    return jax.vmap(one)(stacked)
+    return eqx.filter_vmap(one, in_axes=(axes,))(own)
