@@ -11,6 +11,7 @@ import argparse
 import datetime
 import importlib
 import importlib.metadata
+import importlib.util
 import os
 import platform
 import subprocess
@@ -23,6 +24,7 @@ from rich.table import Table
 
 from benchmarks.bench_timing import Row, pin
 from jaxhydro.start import quick_compilation
+from jaxhydro.sweep import worker
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.md"
@@ -31,6 +33,12 @@ PARTS = ("decay", "sea", "batch", "sweep", "fit")
 SLOW = "sweep"  # is not in a smoke run
 SEARCHES = ["DE", "GA", "CMA-ES"]
 PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "pymoo")
+
+
+def on_gpu() -> bool:
+    """Whether JAX will find one. To be asked before it is imported."""
+    asked = os.environ.get("JAX_PLATFORMS", "cuda")
+    return "cuda" in asked and any(importlib.util.find_spec(f"jax_cuda{version}_plugin") for version in (12, 13))
 
 
 def processor() -> str:
@@ -82,7 +90,10 @@ def main() -> None:
     budget = (0.3 if arguments.quick else 300.0) if arguments.budget is None else arguments.budget
     out = arguments.out or (None if arguments.quick or arguments.only else RESULTS)
     cores = os.cpu_count() or 1
-    pin()
+    if on_gpu():
+        os.environ |= worker.environment()  # one thread on the CPU, while programs for the GPU are compiled by many
+    else:
+        pin()
     quick_compilation()
     import jax
 
@@ -91,12 +102,7 @@ def main() -> None:
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
     from jaxhydro.files import write_whole
 
-    device = jax.devices()[0]
-    gpu = None if device.platform == "cpu" else device.device_kind
-    if gpu is not None:
-        # programs for it are compiled by many cores; the CPU's threads, which are there by now, stay on one
-        jax.devices("cpu")
-        os.sched_setaffinity(0, range(cores))
+    gpu = jax.devices()[0].device_kind if on_gpu() else None
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
     parts = [arguments.only] if arguments.only else [name for name in PARTS if not (arguments.quick and name == SLOW)]

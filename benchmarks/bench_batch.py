@@ -99,31 +99,29 @@ def batch_of(model: Model, duration: float, count: int) -> Batch:
     return Batch(stacked, parts[0][1], round(duration / STEP))
 
 
-def throughputs(batch: Batch, sizes: Sequence[int], rounds: int, now: Callable[[], float]) -> dict[str, dict[int, float]]:
-    """Simulated seconds of sea per second, by precision and number of seas at once, up to what the memory holds."""
-    found: dict[str, dict[int, float]] = {}
-    for precision in PRECISIONS:
-        own, found[precision] = batch.as_(precision), {}
-        for size in sizes:
-            try:
-                some = own.of(size)
-                turns = contest({"march": lambda some=some, of=precision: some.march(of)}, rounds, now)  # type: ignore[misc]
-            except jax.errors.JaxRuntimeError:
-                break  # out of memory
-            found[precision][size] = size * batch.steps * STEP / turns["march"].median
-    return found
+def throughputs(
+    batch: Batch, precision: str, sizes: Sequence[int], rounds: int, now: Callable[[], float]
+) -> Iterator[tuple[int, float]]:
+    """Numbers of seas at once, up to what the memory holds, each with the simulated seconds of sea per second."""
+    own = batch.as_(precision)
+    for size in sizes:
+        try:
+            some = own.of(size)
+            turns = contest({"march": lambda some=some: some.march(precision)}, rounds, now)  # type: ignore[misc]
+        except jax.errors.JaxRuntimeError:
+            return  # out of memory
+        yield size, size * batch.steps * STEP / turns["march"].median
 
 
-def against_a_core(batch: Batch, found: dict[str, dict[int, float]], rounds: int) -> Iterator[Row]:
-    """The GPU's best throughput over that of one core of the same machine, its best batch of one and `DISTINCT`."""
+def against_a_core(batch: Batch, best: dict[str, float], rounds: int) -> Iterator[Row]:
+    """The GPU's best throughput over that of one core of the same machine, of one sea or `DISTINCT`."""
     core = jax.devices("cpu")[0]
     with jax.default_device(core):
         there = batch._replace(arrays=jax.device_put(batch.arrays, core))
-        by_core = throughputs(there, (1, DISTINCT), rounds, time.process_time)
-    for precision, by_size in found.items():
-        best = max(by_core[precision].values())
-        yield Row(f"One core of the same machine, {precision}, simulated time over CPU time", f"{rounded(best):.0f}")
-        yield Row(f"The best batch against that core, {precision}", f"{max(by_size.values()) / best:.3g} times")
+        for precision, value in best.items():
+            one = max(each for _, each in throughputs(there, precision, (1, DISTINCT), rounds, time.process_time))
+            yield Row(f"One core of the same machine, {precision}, simulated time over CPU time", f"{rounded(one):.0f}")
+            yield Row(f"The best batch against that core, {precision}", f"{value / one:.3g} times")
 
 
 def error_of_float32(model: Model, duration: float) -> dict[str, float]:
@@ -166,19 +164,20 @@ def measure(quick: bool, figure: Path | None = None) -> Iterator[tuple[list[Row]
     model, duration = model_of(), 30.0 if quick else SHORT
     sizes = (1, 2) if quick else SIZES["cpu" if cpu else "gpu"]
     batch = batch_of(model, duration, min(DISTINCT, max(sizes)))
-    found = throughputs(batch, sizes, 1 if quick else ROUNDS, now)
-    taken = "CPU time" if cpu else "time"
+    taken, rounds = "CPU time" if cpu else "time", 1 if quick else ROUNDS
+    found: dict[str, dict[int, float]] = {precision: {} for precision in PRECISIONS}
+    for precision, by_size in found.items():
+        for size, value in throughputs(batch, precision, sizes, rounds, now):
+            by_size[size] = value
+            many = f"{size} sea{'s' * (size > 1)} at once, {precision}, simulated time over {taken}"
+            yield [Row(many, f"{rounded(value):.0f}")], []
+    best = {precision: max(by_size.values()) for precision, by_size in found.items()}
     rows = [
-        Row(f"{size} sea{'s' * (size > 1)} at once, {precision}, simulated time over {taken}", f"{rounded(value):.0f}")
-        for precision, by_size in found.items()
-        for size, value in by_size.items()
-    ]
-    rows += [
-        Row(f"The best batch against one sea alone, {precision}", f"{max(by_size.values()) / by_size[1]:.3g} times")
+        Row(f"The best batch against one sea alone, {precision}", f"{best[precision] / by_size[1]:.3g} times")
         for precision, by_size in found.items()
     ]
     if not cpu:
-        rows += against_a_core(batch, found, 1 if quick else ROUNDS)
+        rows += against_a_core(batch, best, rounds)
     each = sum(x.nbytes for x in jax.tree.leaves(batch.of(1).arrays))
     rows.append(Row("Memory of a sea that is ready, float64", f"{each / 1e6:.3g} MB for {duration:g} s of second order"))
     off = ", ".join(f"{dof} {value:.1g}" for dof, value in error_of_float32(model, 60.0 if quick else HOUR).items())

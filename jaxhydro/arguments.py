@@ -263,7 +263,7 @@ Nuts = Annotated[bool, typer.Option("--nuts", help="Draw from the posterior (pip
 Level = Annotated[float, typer.Option("--level", help="Probability of the intervals.")]
 DrawSeed = Annotated[int, typer.Option("--seed", help="Of the bootstrap and of NUTS.", min=0)]
 Workers = Annotated[
-    int | None, typer.Option(help="Processes, one core or GPU each.", show_default="as many as cores and memory hold", min=1)
+    int | None, typer.Option(help="Processes, one core each; GPUs are shared.", show_default="as cores and memory hold", min=1)
 ]
 Batch = Annotated[
     int | None,

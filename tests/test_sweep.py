@@ -19,7 +19,7 @@ from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.notes import impossible, notes, shares_in_band
 from jaxhydro.sweep.plot import exceedance_figure, scatter_figure
-from jaxhydro.sweep.resources import bytes_of_run, supports_of
+from jaxhydro.sweep.resources import bytes_of_run, chosen, supports_of
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.sweep.statistics import equivalent_ranges, frequencies, kept_of
 
@@ -229,6 +229,23 @@ def test_supports_are_counted_as_a_sea_has_them(order, cutoff) -> None:
     assert supports_of(setup) == max(sea.wavenumber.size for sea in seas)
     size = max(sea.series.nbytes for sea in seas)
     assert 2.4 * size < bytes_of_run(setup) < 5 * size
+
+
+def test_gpus_are_shared_by_workers(monkeypatch) -> None:
+    """Whatever CUDA calls them; a share of the memory holds a power of two of runs, no worker starts without work."""
+    setup = Setup(plan(), jh.load_model("volturnus-s"), np.arange(0.0, 150.0, 0.5), 0.25, None)
+    size = bytes_of_run(setup)
+    memory = {"bytes_limit": 100 * size}
+    gpus = [SimpleNamespace(platform="gpu", memory_stats=lambda: memory)] * 2
+    monkeypatch.setattr("jax.local_devices", lambda: gpus)
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: range(16), raising=False)
+    monkeypatch.delenv("CUDA_VISIBLE_DEVICES", raising=False)
+    how = chosen(setup, 1000, None, None)
+    assert (how.workers, how.batch, how.devices) == (8, 8, tuple("01010101"))  # 0.6 of 100 runs' memory, by four
+    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "3,5")
+    assert chosen(setup, 1000, 3, None)[:3] == (3, 16, ("3", "5", "3"))
+    assert chosen(setup, 5, None, None)[:3] == (5, 1, ("3", "5", "3", "5", "3"))
+    assert chosen(setup, 1000, None, 300)[:3] == (4, 300, ("3", "5", "3", "5"))
 
 
 @pytest.mark.parametrize(("order", "cutoff"), [(1, 1.2), (2, 0.7), (2, 50.0)])

@@ -287,10 +287,11 @@ def test_a_cluster_that_loses_a_worker_gives_the_same(file, whole, tmp_path) -> 
 
 @pytest.mark.parametrize("order", [1, 2])
 def test_runs_at_once_are_runs_one_by_one(whole, order) -> None:
-    """The way of GPUs, here on the CPU: to rounding."""
+    """The way of GPUs, here on the CPU: to rounding. Those of another heading are a group of their own."""
     setup = setup_in(whole / INPUTS)
     setup = setup._replace(plan=replace(setup.plan, order=order))
-    runs = [setup.plan.run(number) for number in (0, 9, 16, 10)]
+    runs = [setup.plan.run(number) for number in (0, 9, 16, 10, 11)]
+    runs[1] = runs[1]._replace(case=runs[1].case._replace(heading=30.0))
     for run, one in zip(runs, outcomes(setup, runs)):
         alone = outcome(setup, run)
         if isinstance(alone, str):

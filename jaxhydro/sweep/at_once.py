@@ -59,7 +59,7 @@ def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray
         shared, step, steps = shared_by(model, seas[same[0][0]], times, limit)
         padded = [own for _, own in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
         own, axes = _stacked(padded)
-        position, reached, bound = _vectorised(own, axes, shared, points, at, jnp.asarray(step), steps)
+        position, reached, bound = _vectorised(own, axes, len(padded), shared, points, at, jnp.asarray(step), steps)
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
@@ -91,7 +91,7 @@ def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:
 
 
 @eqx.filter_jit
-def _vectorised(own, axes, shared, points, times, step, steps):
+def _vectorised(own, axes, count, shared, points, times, step, steps):
     like = shared.like
 
     def one(own):
@@ -102,4 +102,4 @@ def _vectorised(own, axes, shared, points, times, step, steps):
         bound = elevation_spectrum(waves, like.environment, jnp.zeros(2), like.kinds) if like.order == 2 else None
         return position, farthest(position, points, model.through(sea)), bound
 
-    return eqx.filter_vmap(one, in_axes=(axes,))(own)
+    return eqx.filter_vmap(one, in_axes=(axes,), axis_size=count)(own)

@@ -18,8 +18,8 @@ TRIES = 3  # processes that one batch may end, before its runs are given up
 class Worker:
     """A process that simulates runs, and its pipes."""
 
-    def __init__(self, folder: Path, device: str | None, each: int = 1) -> None:
-        self.folder, self.device, self.each, self.ended = folder, device, each, False
+    def __init__(self, folder: Path, device: str | None) -> None:
+        self.folder, self.device, self.ended = folder, device, False
         self.process = self._started()
 
     def _started(self) -> "subprocess.Popen[str]":
@@ -28,7 +28,7 @@ class Worker:
         self.words = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")  # noqa: SIM115
         return subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.words, text=True,
-            env=environment(self.device, self.each), start_new_session=True,
+            env=environment(self.device), start_new_session=True,
         )  # fmt: skip
 
     def ask(self, numbers: Sequence[int]) -> Found:
@@ -71,9 +71,7 @@ def simulated(folder: Path, batches: Sequence[Sequence[int]], workers: int, devi
     for batch in batches:
         left.put(batch)
     answers: queue.SimpleQueue[Found | BaseException] = queue.SimpleQueue()
-    gpus: list[str | None] = list(devices) or [None] * workers
-    gpus = gpus[: len(batches)]
-    every = [Worker(folder, gpu, gpus.count(gpu)) for gpu in gpus]
+    every = [Worker(folder, devices[i] if devices else None) for i in range(min(workers, len(batches)))]
     stopped = threading.Event()
 
     def serve(worker: Worker) -> None:

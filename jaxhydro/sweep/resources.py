@@ -20,9 +20,8 @@ from jaxhydro.waves.supports import MOST, Box, supports
 COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
 PROCESS = 700e6  # bytes of a worker before its first sea
 SHARE = 0.6  # of what is available, that is used
-SHARE_OF_GPU = 0.9
-MOST_AT_ONCE = 512  # runs: beyond, a GPU gains little
-PER_GPU = 2  # workers: while one makes statistics on its core, the other keeps the GPU busy
+MOST_AT_ONCE = 512  # runs: that progress is seen
+PER_GPU = 4  # workers: while one makes statistics on its core, the others keep the GPU busy
 
 
 class Chosen(NamedTuple):
@@ -83,7 +82,7 @@ def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> C
         each = -(-count // len(gpus))  # workers of one GPU
         names = os.environ.get("CUDA_VISIBLE_DEVICES", "").split(",")
         names = names if len(names) == len(gpus) and all(names) else [str(i) for i in range(len(gpus))]
-        fits = max(1, min(MOST_AT_ONCE, int(SHARE_OF_GPU * available / each / size)))
+        fits = max(1, min(MOST_AT_ONCE, int(SHARE * available / each / size)))
         taken = min(1 << (fits.bit_length() - 1), power_of_two(-(-runs // count))) if batch is None else batch
         count = min(count, -(-runs // taken))
         words = (

@@ -19,9 +19,8 @@ Found = list[tuple[int, bool]]  # numbers of runs, and whether they are done
 FLAG = "--xla_cpu_multi_thread_eigen=false"
 
 
-def environment(device: str | None = None, each: int = 1) -> dict[str, str]:
-    """Environment variables of a worker: one thread of arithmetic, on the GPU `device` where one is named, whose memory `each`
-    workers share."""
+def environment(device: str | None = None) -> dict[str, str]:
+    """Environment variables of a worker: one thread of arithmetic, on the GPU `device` where one is named."""
     found = dict(os.environ)
     found["NPROC"] = "1"  # threads of XLA's pool
     if FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
@@ -31,9 +30,6 @@ def environment(device: str | None = None, each: int = 1) -> dict[str, str]:
     found.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # of GPU memory, which the processes share
     if device is not None:
         found["CUDA_VISIBLE_DEVICES"] = device
-        # a share in one piece: where it grows piece by piece, large arrays soon find no room
-        found["XLA_PYTHON_CLIENT_PREALLOCATE"] = "true"
-        found["XLA_PYTHON_CLIENT_MEM_FRACTION"] = f"{float(found.get('XLA_PYTHON_CLIENT_MEM_FRACTION', 0.75)) / each:.3f}"
     return found
 
 
