@@ -36,7 +36,7 @@ PACKAGES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix
 
 
 def on_gpu() -> bool:
-    """Whether JAX will find one. To be asked before it is imported."""
+    """Whether JAX will look for one, as far as can be told before it starts."""
     asked = os.environ.get("JAX_PLATFORMS", "cuda")
     return "cuda" in asked and any(importlib.util.find_spec(f"jax_cuda{version}_plugin") for version in (12, 13))
 
@@ -102,7 +102,8 @@ def main() -> None:
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
     from jaxhydro.files import write_whole
 
-    gpu = jax.devices()[0].device_kind if on_gpu() else None
+    device = jax.devices()[0]
+    gpu = None if device.platform == "cpu" else device.device_kind
     console = Console(width=None if Console().is_terminal else 160)
     rows, notes = [], []
     parts = [arguments.only] if arguments.only else [name for name in PARTS if not (arguments.quick and name == SLOW)]
