@@ -39,7 +39,7 @@ class Options:
 
     In the default band: below it a sea has no first order worth the name, and what a gauge reads there is bound, or the basin's
     own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge). `kinds`
-    of pairs bind at second order.
+    of pairs bind at second order, differences of frequencies up to `highest_difference` (Hz; None: all).
     """
 
     order: Literal[1, 2] = 2
@@ -48,6 +48,7 @@ class Options:
     low: float = 0.03
     cutoff: float = 0.3
     kinds: tuple[Kind, ...] = KINDS
+    highest_difference: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +97,16 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     inside = float(power[(frequency >= options.low) & (frequency <= options.cutoff)].sum() / max(power.sum(), 1e-300))
     try:
         found = separated_record(run.time, run.wave, environment, position=run.position, heading=run.heading,
-                                 low=options.low, cutoff=options.cutoff, order=options.order, kinds=options.kinds)  # fmt: skip
+                                 low=options.low, cutoff=options.cutoff, order=options.order, kinds=options.kinds,
+                                 highest_difference=options.highest_difference)  # fmt: skip
     except ValueError as error:
         expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
-    sea, notes = IrregularSea(found.waves, environment, options.order, options.stretching, kinds=options.kinds), []
+    sea = IrregularSea(
+        found.waves, environment, options.order, options.stretching, kinds=options.kinds,
+        highest_difference=options.highest_difference,
+    )  # fmt: skip
+    notes = []
     band = f"{options.low:g} to {options.cutoff:g} Hz"
     if found.mismatch > MISMATCH:
         notes.append(f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "

@@ -78,7 +78,8 @@ class Model(eqx.Module):
     long waves (`diffraction.long_waves`), "none". `directions` of strips and ends: "body", those of the displaced member, or
     "earth", those of the undisplaced one, as in OpenFAST. `waves_at`: "displaced", where the platform is, or "mean", at its
     reference position horizontally, as in OpenFAST with WaveDisp = 0 and ExctnDisp = 0: waves then do not tell where it has
-    gone. `lag` and `bound` are those of `Cylinders`.
+    gone. `centripetal`: whether strips and ends feel that part of their acceleration, as water has it, or none, as in programs
+    whose added mass takes accelerations alone. `lag` and `bound` are those of `Cylinders`.
 
     The default replaces Ca in the excitation altogether: that is the theory, for a Ca that was tuned to the added mass, and
     the step from 1 + Ca to 2 which it makes is part of what a calibration in still water cannot know.
@@ -92,6 +93,7 @@ class Model(eqx.Module):
     diffraction: str = eqx.field(static=True, default="maccamy_fuchs")
     directions: str = eqx.field(static=True, default="body")
     waves_at: str = eqx.field(static=True, default="displaced")
+    centripetal: bool = eqx.field(static=True, default=True)
     lag: bool = eqx.field(static=True, default=True)
     bound: bool = eqx.field(static=True, default=True)
 
@@ -217,7 +219,7 @@ class Model(eqx.Module):
         p, q, r = state.velocity[3:]
         square = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r])
         inward, outgoing = (square @ hull.inward).reshape(2, -1)
-        inward = inward + away * outgoing
+        inward = inward + away * outgoing if self.centripetal else jnp.zeros_like(away)
         lines = Lines(away, inward)
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
         end_wet = end_wetted(depth[roots.shape[1] - m :])

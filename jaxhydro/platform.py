@@ -101,7 +101,7 @@ def build(platform: schema.Platform) -> Model:
             EndInertia(pick(of_ends["Ca"])),
             EndDrag(pick(of_ends["Cd"])),
         ]
-    forms = (platform.wetting, platform.diffraction, platform.directions, platform.waves_at)
+    forms = (platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal)
     model = Model(environment, body, hull, tuple(loads), *forms)
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))

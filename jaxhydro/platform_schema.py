@@ -256,8 +256,8 @@ class SeaStateLaws(Schema):
 
 
 class Platform(Consistent):
-    """A platform file. `wetting`, `drag_speed`, `diffraction`, `directions` and `waves_at` choose between
-    forms of the strip loads (see the loads and `Model`)."""
+    """A platform file. `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at` and `centripetal` choose
+    between forms of the strip loads (see the loads and `Model`)."""
 
     name: Text
     water: Water
@@ -281,6 +281,7 @@ class Platform(Consistent):
     diffraction: Literal["maccamy_fuchs", "ramp", "none"] = "maccamy_fuchs"
     directions: Literal["body", "earth"] = "body"
     waves_at: Literal["displaced", "mean"] = "displaced"
+    centripetal: bool = True
     drag_speed: Literal["vector", "component"] = "vector"
     sea_state_laws: SeaStateLaws | None = None
 

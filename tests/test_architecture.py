@@ -19,6 +19,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
     ("jaxhydro.waves.sea", "jaxhydro.waves.second_order", "jaxhydro.waves.sea_state", "jaxhydro.waves.envelope"),
     ("jaxhydro.waves.irregular", "jaxhydro.waves.support_sea"),
+    ("jaxhydro.waves.preparation",),
     ("jaxhydro.waves.irregular_sea",),
     ("jaxhydro.waves",),
     ("jaxhydro.loads.base",),

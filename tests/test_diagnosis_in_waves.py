@@ -3,32 +3,39 @@
 import dataclasses
 import json
 import re
+from importlib import resources
 from pathlib import Path
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import jaxhydro as jh
 from calibration import load_campaign
 from calibration.applied import applied
 from calibration.campaign import Campaign
+from calibration.discovery import conventions
 from calibration.discovery.afar import FINENESS, from_afar
 from calibration.discovery.diagnose import diagnose
+from calibration.discovery.kept import keep, resumed
 from calibration.discovery.looks import Place
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.pose import pose
-from calibration.discovery.records import options_for
-from calibration.discovery.search import FIRST_ORDER, Search
+from calibration.discovery.records import by_a_program, highest_difference, options_for
+from calibration.discovery.search import FIRST_ORDER, SIMPLER, Search
 from calibration.discovery.signs import turned
 from calibration.report import write_report
 from calibration.runs import runs
+from calibration.seas import seas_of
+from jaxhydro.loads.strip_drag import StripDrag
 
 RHO, G, DEPTH = 1000.0, 9.81, 200.0
 RADIUS, DRAUGHT = 3.0, 10.0
 AREA = np.pi * RADIUS**2
 MASS, ADDED, DAMPING, TENSION, LENGTH = RHO * AREA * DRAUGHT, 6.0e4, 4.0e4, 1.0e4, 97.0
 STEP, DURATION, TRANSIENT, NOISE = 0.5, 600.0, 100.0, 5e-4
+HIGHEST = 0.055  # Hz, of differences of frequencies that a program has
 TONES = {0.31: 4.0e3, 0.43: 3.0e3}  # rad/s, N: what no candidate has
 PLATFORM = f"""
 name: a buoy
@@ -172,6 +179,48 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     assert found.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
 
 
+def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
+    """Records with differences of frequencies up to some, and no sums: where motions are followed best so, seas are as the
+    program has them, and are when the search goes on. With sums, records are a basin's."""
+    (tmp_path / "platform.yaml").write_text(re.sub("excitation: .*\n", "", PLATFORM))
+    model = jh.load_model(tmp_path / "platform.yaml")
+    times, tests = np.arange(0.0, DURATION, STEP), []
+    for seed in (1, 2):
+        waves = jh.spectrum_components(
+            lambda w: jh.jonswap(w, 3.0, 9.0), DURATION, model.environment, low=0.05, cutoff=0.2, seed=seed
+        )
+        program = dict(kinds=("difference",), acting="at the origin", highest_difference=HIGHEST)
+        sea = jh.IrregularSea(waves, model.environment, 2, **program)
+        moved = jh.simulate(model, times, sea)
+        columns = np.column_stack([times, sea.gauge(times), moved["surge"], moved["heave"]])
+        columns[:, 1:] += np.random.default_rng(seed).normal(0, 1e-3, columns[:, 1:].shape)
+        np.savetxt(tmp_path / f"sea-{seed}.csv", columns, "%.6f", ",", header="t,wave,surge,heave", comments="")
+        tests.append({"id": f"sea-{seed}", "kind": "irregular", "file": f"sea-{seed}.csv", "use": ("fit", "holdout")[seed - 1],
+                      "transient": TRANSIENT, "peak_period": 9.0})  # fmt: skip
+    motions = {dof: {"column": dof, "unit": "m"} for dof in ("surge", "heave")}
+    manifest = {
+        "name": "a buoy", "platform": "platform.yaml", "scale": 1.0, "noise": dict.fromkeys(motions, 1e-3), "tests": tests,
+        "channels": {"time": {"column": "t", "unit": "s"}} | motions,
+        "wave_channel": {"column": "wave", "unit": "m", "position": [0.0, 0.0]},
+    }  # fmt: skip
+    (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
+    campaign = load_campaign(tmp_path)
+    options, _ = options_for(campaign)
+    assert by_a_program(options)
+    assert highest_difference(seas_of(campaign, model.environment, options)) == pytest.approx(HIGHEST, abs=0.002)
+    cut = dataclasses.replace(options, highest_difference=HIGHEST)
+    assert highest_difference(seas_of(campaign, model.environment, cut)) is None
+    posed = pose(campaign, options)
+    search = Search(campaign, posed, lambda *_: None)
+    state = search.declared()
+    assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
+    assert [note for note in search.notes if all(said in note for said in SIMPLER.values())]
+    keep(tmp_path / "kept", search, [state], 1.0)
+    again = Search(campaign, posed, lambda *_: None)
+    assert len(resumed(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
+    assert set(pose(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
+
+
 def test_second_order_is_taken_again(tmp_path: Path) -> None:
     """Where waves of first order were taken, and follow no better any more, those of the record; with the declared model that
     was fitted in them."""
@@ -185,7 +234,7 @@ def test_second_order_is_taken_again(tmp_path: Path) -> None:
     assert search.blocks.study.seas[0].sea is search.study.seas[0].sea is not of_second.study.seas[0].sea
     search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER} (by 30 in -2 ln L)", "another"]
     lost = dataclasses.replace(declared, likelihood=declared.likelihood - 1e3)  # waves of first order follow far better
-    assert search.in_second_order(lost, 1) is None and search.study.seas is search.study.linear_seas
+    assert search.in_second_order(lost, 1) is None and search.study.seas is search.study.other_seas["first"]
     again = search.in_second_order(declared, 1)
     assert again is not None and again[0] is declared and search.study.seas is search.posed.study.seas
     assert search.notes == ["another"] and search.declared_in_second_order is None
@@ -257,3 +306,39 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)
     assert not looks[0].slopes[~fitted].any() and np.abs(looks[0].slopes[fitted]).max() > 1e-3
     assert_allclose(looks[0].slopes, looks[1].slopes, rtol=0, atol=1e-9 * np.abs(looks[1].slopes).max())
+
+
+@pytest.mark.parametrize("better, simpler", [(40.0, True), (20.0, False)])
+def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where calibrated decays are followed better so, and no word of the platform file says how strips are taken."""
+    campaign = load_campaign(resources.files("jaxhydro") / "campaigns" / "volturnus-s-decays")
+    asked: list[Campaign] = []
+    monkeypatch.setattr(conventions, "prepare", lambda one: asked.append(one) or one)
+    monkeypatch.setattr(conventions, "run", lambda one, near: None)
+    monkeypatch.setattr(conventions, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
+    found = conventions.conventions_of(campaign, lambda *_: None)
+    model = found.campaign.model
+    assert [one.model.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
+    assert (model.directions, model.centripetal) == (("earth", False) if simpler else ("body", True))
+    assert [load.coupled for load in model.loads if isinstance(load, StripDrag)] == [not simpler]
+    assert bool(found.notes) is simpler
+    said = dataclasses.replace(campaign, platform=campaign.platform.model_copy(update={"drag_speed": "vector"}))
+    assert conventions.conventions_of(said, lambda *_: None) == conventions.Conventions(said)
+    assert len(asked) == 2
+
+
+def test_errors_below_the_noise_tell_nothing() -> None:
+    """-2 ln L of decays: of four observations in a cycle, and of errors no smaller than the noise."""
+    noise = [{"surge": 0.1, "pitch": 1e-3}, {"surge": 0.1, "pitch": 1e-3}]
+    data = SimpleNamespace(dofs=(0, 4), pace=[2 * np.pi / 10, 2 * np.pi / 5], time=np.zeros((2, 9)), present=np.ones((2, 2, 9)))
+
+    def of(*squares: list[float]) -> float:
+        records = [SimpleNamespace(noise=one) for one in noise]
+        problem = SimpleNamespace(data=data)
+        fit = SimpleNamespace(problem=problem, records=records, ends=[100.0, 100.0], mean_squares=lambda: np.array(squares))
+        return conventions._unlikelihood(fit)  # type: ignore[arg-type]
+
+    least = of([0.01, 1e-6], [0.01, 1e-6])
+    assert of([0.001, 1e-9], [0.01, 1e-8]) == pytest.approx(least)
+    assert of([0.02, 1e-6], [0.01, 1e-6]) - least == pytest.approx(40 * np.log(2))
+    assert of([0.01, 1e-6], [0.01, 2e-6]) - least == pytest.approx(80 * np.log(2))

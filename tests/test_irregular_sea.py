@@ -77,6 +77,31 @@ def test_against_direct_summation(order: int, stretching: str, heading: float) -
         assert_allclose(waves.gauge(np.array([time])), exact.elevation(now, jnp.zeros((2, 1))), atol=1e-9)
 
 
+def test_bound_waves_that_act_at_the_origin() -> None:
+    """First order where the points are, and of what it binds the horizontal flow at x = y = 0, by direct summation."""
+    waves = sea(2, heading=0.7, acting="at the origin", kinds=("difference",), highest_difference=0.05)
+    fast = waves.prepared(HULL, CYLINDERS, Clock(10.0, 0.25, 100, (0.0, 0.5), 2))
+    everywhere = dataclasses.replace(waves, acting="everywhere").direct()
+    first = dataclasses.replace(waves, order=1).direct()
+    along = np.array([-30.0, -5.0, 0.0, 10.0, 33.0])
+    points = jnp.asarray(np.stack([along * np.cos(0.7), along * np.sin(0.7), np.array([-20.0, -10.0, -3.0, 0.0, 3.0])]))
+    origin = points.at[:2].set(0.0)
+    for time in (10.0, 10.125, 33.5):
+        now = jnp.asarray(time)
+        found, free = (eqx.filter_jit(s.flow)(now, points, CYLINDERS).earth() for s in (fast, first))
+        both, alone = (s.flow(now, origin, CYLINDERS).earth() for s in (everywhere, first))
+        for name in ("velocity", "acceleration", "diffracted"):
+            bound = np.asarray(getattr(both, name) - getattr(alone, name))
+            expected = np.asarray(getattr(free, name)) + bound * [[1.0], [1.0], [0.0]]
+            scale = np.abs(expected).max()
+            assert np.abs(bound[:2]).max() > 1e-3 * scale
+            assert_allclose(getattr(found, name), expected, atol=1e-5 * scale, err_msg=name)
+        assert_allclose(found.pressure, free.pressure, atol=1e-5 * np.abs(free.pressure).max())
+        assert_allclose(fast.elevation(now, points[:2]), everywhere.elevation(now, points[:2]), atol=5e-5)
+    with pytest.raises(ValueError, match="for simulations"):
+        waves.direct()
+
+
 def test_slopes_of_the_field() -> None:
     """Derivatives by place, which have a rule of their own, against finite differences; reverse against forward."""
     fast = sea().prepared(HULL, CYLINDERS, Clock(10.0, 0.25, 100, (0.0,)))

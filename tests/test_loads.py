@@ -476,6 +476,9 @@ def test_centripetal_part_of_added_mass() -> None:
     turned = only(build({**PONTOON, "rA": [20, -20, -16.5], "rB": [20, 20, -16.5]}), StripInertia)
     found = force(turned, [0, 0, 0, 0, 0, 0.1])  # its x acceleration is -r^2 x
     assert_allclose(found[0], RHO * 0.9 * 12.5 * 7 * 40 * 0.01 * 20, rtol=1e-10)
+    without = only(build({**PONTOON, "rA": [20, -20, -16.5], "rB": [20, 20, -16.5]}, centripetal=False), StripInertia)
+    assert_allclose(force(without, [0, 0, 0, 0, 0, 0.1]), 0.0, atol=1e-4)
+    assert_allclose(added_mass(without), added_mass(turned), rtol=1e-14)
 
 
 # lumped terms

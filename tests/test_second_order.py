@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import brentq
 
 from jaxhydro.environment import Environment
@@ -278,6 +278,22 @@ def field(x, environment: Environment):
 
 
 BOTH = ("sum", "difference")
+
+
+def test_differences_above_the_highest_bind_nothing() -> None:
+    """All pairs written out, and their elevation by harmonics: only differences are left out, and the highest stays."""
+    sea = random_sea(SHALLOW, 23)
+    highest = 9 / float(sea.period)
+    every, some = bound_waves(sea, SHALLOW), bound_waves(sea, SHALLOW, highest_difference=highest)
+    there = np.asarray(every.elevation != 0)
+    difference = np.arange(len(there)) >= 23 * 24 // 2
+    expected = there & ~(difference & (np.asarray(every.omega) > 9.5 * 2 * np.pi / float(sea.period)))
+    assert_array_equal(np.asarray(some.elevation != 0), expected)
+    whole, part = (np.asarray(elevation_spectrum(sea, SHALLOW, (3.0, 4.0), BOTH, to)) for to in (None, highest))
+    sums = np.asarray(elevation_spectrum(sea, SHALLOW, (3.0, 4.0), ("sum",)))
+    differs = np.abs(whole - part) > 1e-15
+    assert_array_equal(np.flatnonzero(differs), np.arange(10, 23))
+    assert_allclose(part[10:], sums[10:], atol=1e-15)
 
 
 @pytest.mark.parametrize(("n", "kinds"), [(1, BOTH), (2, BOTH), (23, ("sum",)), (23, ("difference",)), (150, BOTH)])

@@ -102,7 +102,7 @@ def in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarra
     if not series:
         raise ValueError("no test is long enough to be cut into blocks")
     return replace(
-        study, decays=decays, seas=tuple(seas), linear_seas=(), series=tuple(series), decay_records=tuple(cut),
+        study, decays=decays, seas=tuple(seas), other_seas={}, series=tuple(series), decay_records=tuple(cut),
         own_width=own_width, cuts=tuple(cuts), expected=None,
     ), np.array(numbers)  # fmt: skip
 

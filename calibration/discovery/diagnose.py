@@ -9,10 +9,11 @@ from calibration.campaign import Campaign
 from calibration.discovery.anatomy import anatomy
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.conclusion import conclude, much
+from calibration.discovery.conventions import Conventions, conventions_of
 from calibration.discovery.judgement import State, given_up
 from calibration.discovery.kept import keep, resumed
 from calibration.discovery.pose import pose
-from calibration.discovery.records import options_for
+from calibration.discovery.records import by_a_program, options_for
 from calibration.discovery.result import Diagnosis
 from calibration.discovery.search import ROUNDS, Search
 from calibration.discovery.signs import in_words, reversed_channels, turned
@@ -58,7 +59,9 @@ def diagnose(
 
     def begun_with(campaign: Campaign) -> tuple[Search, tuple[str, ...]]:
         how, notes = options_for(campaign) if options is None else (options, ())
-        search = Search(campaign, pose(campaign, how, candidates), say)
+        taken = conventions_of(campaign, say) if by_a_program(how) else Conventions(campaign)
+        search = Search(taken.campaign, pose(taken.campaign, how, candidates), say)
+        search.plain, notes = taken.fit, (*notes, *taken.notes)
         states.extend([] if kept is None else resumed(kept, search))
         return search, notes
 
@@ -77,7 +80,7 @@ def diagnose(
         unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
         warnings = [str(finding) for finding in campaign.findings]
         every = (*notes, *search.notes, *lost, *unknown, *warnings)
-        return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
+        return conclude(search.campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 
     try:
         for again in range(2 * ROUNDS):

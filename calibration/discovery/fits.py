@@ -17,10 +17,11 @@ from calibration.discovery.judgement import Grounds, Left, State, Verdict, judge
 from calibration.discovery.linear import likelihoods
 from calibration.discovery.looks import Look, Place, Prior
 from calibration.discovery.pose import WIDE, Posed
-from calibration.fit import prepare, run
+from calibration.fit import Fit, prepare, run
 from calibration.residuals import first_guess
 
-Order = Literal["first", "second"]
+Order = Literal["second", "first", "cut", "origin", "cut, origin"]
+"""Seas: with the second order that their records have, without, with that part of it, or it there, which `gathering` made."""
 
 LAST = 50  # iterations of what is let in
 LOOKS = 8  # slopes taken anew in that
@@ -32,6 +33,8 @@ class Fits:
 
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
+        self.order: Order = "second"
+        self.plain: Fit | None = None  # an ordinary calibration to the decays, where one is at hand
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
         self.base = self.study.index([*posed.base, *posed.nuisances])
         # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only
@@ -57,8 +60,8 @@ class Fits:
             return Place(x, np.zeros((0, 0)))
         own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
-            plain = prepare(self.campaign)
-            run(plain, near=True)
+            if (plain := self.plain) is None:
+                run(plain := prepare(self.campaign), near=True)
             for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
             rows = [r.id for r in study.decay_records]
@@ -85,8 +88,9 @@ class Fits:
         self.study = replace(self.study, expected=expected(self.study, place))
 
     def take_seas(self, order: Order) -> None:
-        """From now on the seas of this order: with the second order that their records have, or without."""
-        self.study = replace(self.study, seas=self.study.linear_seas if order == "first" else self.posed.study.seas)
+        """From now on the seas of this order."""
+        self.order = order
+        self.study = replace(self.study, seas=self.posed.study.seas if order == "second" else self.study.other_seas[order])
         self.__dict__.pop("blocks", None)  # which were cut from others
 
     def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:

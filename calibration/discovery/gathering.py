@@ -10,6 +10,7 @@ from calibration.campaign import Campaign
 from calibration.discovery.bands import Bands, Rows, bands_of, powers, step_of
 from calibration.discovery.evidence import SeaRecord
 from calibration.discovery.looks import FLOOR, Series
+from calibration.discovery.records import by_a_program, highest_difference
 from calibration.discovery.study import Study
 from calibration.fit import STEPS_PER_PERIOD
 from calibration.manifest import IN_WAVES
@@ -17,7 +18,7 @@ from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem, dominant_period, gather
 from calibration.runs import Run
-from calibration.seas import Options, moving_channels, sea_step, seas_of
+from calibration.seas import Options, moving_channels, sea_of, sea_step, seas_of
 from calibration.stretches import window
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock
@@ -63,16 +64,29 @@ def study_of(
         decays, found, own_width, rows = of_decays(decaying, model, space, from_rest, step, highest)
         series += found
         cuts.append(rows)
-    seas, linear = [], []
+    seas: list[SeaRecord] = []
+    others: dict[str, list[SeaRecord]] = {}
     if waving:
         step = sea_step(model, options)
-        for run, made in seas_of(campaign, model.environment, options):
+        recorded = seas_of(campaign, model.environment, options)
+        highest_bound = highest_difference(recorded) if by_a_program(options) else None
+        for run, made in recorded:
             tests = [r for r in run.records if r.id in waving]
             if not tests:
                 continue
-            sea = _sea_record(run, made.sea, tests, model, space, from_rest, step)
+
+            def record(sea: IrregularSea, linear: bool = False, run: Run = run, tests: Sequence[Record] = tests) -> SeaRecord:
+                return _sea_record(run, sea, tests, model, space, from_rest, step, linear)
+
+            sea = record(made.sea)
             if options.order == 2:
-                linear.append(_sea_record(run, made.sea, tests, model, space, from_rest, step, linear=True))
+                others.setdefault("first", []).append(record(made.sea, linear=True))
+            if by_a_program(options):  # which may have simplified
+                others.setdefault("origin", []).append(record(replace(made.sea, acting="at the origin")))
+            if highest_bound is not None:
+                cut = sea_of(run, model.environment, replace(options, highest_difference=highest_bound)).sea
+                others.setdefault("cut", []).append(record(cut))
+                others.setdefault("cut, origin", []).append(record(replace(cut, acting="at the origin")))
             found, rows = series_of_sea(sea, tests, highest)
             series += found
             cuts.append(rows)
@@ -81,8 +95,8 @@ def study_of(
     if max(steps) > ALONE * sum(steps):
         width = -(-width // 2)
     return Study(
-        space, model, tuple(names), directions, width, decays, tuple(seas), tuple(linear), tuple(series), decaying, own_width,
-        tuple(cuts),
+        space, model, tuple(names), directions, width, decays, tuple(seas),
+        {name: tuple(some) for name, some in others.items()}, tuple(series), decaying, own_width, tuple(cuts),
     )  # fmt: skip
 
 

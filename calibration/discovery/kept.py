@@ -22,6 +22,7 @@ def keep(path: Path, search: "Search", states: list[State], seconds: float) -> N
     """Write what was reached, and what it took (s), whole or not at all. Raises InputError where it cannot be written."""
     content = {
         "of": fingerprint(search),
+        "order": search.order,
         "declared_in_second_order": None if (second := search.declared_in_second_order) is None else named(second),
         "expected": search.study.expected,
         "states": [named(state) for state in states],
@@ -53,8 +54,8 @@ def resumed(path: Path, search: "Search") -> list[State]:
         return replace(state, chosen=tuple(by_name[str(name)] for name in state.chosen))
 
     search.study = replace(search.study, expected=content["expected"])
+    search.take_seas(content["order"])
     if (second := content["declared_in_second_order"]) is not None:
-        search.take_seas("first")
         search.declared_in_second_order = whole(second)
     found = {name: one._replace(before=whole(one.before), after=whole(one.after)) for name, one in content["found"].items()}
     search.found, search.scores, search.rejected = found, content["scores"], content["rejected"]

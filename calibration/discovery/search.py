@@ -20,6 +20,12 @@ FIRST_ORDER = (
     "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions are "
     "followed worse"
 )
+SIMPLER = {
+    "cut": "differences of frequencies above those that the records show bind nothing, as where a program cuts them off",
+    "origin": "waves act at second order by their horizontal flow at the origin, on all of the platform, as in some programs",
+}
+ORDERS: tuple[Order, ...] = ("cut, origin", "origin", "cut", "first")  # a program's as it may be, then what it may be in part
+IN_FIRST = "declared model in waves of first order"
 HOPELESS = 300.0  # of -2 ln L, by which waves of another order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
@@ -47,16 +53,24 @@ class Search(Scoring):
             self.expect(place)
         self.say("declared model: slopes", 0.08)
         state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
-        if not self.study.linear_seas:
+        best, taken, name = state, self.order, "declared model"
+        for order in ORDERS:
+            called = IN_FIRST if order == "first" else f"declared model in waves of another kind ({order})"
+            other = self.in_seas(order, best, called, 0.12) if order in self.study.other_seas else None
+            if other is not None and self.gain(best, other) >= LEAST_TOGETHER:
+                best, taken, name = other, order, called
+        self.take_seas(taken)
+        if best is state:
             return state
-        name = "declared model in waves of first order"
-        first = self.in_seas("first", state, name, 0.12)
-        if first is None or (better := self.gain(state, first)) < LEAST_TOGETHER:
-            self.take_seas("second")
-            return state
-        self.declared_in_second_order = state
-        self.notes.append(f"{FIRST_ORDER} (by {better:.0f} in -2 ln L)")
-        return self.refit(self.study.look(first.look.place, self.base), (), name, 0.14)
+        better = f"(by {self.gain(state, best):.0f} in -2 ln L)"
+        if taken == "first":
+            self.declared_in_second_order = state
+            self.notes.append(f"{FIRST_ORDER} {better}")
+        else:
+            said = "; ".join(SIMPLER[part] for part in taken.split(", "))
+            self.notes.append(f"{said}: motions are followed better so {better}, and the records have no sums of frequencies")
+            self.expect(best.look.place)  # what other seas left is none of it
+        return self.refit(self.study.look(best.look.place, self.base), (), name, 0.14)
 
     def in_second_order(self, state: State, number: int) -> tuple[State, State] | None:
         """The declared model and a state in waves with the second order of their records, where those of first order were taken

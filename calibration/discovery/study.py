@@ -1,6 +1,6 @@
 """A campaign's records and a model with every candidate at its null: looked at from any place along any few parameters."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,7 +35,7 @@ LOST = 1e100  # motions and slopes that are as large are of a simulation that ov
 class Study:
     """All records of a campaign that take part, against one model. Directions (d, p), orthogonal, are what is free: most are
     one parameter each, some move several together. `width` is how many are looked along at a time; `cuts` are the rows of the
-    decays and of every sea; `linear_seas` the seas without the second order that their records have. `expected` (n,) is how
+    decays and of every sea; `other_seas` the seas as they may be instead, by name (`gathering.OTHERS`). `expected` (n,) is how
     large rows are expected beside their floor (`calibration.discovery.expected`), None where that is not known."""
 
     space: ParameterSpace
@@ -45,7 +45,7 @@ class Study:
     width: int
     decays: Problem | None
     seas: tuple[SeaRecord, ...]
-    linear_seas: tuple[SeaRecord, ...]
+    other_seas: Mapping[str, tuple[SeaRecord, ...]]
     series: tuple[Series, ...]
     decay_records: tuple[Record, ...]
     own_width: np.ndarray

@@ -13,7 +13,8 @@ from jaxhydro.integrate import clock, integrate
 from jaxhydro.model import Model, State
 from jaxhydro.simulate import farthest, steps_in
 from jaxhydro.statics import EquilibriumError, equilibrium
-from jaxhydro.waves.irregular_sea import IrregularSea, Preparation
+from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.second_order import elevation_spectrum
 
@@ -99,7 +100,8 @@ def _vectorised(own, axes, count, shared, points, times, step, steps):
         waves = eqx.tree_at(lambda w: (w.amplitude, w.phase), like.components, (amplitude, phase))
         sea = shared.of(waves)
         position = integrate(model, sea, start, times[0], step, steps, "ab4").at(times)[0]
-        bound = elevation_spectrum(waves, like.environment, jnp.zeros(2), like.kinds) if like.order == 2 else None
+        pairs = like.kinds, like.highest_difference
+        bound = elevation_spectrum(waves, like.environment, jnp.zeros(2), *pairs) if like.order == 2 else None
         return position, farthest(position, points, model.through(sea)), bound
 
     return eqx.filter_vmap(one, in_axes=(axes,), axis_size=count)(own)

@@ -29,7 +29,6 @@ from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.statistics import Kept, kept_of
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of
-from jaxhydro.waves.second_order import elevation_spectrum
 from jaxhydro.waves.support_sea import SupportSea
 
 PLATFORM, CALIBRATION, PLAN = "platform.yaml", "calibration.json", "plan.json"  # in a sweep's folder of inputs
@@ -153,13 +152,10 @@ def elevation(
     spectrum = np.zeros(count // 2 + 1, complex)
     spectrum[first : last + 1] = np.asarray(waves.complex_amplitude())
     if sea.order == 2:
-        bound = np.asarray(_bound(waves, sea.environment, jnp.zeros(2), sea.kinds)) if bound is None else bound
+        bound = np.asarray(sea.bound_elevation()) if bound is None else bound
         spectrum[: len(bound)] += bound
     spectrum[0] *= 2
     return np.resize(np.fft.irfft(spectrum, count) * (count / 2), len(times))
-
-
-_bound = eqx.filter_jit(elevation_spectrum)
 
 
 def _lines(model: Model) -> MooringLines | None:

@@ -114,6 +114,7 @@ def record_components(
     order: int = 2,
     tolerance: float = TOLERANCE,
     kinds: tuple[Kind, ...] = KINDS,
+    highest_difference: float | None = None,
 ) -> Components:
     """`separated_record`'s waves. Raises ValueError, too, where they miss the record by more than `tolerance`."""
     found = separated_record(
@@ -127,6 +128,7 @@ def record_components(
         order=order,
         tolerance=tolerance,
         kinds=kinds,
+        highest_difference=highest_difference,
     )
     if found.mismatch > tolerance:
         raise ValueError(
@@ -148,6 +150,7 @@ def separated_record(
     order: int = 2,
     tolerance: float = TOLERANCE,
     kinds: tuple[Kind, ...] = KINDS,
+    highest_difference: float | None = None,
 ) -> Separation:
     """Long-crested first-order waves of an elevation (m) recorded at even `times` (s) by a gauge at `position` (m, earth axes).
 
@@ -158,8 +161,8 @@ def separated_record(
 
     order 1: the record is taken for linear. order 2: eta1 = eta - eta2(eta1) within the band, iterated, by half steps where it
     does not come nearer; the best found is returned, with its mismatch. The bound low-frequency set-down and the sums above
-    `cutoff` are not asked to match: they follow. `kinds` are the pairs that bind. Raises ValueError for uneven times, gaps,
-    or a band out of range.
+    `cutoff` are not asked to match: they follow. `kinds` are the pairs that bind, differences up to `highest_difference`
+    (Hz). Raises ValueError for uneven times, gaps, or a band out of range.
     """
     times, elevation = np.asarray(times, float), np.asarray(elevation, float)
     step = sampling_interval(times)
@@ -197,7 +200,7 @@ def separated_record(
     left, least = measured, np.inf  # what the best trial misses, and its norm over the record's
     while rounds < ROUNDS and least > 0.1 * tolerance and share > 1e-3:
         rounds += 1
-        second = np.asarray(_second_order(waves(trial), environment, position, kinds))[band]
+        second = np.asarray(_second_order(waves(trial), environment, position, kinds, highest_difference))[band]
         missed = measured - trial - second
         mismatch = float(np.linalg.norm(missed) / size)
         if mismatch < least:

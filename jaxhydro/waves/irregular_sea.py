@@ -4,29 +4,32 @@ import math
 from typing import Literal
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
-from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
-from jaxhydro.waves.envelope import envelope
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
+from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth
-from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum, fold
+from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum
 from jaxhydro.waves.support_sea import Clock, SupportSea
-from jaxhydro.waves.supports import Box, supports, weights
+from jaxhydro.waves.supports import Box, supports
 from jaxhydro.waves.transfer import Transfer
 
+Acting = Literal["everywhere", "at the origin"]
+_elevation = eqx.filter_jit(elevation_spectrum)
 EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
 
 
 class IrregularSea(AbstractSea):
     """Components on successive harmonics of a period, with what they bind at second order where `order` is 2: by `kinds` at
-    sums and differences of their frequencies, or at one of these alone.
+    sums and differences of their frequencies, or at one of these alone; differences up to `highest_difference` (Hz; None: all),
+    as with OpenFAST's `WvHiCOffD`. `acting`: bound waves act "everywhere" as waves, or only by their horizontal flow "at the
+    origin", which the whole platform is in, wherever it is: without vertical flow or pressure, as where a program takes long
+    waves for a current that changes.
 
     Stretching and `ramp` (s) are those of `WaveSea`. `flow` and `elevation` are by direct summation, for few points and
     components; simulations call `prepared`.
@@ -38,11 +41,18 @@ class IrregularSea(AbstractSea):
     stretching: Stretching = eqx.field(static=True, default="vertical")
     ramp: float = 0.0
     kinds: tuple[Kind, ...] = eqx.field(static=True, default=KINDS)
+    highest_difference: float | None = eqx.field(static=True, default=None)
+    acting: Acting = eqx.field(static=True, default="everywhere")
 
     def direct(self) -> WaveSea:
-        """The same sea by direct summation: exact, N components and at second order N^2 pairs at every point."""
+        """The same sea by direct summation: exact, N components and at second order N^2 pairs at every point, where they act.
+        Raises ValueError where that is at the origin only."""
+        if self.order == 2 and self.acting != "everywhere":
+            raise ValueError("bound waves that act at the origin only are for simulations: `prepared`")
         waves = PlaneWaves.free(self.components, self.environment)
-        bound = bound_waves(self.components, self.environment, self.kinds) if self.order == 2 else None
+        bound = None
+        if self.order == 2:
+            bound = bound_waves(self.components, self.environment, self.kinds, highest_difference=self.highest_difference)
         return WaveSea(waves, self.environment, self.ramp, self.stretching, bound)
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
@@ -75,11 +85,16 @@ class IrregularSea(AbstractSea):
             there = waves.complex_amplitude() * jnp.exp(-1j * (jnp.asarray(position) @ waves.vector()))
             spectrum[first : last + 1] = np.asarray(there)
         if order != 1 and self.order == 2:
-            spectrum += np.asarray(_elevation(waves, self.environment, jnp.asarray(position, float), self.kinds))
+            spectrum += np.asarray(self.bound_elevation(position))
         omega = 2 * math.pi / float(waves.period) * np.arange(spectrum.size)
         parts = np.array_split(times, max(1, times.size * omega.size // 2_000_000))
         found = np.concatenate([(np.exp(1j * np.outer(part, omega)) @ spectrum).real for part in parts])
         return found * np.asarray(growth(jnp.asarray(times), self.ramp))
+
+    def bound_elevation(self, position: tuple[float, float] = (0.0, 0.0)) -> Complex[Array, " b"]:
+        """`elevation_spectrum` (m) of what is bound, of whatever `order`."""
+        at = jnp.asarray(position, float)
+        return _elevation(self.components, self.environment, at, self.kinds, self.highest_difference)
 
     def prepared(
         self,
@@ -110,7 +125,7 @@ class IrregularSea(AbstractSea):
         linear: bool = False,
         transfer: Transfer | None = None,
         exciting: Excitation | None = None,
-    ) -> "Preparation":
+    ) -> Preparation:
         """What `prepared` works out of frequencies and heading alone, for all seas that have these. Raises as it does."""
         waves, depth = self.components, float(self.environment.depth)
         heading, period = float(waves.heading[0]), float(waves.period)
@@ -149,136 +164,3 @@ class IrregularSea(AbstractSea):
             box.half,
             linear,
         )
-
-
-class Preparation(eqx.Module):
-    """Supports, their weights, a hull's cylinders and computed forces, a clock: what seas of the frequencies, the heading and
-    all else of `like` share, whose amplitudes and phases are their own. `of` may be vectorised over these."""
-
-    like: IrregularSea
-    table: Float[Array, "g r"]
-    spacing: float
-    wavenumber: Float[Array, " r"]
-    fade: Float[Array, " r"]
-    middle: Float[Array, ""]
-    along: Float[Array, "2"]
-    radius: Float[Array, " c"]
-    options: tuple[bool, bool, bool] = eqx.field(static=True)
-    exciting: Excitation | None
-    transfer: Transfer | None
-    weight: Float[Array, " w"]  # of `envelope`
-    share: Float[Array, " t"]
-    fundamental: float  # rad/s
-    size: int = eqx.field(static=True)  # steps in a period
-    clock: Clock = eqx.field(static=True)
-    half: float = eqx.field(static=True)  # m, of the box
-    linear: bool = eqx.field(static=True)
-
-    def of(self, waves: Components) -> SupportSea:
-        """The sea of these components, made ready."""
-        like, clock = self.like, self.clock
-        arrays = (self.table, self.spacing, self.middle, self.along, self.radius)
-        order = 1 if self.linear else like.order
-        spectrum = _spectrum(waves, like.environment, order, like.kinds, self.options, *arrays, self.exciting)
-        series, fine = _series(spectrum, self.fundamental, self.size, clock, like.ramp)
-        start = jnp.asarray(clock.start)
-        return SupportSea(
-            like.environment,
-            series,
-            fine,
-            self.wavenumber,
-            self.fade,
-            self.middle,
-            self.along,
-            start,
-            jnp.asarray(clock.step),
-            clock.nodes,
-            like.stretching,
-            self.half,
-            0 if self.exciting is None else 6,
-            envelope(waves, like.environment, self.weight, self.share, self.size, start, self.transfer),
-        )
-
-
-_elevation = eqx.filter_jit(elevation_spectrum)
-
-
-@eqx.filter_jit
-def _spectrum(
-    waves: Components,
-    environment: Environment,
-    order: int,
-    kinds: tuple[Kind, ...],
-    options: tuple[bool, bool, bool],
-    table: Float[Array, "g r"],
-    spacing: float,
-    middle: Float[Array, ""],
-    along: Float[Array, "2"],
-    radius: Float[Array, " c"],
-    exciting: Excitation | None,
-) -> Complex[Array, "b f r"]:
-    """Fourier amplitudes of the supports' quantities, by harmonic: see `SupportSea.series`."""
-    lag, diffract_bound, ramp = options
-    depth = environment.depth
-    # seen from the middle of the box
-    phase = waves.phase - waves.wavenumber * middle
-    waves = Components(waves.amplitude, waves.omega, waves.wavenumber, waves.heading, phase, waves.first)
-
-    def families(omega, vector, elevation, potential, diffracting):
-        k = along @ vector
-        rate = 1j * omega
-        speed = k * potential
-        upward = 1j * k * jnp.tanh(k * depth) * potential
-        factor = maccamy_fuchs(jnp.abs(k) * radius[:, None])
-        factor = factor if lag else jnp.abs(factor).astype(complex)
-        factor = jnp.concatenate([factor, long_waves(jnp.abs(k) * radius[:, None])]) if ramp else factor
-        excited = rate * factor if diffracting else jnp.zeros_like(factor)
-        even = jnp.concatenate([jnp.stack([speed, rate * speed, omega * potential]), excited * speed])
-        odd = jnp.concatenate([jnp.stack([upward, rate * upward]), excited * upward])
-        return jnp.concatenate([even, odd, elevation[None]]), jnp.abs(k)
-
-    def sums(omega, vector, elevation, potential):
-        rows, k = families(omega, vector, elevation, potential, diffract_bound)
-        return jnp.concatenate([rows.real, rows.imag]) @ weights(table, spacing, k)
-
-    first, last = waves.harmonics
-    free = PlaneWaves.free(waves, environment)
-    rows, k = families(free.omega, free.vector, free.elevation, free.potential, True)
-    if exciting is not None:
-        rows = jnp.concatenate([exciting.at(free.omega) * free.elevation, rows])
-    found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
-    if order == 1:
-        return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
-    real, imaginary = jnp.split(fold(waves, environment, sums, kinds), 2, axis=1)
-    bound = real + 1j * imaginary
-    if exciting is not None:
-        bound = jnp.pad(bound, ((0, 0), (6, 0), (0, 0)))
-    return bound.at[first : last + 1].add(found)
-
-
-@eqx.filter_jit
-def _series(
-    spectrum: Complex[Array, "b f r"], fundamental: float, size: int, clock: Clock, ramp: float
-) -> tuple[Float[Array, "t s f 2*r"], Float[Array, "h f 2*r"] | None]:
-    """Real and imaginary parts on the clock, by inverse Fourier transforms, one for each node of the steps."""
-    omega = fundamental * jnp.arange(spectrum.shape[0])
-    kept = clock.steps + 1
-    times = clock.start + clock.step * jnp.arange(kept)
-
-    def at(node: Float[Array, ""]) -> Float[Array, "t f 2*r"]:
-        shifted = spectrum * jnp.exp(1j * omega * (clock.start + node * clock.step))[:, None, None]
-
-        def one(rows):  # (b, r)
-            values = jnp.fft.ifft(rows, n=size, axis=0) * size
-            values = jnp.concatenate([values] * math.ceil(kept / size))[:kept] if kept > size else values[:kept]
-            return jnp.concatenate([values.real, values.imag], axis=1)
-
-        share = growth(times + node * clock.step, ramp)
-        return share[:, None, None] * jnp.swapaxes(jax.lax.map(one, jnp.swapaxes(shifted, 0, 1)), 0, 1)
-
-    series = jnp.stack([at(jnp.asarray(node)) for node in clock.nodes], axis=1)
-    if not clock.fine:
-        return series, None
-    middle = times[: clock.fine] + 0.5 * clock.step
-    halves = jnp.einsum("tb,bfr->tfr", growth(middle, ramp)[:, None] * jnp.exp(1j * omega * middle[:, None]), spectrum)
-    return series, jnp.concatenate([halves.real, halves.imag], axis=2)

@@ -4,6 +4,7 @@ Sharma and Dean (1981), SPE Journal 21, 604-612, equations for E and Phi below; 
 Manuel (2011), Engineering Structures 33, 1246-1257. The mean flow of equal frequencies, which the theory leaves free, is zero.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
@@ -11,7 +12,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Complex, Float, Int, PyTree
+from jaxtyping import Array, Bool, Complex, Float, Int, PyTree
 
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
@@ -69,12 +70,17 @@ def _transfer(
 
 
 def bound_waves(
-    waves: Components, environment: Environment, kinds: Sequence[Kind] = KINDS, set_down: bool = True
+    waves: Components,
+    environment: Environment,
+    kinds: Sequence[Kind] = KINDS,
+    set_down: bool = True,
+    highest_difference: float | None = None,
 ) -> PlaneWaves:
     """All pairs of any components written out, one entry each: exact, and as large as their number.
 
     A difference is ordered so that its frequency is not negative. Equal frequencies of two headings leave a standing pattern
     of elevation, omega = 0 and k not, without flow. `set_down`: with the differences of components and themselves, one entry.
+    Differences above `highest_difference` (Hz) bind nothing.
     """
     omega, vector, amplitude = waves.omega, waves.vector(), waves.complex_amplitude()
     found = []
@@ -88,6 +94,8 @@ def bound_waves(
         e, phi = transfer((omega[i], vector[:, i]), (omega[j], vector[:, j]), environment, "difference")
         weight = amplitude[i] * jnp.conj(amplitude[j])
         beat = omega[i] - omega[j]
+        if highest_difference is not None:
+            weight = jnp.where(_binds(jnp.abs(beat), highest_difference), weight, 0.0)
         turn = jnp.where(beat < 0, -1.0, 1.0)  # Re of the conjugate: i phi changes its sign
         weight = jnp.where(beat < 0, jnp.conj(weight), weight)
         found.append(PlaneWaves(turn * beat, turn * (vector[:, i] - vector[:, j]), weight * e, turn * weight * phi))
@@ -132,12 +140,24 @@ def _padded(rows: Float[Array, "r n"], width: int) -> Float[Array, "r m"]:
     return jnp.concatenate([rows, zeros, rows[:, ::-1], zeros], axis=1)
 
 
-def fold(waves: Components, environment: Environment, reduce: Reduce, kinds: Sequence[Kind] = KINDS) -> PyTree:
+def _binds(beat: Float[Array, "..."], highest: float) -> Bool[Array, "..."]:
+    """Whether differences (rad/s) are up to a highest (Hz), but for rounding."""
+    return beat <= 2 * math.pi * highest * (1 + 1e-9)
+
+
+def fold(
+    waves: Components,
+    environment: Environment,
+    reduce: Reduce,
+    kinds: Sequence[Kind] = KINDS,
+    highest_difference: float | None = None,
+) -> PyTree:
     """Sums over the pairs of each frequency b 2 pi / period, stacked for b = 0 .. 2 last.
 
     `reduce(omega, vector, elevation, potential)` gets up to `TILE` pairs of one frequency at a time (some empty, of no
     amplitude) and gives a pytree of arrays summed over them; the sums of all are added up, so it must be linear in the
     amplitudes, and finite where omega and vector are 0: b = 0 is the set-down, and of empty pairs the vector means nothing.
+    Differences above `highest_difference` (Hz) bind nothing, as with OpenFAST's `WvHiCOffD`.
     Memory is that of the result, also for gradients. Raises ValueError where the components are no successive harmonics.
     """
     n, (first, last) = waves.omega.size, waves.harmonics
@@ -158,6 +178,8 @@ def fold(waves: Components, environment: Environment, reduce: Reduce, kinds: Seq
         weight = jnp.where(one[0] == other[0], 0.5, 1.0) * jax.lax.complex(a[0], a[1])
         weight = weight * jax.lax.complex(b[0], tile.sign * b[1])
         omega = jnp.broadcast_to(tile.harmonic * fundamental, (width,))
+        if highest_difference is not None:
+            weight = jnp.where((tile.sign > 0) | _binds(omega, highest_difference), weight, 0.0)
         return reduce(omega, one[2:] + tile.sign * other[2:], weight * e, weight * phi)
 
     def step(total: PyTree, tile: _Tiles) -> tuple[PyTree, None]:
@@ -172,8 +194,11 @@ def fold(waves: Components, environment: Environment, reduce: Reduce, kinds: Seq
 
 
 def elevation_spectrum(
-    waves: Components, environment: Environment, position: tuple[float, float] | Float[Array, "2"],
+    waves: Components,
+    environment: Environment,
+    position: tuple[float, float] | Float[Array, "2"],
     kinds: Sequence[Kind] = KINDS,
+    highest_difference: float | None = None,
 ) -> Complex[Array, " b"]:
     """Second-order elevation at a horizontal position (m): c_b (m) of eta = Re sum c_b exp(i b 2 pi t / period).
 
@@ -185,4 +210,4 @@ def elevation_spectrum(
     def reduce(*pairs: Any) -> Complex[Array, ""]:
         return pairs[2].sum()
 
-    return fold(moved, environment, reduce, kinds)
+    return fold(moved, environment, reduce, kinds, highest_difference)

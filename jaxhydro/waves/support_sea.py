@@ -55,9 +55,10 @@ class SupportSea(AbstractSea):
     `series` holds, by step, node and quantity, the amplitudes of the supports, real then imaginary: `forces` (0 or 6) of the
     first order on a platform; horizontal velocity and acceleration, pressure over density, what cylinders of each radius are
     excited by horizontally (and `Flow.tuned` for each); vertical velocity and acceleration, and what excites the cylinders
-    vertically; elevation. Only times of the clock may be asked for, but of `drift`, which `envelope` holds. `moved` shifts the
-    box with the sea, and the envelope with the group velocity. Of what comes `back`, nothing does before its delay, and
-    `excitation` and `drift` know nothing.
+    vertically; elevation; where bound waves act `apart`, at the origin only, their horizontal velocity and acceleration and
+    what cylinders of each radius are excited by there, the whole platform with them. Only times of the clock may be asked for,
+    but of `drift`, which `envelope` holds. `moved` shifts the box with the sea, and the envelope with the group velocity. Of
+    what comes `back`, nothing does before its delay, and `excitation`, `drift` and what acts `apart` know nothing.
     """
 
     environment: Environment
@@ -75,6 +76,7 @@ class SupportSea(AbstractSea):
     forces: int = eqx.field(static=True, default=0)
     envelope: Envelope | None = None
     back: Returned | None = None
+    apart: bool = eqx.field(static=True, default=False)
 
     def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
         """The same sea for an integration over `steps` steps that starts `index` steps after the clock did; beyond its end the
@@ -117,7 +119,7 @@ class SupportSea(AbstractSea):
             return here[None]
         total = self.series.shape[0]
         turn = jnp.exp(-2j * self.wavenumber * self.back.middle)
-        families = (here.shape[0] - 6) // 2
+        families = self.families(len(here))
         # horizontal velocity, acceleration, and what cylinders are excited by turn round
         sign = jnp.ones(len(here)).at[jnp.array([0, 1, *range(3, 3 + families)])].set(-1.0)
 
@@ -133,6 +135,10 @@ class SupportSea(AbstractSea):
         begun = time - delay > self.start - 1e-6 * self.step
         return jnp.stack([here, *(jnp.where(begun, one, 0.0) for one in (back, later, then))])
 
+    def families(self, rows: int) -> int:
+        """How often cylinders are excited, of the number of rows."""
+        return (rows - 8) // 3 if self.apart else (rows - 6) // 2
+
     def _met(self, parts: Float[Array, "s ..."]) -> Array:
         """What is met, of what was found of `_sets`: derivatives by the share and the delay cost no more than it does."""
         if self.back is None:
@@ -142,8 +148,9 @@ class SupportSea(AbstractSea):
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
         sets, k, fade = self._sets(time), self.wavenumber, self.fade
-        families = (sets.shape[1] - 6) // 2
-        even, odd = (one.reshape(-1, sets.shape[2]) for one in (sets[:, : 3 + families], sets[:, 3 + families : -1]))
+        families = self.families(sets.shape[1])
+        even, odd = (sets[:, : 3 + families], sets[:, 3 + families : 5 + 2 * families])
+        even, odd = (one.reshape(-1, sets.shape[2]) for one in (even, odd))
         place = self.along @ points[:2] - self.middle
         level, above = stretched(self, self.stretching, time, points, self.environment.depth)
         if above is None:
@@ -156,6 +163,10 @@ class SupportSea(AbstractSea):
             )
             along, up = along[: len(even)] + above * up[len(odd) :], up[: len(odd)] + above * along[len(even) :]
         along, up = (self._met(one.reshape(len(sets), len(one) // len(sets), one.shape[1])) for one in (along, up))
+        if self.apart:
+            rows = sets[0, 6 + 2 * families :]  # of which nothing comes back, and nothing is extrapolated
+            there, _ = field(rows, rows[:0], k, jnp.full_like(place, -self.middle), level, fade)
+            along = along.at[jnp.array([0, 1, *range(3, 3 + families)])].add(there)
         excited: list[Array] = []
         if cylinders is not None and families:
             of, radii = jnp.array(cylinders.of), cylinders.radius.size
@@ -170,7 +181,9 @@ class SupportSea(AbstractSea):
 
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"]:
         place = self.along @ points - self.middle
-        return self._met(jax.vmap(surface, (0, None, None))(self._sets(time)[:, -1], self.wavenumber, place))
+        sets = self._sets(time)
+        rows = sets[:, 5 + 2 * self.families(sets.shape[1])]
+        return self._met(jax.vmap(surface, (0, None, None))(rows, self.wavenumber, place))
 
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
         return None if self.stretching == "none" else self.elevation(time, points)

@@ -1,0 +1,64 @@
+"""How a program takes strips, where a program made a campaign's records and its platform file does not say."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.campaign import Campaign
+from calibration.discovery.judgement import LEAST_TOGETHER
+from calibration.fit import Fit, prepare, run
+from jaxhydro.environment import DOFS
+from jaxhydro.loads.strip_drag import StripDrag
+from jaxhydro.model import Model
+
+KEYS = ("directions", "drag_speed", "centripetal")
+SIMPLER = (
+    "decays are followed better with strips loaded along earth axes, drag by components of the speed and no centripetal "
+    "acceleration, as programs may have it (`directions: earth`, `drag_speed: component`, `centripetal: false` of a platform "
+    "file): so are they taken here, and in what is found"
+)
+
+
+def simpler(model: Model) -> Model:
+    """The model with strips as simpler programs take them: along earth axes, their drag by components, without what a turn
+    adds to their acceleration."""
+    loads = tuple(replace(load, coupled=False) if isinstance(load, StripDrag) else load for load in model.loads)
+    return replace(model, directions="earth", centripetal=False, loads=loads)
+
+
+class Conventions(NamedTuple):
+    """A campaign with strips as its decays have them, calibrated to these (None: nothing had to be found out), and why."""
+
+    campaign: Campaign
+    fit: Fit | None = None
+    notes: tuple[str, ...] = ()
+
+
+def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Conventions:
+    """Strips as simpler programs take them where the decays, calibrated, are then followed better; as they are where the
+    platform file says how they are taken."""
+    decays = [record for record in campaign.used("fit") if record.kind == "decay"]
+    model = campaign.model
+    said = bool(set(KEYS) & campaign.platform.model_fields_set) or model.directions != "body" or not model.centripetal
+    if said or not decays or not model.hull.strips.element:
+        return Conventions(campaign)
+    say("calibrating to the decays", 0.01)
+    run(fit := prepare(campaign), near=True)
+    say("calibrating to the decays, strips as simpler programs take them", 0.02)
+    other = campaign.with_model(simpler(model))
+    run(again := prepare(other), near=True)
+    if (better := _unlikelihood(fit) - _unlikelihood(again)) < LEAST_TOGETHER:
+        return Conventions(campaign, fit)
+    return Conventions(other, again, (f"{SIMPLER} (by {better:.0f} in -2 ln L of the decays)",))
+
+
+def _unlikelihood(fit: Fit) -> float:
+    """-2 ln L of calibrated decays, of errors that are no smaller than stated noise: four observations in a cycle."""
+    data = fit.problem.data
+    noise = np.array([[record.noise.get(DOFS[dof], 0.0) for dof in data.dofs] for record in fit.records])
+    squares = np.maximum(fit.mean_squares(), noise**2)
+    there = np.asarray(data.present).sum(axis=-1) > 0
+    each = 4 * (np.asarray(fit.ends) - np.asarray(data.time[:, 0])) * np.asarray(data.pace) / (2 * np.pi)
+    return float(np.sum(each[:, None] * np.where(there, np.log(np.maximum(squares, 1e-300)), 0.0)))
