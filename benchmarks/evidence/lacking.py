@@ -157,7 +157,9 @@ def words(found: dict[str, Any]) -> str:
     took = f"{found['seconds'] / 60:.0f} minutes" if found["seconds"] > 90 else f"{found['seconds']:.0f} s"
     text = f"Verdict: *{missing['verdict'].replace('_', ' ')}*, {took}. "
     text += f"{share} of the error's energy is left: {missing['unexplained']['signature'].rstrip('.')}.\n\n"
-    text += "".join(f"{note[0].upper()}{note[1:].rstrip('.')}.\n\n" for note in found["notes"])
+    # but for the name of a file
+    notes = [note if "." in note.split(",")[0] else note[0].upper() + note[1:] for note in found["notes"]]
+    text += "".join(f"{note.rstrip('.')}.\n\n" for note in notes)
     if missing["effects"]:
         head = ("Found", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "Cannot be told from")
         text += table(head, effects(found)) + "\n"
