@@ -214,7 +214,8 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     search = Search(campaign, posed, lambda *_: None)
     state = search.declared()
     assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
-    assert [note for note in search.notes if all(said in note for said in SIMPLER.values())]
+    told = [said.format(highest=posed.study.highest_difference) for said in SIMPLER.values()]
+    assert [note for note in search.notes if all(said in note for said in told)]
     keep(tmp_path / "kept", search, [state], 1.0)
     again = Search(campaign, posed, lambda *_: None)
     assert len(resumed(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]

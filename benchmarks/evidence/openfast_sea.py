@@ -15,7 +15,7 @@ import pandas as pd
 
 import jaxhydro as jh
 from benchmarks.evidence.openfast import FOLDER, platform
-from jaxhydro.waves import SupportSea, irregular_sea, second_order
+from jaxhydro.waves import SupportSea, preparation, second_order
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.flow import Cylinders, Flow
 
@@ -108,7 +108,7 @@ class OpenFASTSea(jh.IrregularSea):
 @contextlib.contextmanager
 def _without(beats: float, fundamental: float) -> Iterator[None]:
     """Second order without what OpenFAST leaves out: such pairs are pointed to waves that bind nothing."""
-    tiles, spectrum = second_order._tiles, irregular_sea._spectrum.__wrapped__
+    tiles, spectrum = second_order._tiles, preparation._spectrum.__wrapped__
 
     def fewer(n: int, *others: Any) -> Any:
         found = tiles(n, *others)
@@ -116,7 +116,7 @@ def _without(beats: float, fundamental: float) -> Iterator[None]:
         return eqx.tree_at(lambda t: t.i, found, jnp.where(out, n, found.i))
 
     anew = eqx.filter_jit(lambda *a: spectrum(*a))  # nothing that was traced with all pairs
-    with mock.patch.object(second_order, "_tiles", fewer), mock.patch.object(irregular_sea, "_spectrum", anew):
+    with mock.patch.object(second_order, "_tiles", fewer), mock.patch.object(preparation, "_spectrum", anew):
         yield
 
 

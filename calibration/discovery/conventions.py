@@ -38,11 +38,12 @@ class Conventions(NamedTuple):
 
 def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Conventions:
     """Strips as simpler programs take them where the decays, calibrated, are then followed better; as they are where the
-    platform file says how they are taken."""
+    platform file says how they are taken, or has other laws of drag than a constant coefficient."""
     decays = [record for record in campaign.used("fit") if record.kind == "decay"]
     model = campaign.model
     said = bool(set(KEYS) & campaign.platform.model_fields_set) or model.directions != "body" or not model.centripetal
-    if said or not decays or not model.hull.strips.element:
+    other_drag = any(hasattr(load, "coupled") and not isinstance(load, StripDrag) for load in model.loads)
+    if said or other_drag or campaign.platform.sea_state_laws is not None or not decays or not model.hull.strips.element:
         return Conventions(campaign)
     say("calibrating to the decays", 0.01)
     run(fit := prepare(campaign), near=True)

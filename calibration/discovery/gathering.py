@@ -66,6 +66,7 @@ def study_of(
         cuts.append(rows)
     seas: list[SeaRecord] = []
     others: dict[str, list[SeaRecord]] = {}
+    highest_bound: float | None = None
     if waving:
         step = sea_step(model, options)
         recorded = seas_of(campaign, model.environment, options)
@@ -97,6 +98,7 @@ def study_of(
     return Study(
         space, model, tuple(names), directions, width, decays, tuple(seas),
         {name: tuple(some) for name, some in others.items()}, tuple(series), decaying, own_width, tuple(cuts),
+        highest_difference=highest_bound,
     )  # fmt: skip
 
 

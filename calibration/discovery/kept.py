@@ -48,6 +48,8 @@ def resumed(path: Path, search: "Search") -> list[State]:
         return []
     if not isinstance(content, dict) or content.get("of") != fingerprint(search):
         return []
+    if content["order"] not in ("second", *search.study.other_seas):
+        return []
     by_name = {one.name: one for one in search.posed.candidates}
 
     def whole(state: State) -> State:

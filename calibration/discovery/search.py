@@ -21,7 +21,7 @@ FIRST_ORDER = (
     "followed worse"
 )
 SIMPLER = {
-    "cut": "differences of frequencies above those that the records show bind nothing, as where a program cuts them off",
+    "cut": "differences of frequencies above {highest:.3g} Hz bind nothing, as where a program cuts them off",
     "origin": "waves act at second order by their horizontal flow at the origin, on all of the platform, as in some programs",
 }
 ORDERS: tuple[Order, ...] = ("cut, origin", "origin", "cut", "first")  # a program's as it may be, then what it may be in part
@@ -57,7 +57,8 @@ class Search(Scoring):
         for order in ORDERS:
             called = IN_FIRST if order == "first" else f"declared model in waves of another kind ({order})"
             other = self.in_seas(order, best, called, 0.12) if order in self.study.other_seas else None
-            if other is not None and self.gain(best, other) >= LEAST_TOGETHER:
+            simpler = set(order.split(", ")) < set(taken.split(", "))  # of what is taken a part, which may be enough
+            if other is not None and self.gain(best, other) >= (-LEAST_TOGETHER if simpler else LEAST_TOGETHER):
                 best, taken, name = other, order, called
         self.take_seas(taken)
         if best is state:
@@ -67,7 +68,7 @@ class Search(Scoring):
             self.declared_in_second_order = state
             self.notes.append(f"{FIRST_ORDER} {better}")
         else:
-            said = "; ".join(SIMPLER[part] for part in taken.split(", "))
+            said = "; ".join(SIMPLER[part] for part in taken.split(", ")).format(highest=self.study.highest_difference)
             self.notes.append(f"{said}: motions are followed better so {better}, and the records have no sums of frequencies")
             self.expect(best.look.place)  # what other seas left is none of it
         return self.refit(self.study.look(best.look.place, self.base), (), name, 0.14)

@@ -35,7 +35,8 @@ LOST = 1e100  # motions and slopes that are as large are of a simulation that ov
 class Study:
     """All records of a campaign that take part, against one model. Directions (d, p), orthogonal, are what is free: most are
     one parameter each, some move several together. `width` is how many are looked along at a time; `cuts` are the rows of the
-    decays and of every sea; `other_seas` the seas as they may be instead, by name (`gathering.OTHERS`). `expected` (n,) is how
+    decays and of every sea; `other_seas` the seas as they may be instead, by `fits.Order`, where they are cut
+    with differences of frequencies up to `highest_difference` (Hz). `expected` (n,) is how
     large rows are expected beside their floor (`calibration.discovery.expected`), None where that is not known."""
 
     space: ParameterSpace
@@ -51,6 +52,7 @@ class Study:
     own_width: np.ndarray
     cuts: tuple[Rows, ...]
     expected: np.ndarray | None = None
+    highest_difference: float | None = None
 
     @property
     def labels(self) -> tuple[str, ...]:

@@ -29,10 +29,10 @@ class IrregularSea(AbstractSea):
     sums and differences of their frequencies, or at one of these alone; differences up to `highest_difference` (Hz; None: all),
     as with OpenFAST's `WvHiCOffD`. `acting`: bound waves act "everywhere" as waves, or only by their horizontal flow "at the
     origin", which the whole platform is in, wherever it is: without vertical flow or pressure, as where a program takes long
-    waves for a current that changes.
+    waves for a current that changes. Their elevation is everywhere all the same.
 
-    Stretching and `ramp` (s) are those of `WaveSea`. `flow` and `elevation` are by direct summation, for few points and
-    components; simulations call `prepared`.
+    Stretching and `ramp` (s) are those of `WaveSea`. `flow`, `elevation` and `drift` are by direct summation, for few points
+    and components, and of waves that act everywhere; simulations call `prepared`.
     """
 
     components: Components
@@ -131,6 +131,8 @@ class IrregularSea(AbstractSea):
         heading, period = float(waves.heading[0]), float(waves.period)
         if np.ptp(np.asarray(waves.heading)) > 1e-12:
             raise ValueError("a short-crested sea is evaluated directly: it has no support wavenumbers of one heading")
+        if self.acting != "everywhere":  # that flow is looked up there
+            points = np.concatenate([points, np.zeros((3, 1))], axis=1)
         middle, box = Box.of(points, heading, depth, excursion)
         free = float(waves.wavenumber[-1])
         found = supports(box, free, 2 * free if self.order == 2 and "sum" in self.kinds else 0.0)
