@@ -106,10 +106,8 @@ class Fit:
         return np.minimum(np.asarray(data.time[:, 0]) + cycles * 2 * np.pi / np.asarray(data.pace), np.asarray(self.ends))
 
     def information(self, until) -> float:
-        """How many independent observations the records stand for when the model's error, not noise, is what is left: four
-        for every cycle of the released motion."""
-        period = 2 * np.pi / np.asarray(self.problem.data.pace)
-        return float(np.sum(4 * (np.asarray(until) - np.asarray(self.problem.data.time[:, 0])) / period))
+        """How many independent `observations` all records stand for."""
+        return float(np.sum(observations(self.problem.data, until)))
 
     def cost(self, weight: np.ndarray) -> float:
         """Weighted sum of squares where the fit is; 1 before it has begun."""
@@ -125,6 +123,12 @@ class Fit:
     def objective(self) -> float:
         """J = sum of RMSE / standard deviation over the scored series."""
         return float(np.sum(np.where(self.scored, np.sqrt(self.mean_squares()) / self.spread, 0.0)))
+
+
+def observations(data: Data, until) -> np.ndarray:
+    """How many independent observations each record stands for when the model's error, not noise, is what is left: four for
+    every cycle of the released motion."""
+    return 4 * (np.asarray(until) - np.asarray(data.time[:, 0])) / (2 * np.pi / np.asarray(data.pace))
 
 
 def scored(records: Sequence[Record], data: Data) -> tuple[np.ndarray, np.ndarray]:

@@ -91,29 +91,27 @@ def _nodes(order: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 class OpenFASTSea(jh.IrregularSea):
-    """As OpenFAST's: without set-down, and of difference waves those below `beats` (rad/s) only.
+    """As OpenFAST's: without set-down.
 
     `grid` (m) is that of its kinematics along the waves, which it takes from four grid points by a cubic (0: exact).
     """
 
-    beats: float = eqx.field(static=True, default=np.inf)
     grid: float = eqx.field(static=True, default=0.0)
 
     def prepared(self, *arguments: Any, **options: Any) -> Any:
-        with _without(self.beats, 2 * np.pi / float(self.components.period)):
+        with _without_set_down():
             found = super().prepared(*arguments, **options)
         return GridSea(found, self.grid) if self.grid else found
 
 
 @contextlib.contextmanager
-def _without(beats: float, fundamental: float) -> Iterator[None]:
-    """Second order without what OpenFAST leaves out: such pairs are pointed to waves that bind nothing."""
+def _without_set_down() -> Iterator[None]:
+    """Second order without the differences of components and themselves: such pairs are pointed to waves that bind nothing."""
     tiles, spectrum = second_order._tiles, preparation._spectrum.__wrapped__
 
     def fewer(n: int, *others: Any) -> Any:
         found = tiles(n, *others)
-        out = (found.sign < 0) & ((found.harmonic == 0) | (found.harmonic * fundamental > beats + 1e-9))
-        return eqx.tree_at(lambda t: t.i, found, jnp.where(out, n, found.i))
+        return eqx.tree_at(lambda t: t.i, found, jnp.where((found.sign < 0) & (found.harmonic == 0), n, found.i))
 
     anew = eqx.filter_jit(lambda *a: spectrum(*a))  # nothing that was traced with all pairs
     with mock.patch.object(second_order, "_tiles", fewer), mock.patch.object(preparation, "_spectrum", anew):
@@ -166,7 +164,7 @@ class GridSea(jh.AbstractSea):
 def sea(run: Run, grid: bool = False) -> OpenFASTSea:
     """OpenFAST's sea; the `grid` is that of its file."""
     width = run.setup["XH"] / (run.setup["NX"] - 1)
-    options = {"beats": run.setup["whiD"], "grid": width if grid else 0.0}
+    options = {"highest_difference": run.setup["whiD"] / (2 * np.pi), "grid": width if grid else 0.0}
     return OpenFASTSea(run.waves, WATER, run.case.order, run.case.stretching, **options)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.judgement import LEAST_TOGETHER
-from calibration.fit import Fit, prepare, run
+from calibration.fit import Fit, observations, prepare, run
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.strip_drag import StripDrag
 from jaxhydro.model import Model
@@ -56,10 +56,9 @@ def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Con
 
 
 def _unlikelihood(fit: Fit) -> float:
-    """-2 ln L of calibrated decays, of errors that are no smaller than stated noise: four observations in a cycle."""
+    """-2 ln L of calibrated decays, of errors that are no smaller than stated noise."""
     data = fit.problem.data
     noise = np.array([[record.noise.get(DOFS[dof], 0.0) for dof in data.dofs] for record in fit.records])
     squares = np.maximum(fit.mean_squares(), noise**2)
     there = np.asarray(data.present).sum(axis=-1) > 0
-    each = 4 * (np.asarray(fit.ends) - np.asarray(data.time[:, 0])) * np.asarray(data.pace) / (2 * np.pi)
-    return float(np.sum(each[:, None] * np.where(there, np.log(np.maximum(squares, 1e-300)), 0.0)))
+    return float(np.sum(observations(data, fit.ends)[:, None] * np.where(there, np.log(np.maximum(squares, 1e-300)), 0.0)))

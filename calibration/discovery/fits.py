@@ -21,7 +21,7 @@ from calibration.fit import Fit, prepare, run
 from calibration.residuals import first_guess
 
 Order = Literal["second", "first", "cut", "origin", "cut, origin"]
-"""Seas: with the second order that their records have, without, with that part of it, or it there, which `gathering` made."""
+"""Seas with the second order that their records have, without, with its differences cut off, with it at the origin, or both."""
 
 LAST = 50  # iterations of what is let in
 LOOKS = 8  # slopes taken anew in that

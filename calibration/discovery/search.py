@@ -25,7 +25,6 @@ SIMPLER = {
     "origin": "waves act at second order by their horizontal flow at the origin, on all of the platform, as in some programs",
 }
 ORDERS: tuple[Order, ...] = ("cut, origin", "origin", "cut", "first")  # a program's as it may be, then what it may be in part
-IN_FIRST = "declared model in waves of first order"
 HOPELESS = 300.0  # of -2 ln L, by which waves of another order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
 FAR = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
@@ -55,7 +54,7 @@ class Search(Scoring):
         state = self.refit(self.study.look(place, self.base), (), "declared model", 0.1)
         best, taken, name = state, self.order, "declared model"
         for order in ORDERS:
-            called = IN_FIRST if order == "first" else f"declared model in waves of another kind ({order})"
+            called = "declared model in waves of " + ("first order" if order == "first" else f"another kind ({order})")
             other = self.in_seas(order, best, called, 0.12) if order in self.study.other_seas else None
             simpler = set(order.split(", ")) < set(taken.split(", "))  # of what is taken a part, which may be enough
             if other is not None and self.gain(best, other) >= (-LEAST_TOGETHER if simpler else LEAST_TOGETHER):
