@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from calibration.saved import Saved, read_saved, wrong
+from calibration.seas import Options
+from calibration.strips import Strips
 from jaxhydro.body_schema import HighPass, KeuleganCarpenter
 from jaxhydro.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
 from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
@@ -23,7 +25,7 @@ OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in 
 class Applied(NamedTuple):
     """A model with values of a calibration, these values, those of them that its records did not determine, those that were
     left, the sea state (m, s) that exponents among them count from, the campaign and the platform that the calibration is of,
-    and whether it converged."""
+    whether it converged, how strips are taken with them where that is not as the model had it, and how its seas are."""
 
     model: Model
     values: dict[str, float]
@@ -33,16 +35,19 @@ class Applied(NamedTuple):
     campaign: str
     platform: str
     converged: bool
+    strips: Strips | None
+    seas: Options | None
 
 
 def applied(path: str | PathLike[str], model: Model, platform: str, everything: bool = False) -> Applied:
     """Calibrated values used for the model of the platform so named: all of its own, else those of hull and damping, for
-    moorings and the like are each campaign's own; or `everything`.
+    moorings and the like are each campaign's own; or `everything`. Strips are taken as they were when these were found.
 
     Raises InputError for a file that is none, for values that the model has no place for, and for those that cannot be.
     """
     saved = read_saved(path)
-    model = fitting(saved, model, path)
+    strips = saved.strips if saved.strips is not None and saved.strips != Strips.of(model) else None
+    model = fitting(saved, model if strips is None else strips.given_to(model), path)
     own = everything or not saved.platform or saved.platform == platform
     values = {k: v for k, v in saved.values().items() if own or not k.startswith(OF_CAMPAIGN)}
     if not saved.values():
@@ -59,7 +64,9 @@ def applied(path: str | PathLike[str], model: Model, platform: str, everything: 
     left = tuple(label for label in saved.values() if label not in values)
     reference = _reference(saved) if any(map(is_exponent, values)) else None
     model = model.with_values(values)
-    return Applied(model, values, vague, left, reference, saved.campaign, saved.platform, saved.best.converged)
+    of_file = (saved.campaign, saved.platform, saved.best.converged, strips)
+    seas = None if saved.seas is None else saved.seas.options()
+    return Applied(model, values, vague, left, reference, *of_file, seas)
 
 
 def no_place(saved: Saved, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]) -> InputError:

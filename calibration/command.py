@@ -1,10 +1,11 @@
 """The commands on campaigns, from a folder to files and tables: calibrate, and simulate in measured waves."""
 
 import time as clock
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any, cast
+from types import MappingProxyType
+from typing import Any
 
 from calibration import seas_results, tables
 from calibration.applied import Applied, applied
@@ -107,6 +108,8 @@ def run(
         known = [k for k in used.values if k in declared.values or (tests == "waves" and of_law(k))]
         begin = {"start": {k: used.values[k] for k in known}}
         _told(used, start, campaign)
+        if used.strips is not None:
+            complain(f"warning: {start} goes with {used.strips}, which the platform file does not say: begun from with its own")
     words: tuple[str, ...] = ()
     if method is not None:
         values, said = _searched(campaign, method, seed, seconds)
@@ -177,16 +180,13 @@ def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tup
 
 
 def simulate_campaign(
-    campaign: Path, out: Path, *, calibration: Path | None, order: int, stretching: str, diffraction: str | None, cutoff: float
+    campaign: Path, out: Path, *, calibration: Path | None, asked: Mapping[str, Any] = MappingProxyType({})
 ) -> bool:
     """Simulate a campaign's tests in their measured waves, compare, write and print; False where a motion grows without bound.
 
-    `cutoff` (Hz) is that of the first-order waves, at full scale. Raises InputError, EquilibriumError.
+    `asked` are fields of `Options`; others are those of the calibration, where it has seas. Raises InputError,
+    EquilibriumError.
     """
-    options = Options(cast(Any, order), cast(Any, stretching), diffraction, cutoff=cutoff)
-    if not cutoff > options.low:
-        expected = f"a number above {options.low:g} Hz, where first-order waves begin"
-        raise InputError("--cutoff", [Problem("", expected, f"{cutoff:g}")])
     begun = clock.monotonic()
     loaded = load(campaign, out, seas_results.counted)
     model, used = loaded.model, None
@@ -194,6 +194,14 @@ def simulate_campaign(
         used = applied(calibration, model, loaded.platform.name)
         model = used.model
         _told(used, calibration, loaded)
+        if used.strips is not None:
+            say(f"Strips as they were when these were found: {used.strips}")
+    options = replace(Options() if used is None or used.seas is None else used.seas, **asked)
+    if not options.cutoff > options.low:
+        expected = f"a number above {options.low:g} Hz, where first-order waves begin"
+        raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])
+    if said := _otherwise(options, asked):
+        say(f"Seas as they were when these were found: {said}")
     stable_modes(model)
     try:
         found = compare(loaded, model, options, lambda line: say(line, stderr=True))
@@ -211,6 +219,16 @@ def simulate_campaign(
     table("Energy in bands", *seas_results.bands_table(found), left=3)
     say(f"Results are in {out}, after {clock.monotonic() - begun:.0f} s")
     return True
+
+
+def _otherwise(options: Options, asked: Mapping[str, Any]) -> str:
+    """What of seas is neither as usual nor asked for, in words."""
+    usual, words = Options(), []
+    for name in (field.name for field in fields(options) if field.name not in asked):
+        if (value := getattr(options, name)) != getattr(usual, name):
+            said = f"{value:.3g} Hz" if isinstance(value, float) else " and ".join(value) if isinstance(value, tuple) else value
+            words.append(f"{name.replace('_', ' ')}: {said}")
+    return ", ".join(words)
 
 
 def _told(used: Applied, source: Path, campaign: Campaign) -> None:

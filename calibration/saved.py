@@ -3,13 +3,18 @@
 import json
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from calibration.folder import DIAGNOSIS, RESULT
+from calibration.seas import Options
+from calibration.strips import Strips
 from jaxhydro.body_schema import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
-from jaxhydro.problems import InputError, Number, Positive, Problem, validate
+from jaxhydro.problems import InputError, NonNegative, Number, Positive, Problem, validate
+from jaxhydro.waves.irregular_sea import Acting
+from jaxhydro.waves.sea import Stretching
+from jaxhydro.waves.second_order import KINDS, Kind
 
 
 class Open(BaseModel):
@@ -96,14 +101,34 @@ class Drawn(Open):
     caption: str = ""
 
 
+class SeasTaken(Open):
+    """How waves were made and act. See `calibration.seas.Options`."""
+
+    order: Literal[1, 2] = 2
+    stretching: Stretching = "vertical"
+    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
+    low: NonNegative
+    cutoff: Positive
+    kinds: tuple[Kind, ...] = KINDS
+    highest_difference: Positive | None = None
+    acting: Acting = "everywhere"
+
+    def options(self) -> Options:
+        """The same, as calibrations take it."""
+        return Options(**self.model_dump())
+
+
 class Saved(Open):
-    """calibration.json; of a diagnosis.json the models before and after, `augmented` the one with what was missing."""
+    """calibration.json; of a diagnosis.json the models before and after, `augmented` the one with what was missing; `strips` is
+    how these are taken where a platform file does not say so, `seas` how waves are."""
 
     campaign: str
     jaxhydro: str
     baseline: Fitted
     augmented: Fitted | None = None
     platform: str = ""
+    strips: Strips | None = None
+    seas: SeasTaken | None = None
     tests: dict[str, About] = Field(default_factory=dict)
     figures: list[Drawn] = Field(default_factory=list)
 

@@ -24,7 +24,7 @@ from jaxhydro.problems import InputError, Problem
 from jaxhydro.simulate import largest_step
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular import separated_record
-from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.irregular_sea import Acting, IrregularSea
 from jaxhydro.waves.sea import Stretching
 from jaxhydro.waves.second_order import KINDS, Kind
 
@@ -39,16 +39,18 @@ class Options:
 
     In the default band: below it a sea has no first order worth the name, and what a gauge reads there is bound, or the basin's
     own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge). `kinds`
-    of pairs bind at second order, differences of frequencies up to `highest_difference` (Hz; None: all).
+    of pairs bind at second order, differences of frequencies up to `highest_difference` (Hz; None: all), and act as `acting`
+    says, as in `IrregularSea`.
     """
 
     order: Literal[1, 2] = 2
     stretching: Stretching = "vertical"
-    diffraction: str | None = None
+    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
     low: float = 0.03
     cutoff: float = 0.3
     kinds: tuple[Kind, ...] = KINDS
     highest_difference: float | None = None
+    acting: Acting = "everywhere"
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +106,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
     sea = IrregularSea(
         found.waves, environment, options.order, options.stretching, kinds=options.kinds,
-        highest_difference=options.highest_difference,
+        highest_difference=options.highest_difference, acting=options.acting,
     )  # fmt: skip
     notes = []
     band = f"{options.low:g} to {options.cutoff:g} Hz"

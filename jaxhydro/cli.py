@@ -304,12 +304,12 @@ def _start() -> None:
     start()
 
 
-def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, how: dict[str, Any]) -> None:
+def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any]) -> None:
     out = options.results_folder(out, "comparison.json")
     _start()
     from calibration.command import simulate_campaign
 
-    if not simulate_campaign(campaign, out, calibration=calibration, **how):
+    if not simulate_campaign(campaign, out, calibration=calibration, asked=asked):
         raise typer.Exit(NOT_CONVERGED)
 
 

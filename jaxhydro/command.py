@@ -62,11 +62,12 @@ def model_of(platform: Platform, diffraction: str | None = None, elements: int |
 
 class Used(NamedTuple):
     """Values of a calibration in a model, by label; the sea state (m, s) that exponents among them count from; why they may not
-    be this platform's."""
+    be this platform's; how strips are taken with them, where the platform says otherwise."""
 
     values: dict[str, float]
     reference: SeaState | None
     warnings: list[str]
+    strips: str
 
 
 def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
@@ -84,6 +85,8 @@ def print_used(used: Used) -> None:
         hs, tp = used.reference
         counted = f"; exponents count from Hs {hs:.3g} m, Tp {tp:.3g} s"
     say(f"Calibrated values used: {', '.join(used.values)}{counted}")
+    if used.strips:
+        say(f"Strips as they were when these were found: {used.strips}")
     for warning in used.warnings:
         complain(f"warning: {warning}")
 
@@ -100,7 +103,7 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
         warnings.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
     if used.vague:
         warnings.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
-    return used.model, Used(used.values, used.reference, warnings)
+    return used.model, Used(used.values, used.reference, warnings, "" if used.strips is None else str(used.strips))
 
 
 def calibration_file(path: str) -> Path:

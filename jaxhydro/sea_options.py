@@ -78,14 +78,16 @@ def is_campaign(name: str) -> bool:
 
 
 def of_campaign(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Order, stretching, diffraction and cut-off of a campaign's seas. Raises BadParameter for what does not go with one."""
+    """Order, stretching, diffraction and cut-off (Hz) of a campaign's seas, those that are asked for. Raises BadParameter for
+    what does not go with one."""
     unused = [name for name in OF_SEA + OF_RECORD + NOT_OF_CAMPAIGNS if name not in ("--order", "--cutoff")]
     for name in given:
         if name in unused or given[name] != DEFAULTS.get(name, given[name]):
             raise wrong(name, "a campaign's own tests say this: leave it out, or name a platform")
-    cutoff, diffraction = positive(given.get("--cutoff", CUTOFF), "--cutoff"), given.get("--diffraction")
-    how = {"order": given.get("--order", ORDER), "stretching": stretching(given), "cutoff": cutoff}
-    return how | {"diffraction": None if diffraction is None else str(diffraction)}
+    if "--cutoff" in given:
+        positive(given["--cutoff"], "--cutoff")
+    how = {name: given.get(f"--{name}") for name in ("order", "stretching", "diffraction", "cutoff")}
+    return {name: value if isinstance(value, int | float) else str(value) for name, value in how.items() if value is not None}
 
 
 def stretching(given: Mapping[str, Any]) -> Any:

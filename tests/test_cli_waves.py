@@ -255,8 +255,9 @@ def test_a_campaign_is_handed_on(tmp_path, monkeypatch) -> None:
     run("simulate", DEMO, "--out", tmp_path)
     options = ["--order", 1, "--stretching", "wheeler", "--diffraction", "none", "--cutoff", 0.2]
     run("simulate", DEMO / "campaign.yaml", *options, "--calibration", "c.json", "--out", tmp_path, status=cli.NOT_CONVERGED)
-    usual = {"order": 2, "stretching": "vertical", "diffraction": None, "cutoff": 0.3, "calibration": None}
-    asked = {"order": 1, "stretching": "wheeler", "diffraction": "none", "cutoff": 0.2, "calibration": Path("c.json")}
+    usual = {"asked": {}, "calibration": None}
+    how = {"order": 1, "stretching": "wheeler", "diffraction": "none", "cutoff": 0.2}
+    asked = {"asked": how, "calibration": Path("c.json")}
     assert calls == [(DEMO, tmp_path, usual), (DEMO / "campaign.yaml", tmp_path, asked)]
     for option in ("--hs", "--wave-height", "--duration", "--transient", "--wave", "--elements", "--heading", "--dt"):
         text = run("simulate", DEMO, option, 3, "--out", tmp_path, status=2)

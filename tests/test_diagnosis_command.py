@@ -22,7 +22,8 @@ from calibration.fit import Interrupted, Progress
 from calibration.outputs import write_calibration
 from calibration.report import write_report
 from calibration.saved import read_saved
-from calibration.seas import Diverged
+from calibration.seas import Diverged, Options
+from calibration.strips import Strips
 from jaxhydro import cli
 from jaxhydro.problems import InputError, Problem
 
@@ -148,6 +149,27 @@ def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: P
     assert elsewhere.left == ("mass_properties.mass",) and FORCE in elsewhere.values
     found = cli._model(str(DEMO / "platform.yaml"), path, None, None)
     assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
+
+
+def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis, tmp_path, capsys, monkeypatch) -> None:
+    """In words of a platform file, and said where it says otherwise; seas are a campaign's."""
+    simpler, seas = Strips(directions="earth", drag_speed="component", centripetal=False), Options(acting="at the origin")
+    write_diagnosis(replace(result, strips=simpler, seas=seas), tmp_path, figures=False)
+    model, path = jh.load_model(str(DEMO / "platform.yaml")), tmp_path / "diagnosis.json"
+    (content := json.loads(path.read_text()))["augmented"]["parameters"] = {"column.Ca_t": {"value": 1.5, "unit": "-"}}
+    path.write_text(json.dumps(content))
+    used = applied(path, model, "VolturnUS-S")
+    assert (used.strips, used.seas) == (simpler, seas) and Strips.of(used.model) == simpler and Strips.of(model) == Strips()
+    assert applied(path, used.model, "VolturnUS-S").strips is None and Strips().given_to(used.model).directions == "body"
+    assert Strips.of(cli._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
+    assert "directions: earth, drag_speed: component, centripetal: false" in capsys.readouterr().out
+    begun: list[Any] = []
+    monkeypatch.setattr("calibration.command.calibrate", lambda _, **how: begun.append(how["start"]) or result.baseline)
+    assert "goes with directions: earth" in run("calibrate", DEMO, "--start", path, "--out", tmp_path / "o")
+    assert begun == [{"column.Ca_t": 1.5}]
+    path.write_text(json.dumps(content | {"strips": {"directions": "up"}, "seas": content["seas"] | {"acting": "there"}}))
+    with pytest.raises(InputError, match=r"expected one of body, earth, found .up.\n.*acting: expected one of everywhere, "):
+        read_saved(path)
 
 
 def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

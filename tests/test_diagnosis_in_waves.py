@@ -15,8 +15,10 @@ import jaxhydro as jh
 from calibration import load_campaign
 from calibration.applied import applied
 from calibration.campaign import Campaign
+from calibration.command import simulate_campaign
 from calibration.discovery import conventions
 from calibration.discovery.afar import FINENESS, from_afar
+from calibration.discovery.conclusion import conclude
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.kept import keep, resumed
 from calibration.discovery.looks import Place
@@ -181,7 +183,7 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
 
 def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     """Records with differences of frequencies up to some, and no sums: where motions are followed best so, seas are as the
-    program has them, and are when the search goes on. With sums, records are a basin's."""
+    program has them, are when the search goes on, and where what was found is simulated. With sums, records are a basin's."""
     (tmp_path / "platform.yaml").write_text(re.sub("excitation: .*\n", "", PLATFORM))
     model = jh.load_model(tmp_path / "platform.yaml")
     times, tests = np.arange(0.0, DURATION, STEP), []
@@ -214,12 +216,21 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     search = Search(campaign, posed, lambda *_: None)
     state = search.declared()
     assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
-    told = [said.format(highest=posed.study.highest_difference) for said in SIMPLER.values()]
+    taken = search.study.options[search.order]
+    assert taken == dataclasses.replace(cut, highest_difference=taken.highest_difference, acting="at the origin")
+    told = [said.format(highest=taken.highest_difference) for said in SIMPLER.values()]
     assert [note for note in search.notes if all(said in note for said in told)]
     keep(tmp_path / "kept", search, [state], 1.0)
     again = Search(campaign, posed, lambda *_: None)
     assert len(resumed(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
     assert set(pose(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
+    found = conclude(campaign, search, state, state, (), 1.0)
+    write_diagnosis(found, tmp_path / "found", figures=False)
+    assert simulate_campaign(tmp_path, tmp_path / "seas", calibration=tmp_path / "found")
+    errors = json.loads((tmp_path / "seas" / "comparison.json").read_text())["error"]
+    for test in found.augmented.tests:
+        for one in test.series:
+            assert errors[test.id][one.channel]["relative"] == pytest.approx(one.relative, rel=0.02)
 
 
 def test_second_order_is_taken_again(tmp_path: Path) -> None:
@@ -322,7 +333,7 @@ def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatc
     assert [one.model.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
     assert (model.directions, model.centripetal) == (("earth", False) if simpler else ("body", True))
     assert [load.coupled for load in model.loads if isinstance(load, StripDrag)] == [not simpler]
-    assert bool(found.notes) is simpler
+    assert bool(found.notes) is simpler and found.strips == (conventions.SIMPLER if simpler else None)
     said = dataclasses.replace(campaign, platform=campaign.platform.model_copy(update={"drag_speed": "vector"}))
     assert conventions.conventions_of(said, lambda *_: None) == conventions.Conventions(said)
     assert len(asked) == 2

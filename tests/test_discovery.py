@@ -18,13 +18,13 @@ from calibration.discovery.bands import Rows, bands_of
 from calibration.discovery.candidates import Candidate, with_effects
 from calibration.discovery.catalogue import catalogue
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.judgement import Left, Verdict, given_up
+from calibration.discovery.judgement import SLIGHT, Left, Verdict, given_up
 from calibration.discovery.linear import Predicted
 from calibration.discovery.listed import scales_of
 from calibration.discovery.looks import Place, Prior
 from calibration.discovery.pose import pose
 from calibration.discovery.search import Search
-from calibration.discovery.trials import Scored
+from calibration.discovery.trials import Found, Scored
 from calibration.seas import Options
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
@@ -307,6 +307,26 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         evidence = under_way.found["mass_properties"].verdict
         assert evidence.refused == "" and np.isnan(evidence.bic)  # which is of errors
         assert under_way.notes[0].startswith("inertia pitch is further from what is declared")
+
+
+@pytest.mark.parametrize(
+    ("bic", "refused", "stays"), [(150.0, SLIGHT, True), (90.0, SLIGHT, False), (150.0, "grows", False), (90.0, "", True)]
+)
+def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, refused, stays):
+    """Where it hardly matters with them in the model: it is they that share what is its own."""
+    first, last = (Candidate(name, None, (name,)) for name in ("sea_state_dependent_drag", "nonlinear_hydrostatics"))
+    look = SimpleNamespace(place=None)
+    whole, without = (SimpleNamespace(chosen=chosen, look=look) for chosen in ((first, last), (last,)))
+    of_last, of_first = Verdict(60.0, 0.5, True, 120.0, 9.0, 1.2, ""), Verdict(bic, 0.5, True, 60.0, 9.0, 0.9, refused)
+    under_way = SimpleNamespace(
+        found={one.name: Found(1.0, None, None, of_last, ()) for one in (first, last)}, rejected={}, notes=[],
+        study=SimpleNamespace(look=lambda *_: look), active=lambda chosen: [], renewed=lambda *_: None,
+        refit=lambda *_: without, judge=lambda *_, **__: of_first,
+        refuse=lambda one, why, verdict: under_way.rejected.update({one.name: why}),
+    )  # fmt: skip
+    assert Search.pruned(under_way, whole) is (whole if stays else without)
+    assert bool(under_way.rejected) is not stays and bool(under_way.notes) is (stays and bool(refused))
+    assert not stays or under_way.found[first.name].verdict == of_first._replace(refused="")
 
 
 def test_a_decay_that_the_seas_take_away_is_said():

@@ -93,7 +93,7 @@ def study() -> Study:
     series = Series("sea", "irregular", "fit", "surge", 0.01, 1.0, 2 * cut.lines, cut.low, cut.high, n, np.full(14, 0.02), 0.05)
     space = SimpleNamespace(labels=(), start=jnp.zeros(0), free=())
     return Study(
-        space, None, (), np.zeros((0, 0)), 8, None, (), (), (series,), (), np.zeros((0, 0)), (Rows.of([cut], n, 0.1),)
+        space, None, (), np.zeros((0, 0)), 8, None, (), (), (series,), (), np.zeros((0, 0)), (Rows.of([cut], n, 0.1),), {}
     )  # type: ignore[arg-type]
 
 

@@ -92,7 +92,7 @@ def made(tmp_path_factory):
 def results(made, tmp_path_factory):
     out = tmp_path_factory.mktemp("results")
     options = {"order": 2, "stretching": "vertical", "diffraction": "none", "cutoff": 0.2}
-    assert simulate_campaign(made, out, calibration=None, **options) is True
+    assert simulate_campaign(made, out, calibration=None, asked=options) is True
     return out
 
 

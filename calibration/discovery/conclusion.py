@@ -54,6 +54,7 @@ def conclude(
         campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
         anatomy(search, before), left, share, words, next_test(search, after, verdict),
         (*lost, *doubts_of(search, after, augmented, more), *notes), seconds, latent,
+        search.strips, search.study.options[search.order] if search.study.seas else None,
     )  # fmt: skip
 
 

@@ -1,7 +1,6 @@
 """How a program takes strips, where a program made a campaign's records and its platform file does not say."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -9,30 +8,24 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.judgement import LEAST_TOGETHER
 from calibration.fit import Fit, observations, prepare, run
+from calibration.strips import Strips
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.strip_drag import StripDrag
-from jaxhydro.model import Model
 
-KEYS = ("directions", "drag_speed", "centripetal")
-SIMPLER = (
+SIMPLER = Strips(directions="earth", drag_speed="component", centripetal=False)  # as simpler programs take them
+FOLLOWED = (
     "decays are followed better with strips loaded along earth axes, drag by components of the speed and no centripetal "
-    "acceleration, as programs may have it (`directions: earth`, `drag_speed: component`, `centripetal: false` of a platform "
-    "file): so are they taken here, and in what is found"
+    f"acceleration, as programs may have it ({SIMPLER} in a platform file): so are they taken here, and in what is found"
 )
 
 
-def simpler(model: Model) -> Model:
-    """The model with strips as simpler programs take them: along earth axes, their drag by components, without what a turn
-    adds to their acceleration."""
-    loads = tuple(replace(load, coupled=False) if isinstance(load, StripDrag) else load for load in model.loads)
-    return replace(model, directions="earth", centripetal=False, loads=loads)
-
-
 class Conventions(NamedTuple):
-    """A campaign with strips as its decays have them, calibrated to these (None: nothing had to be found out), and why."""
+    """A campaign with strips as its decays have them, calibrated to these (None: nothing had to be found out), how they are
+    taken where that is not as its platform file says, and why."""
 
     campaign: Campaign
     fit: Fit | None = None
+    strips: Strips | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -41,18 +34,18 @@ def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Con
     platform file says how they are taken, or has other laws of drag than a constant coefficient."""
     decays = [record for record in campaign.used("fit") if record.kind == "decay"]
     model = campaign.model
-    said = bool(set(KEYS) & campaign.platform.model_fields_set) or model.directions != "body" or not model.centripetal
+    said = bool(set(Strips.model_fields) & campaign.platform.model_fields_set) or Strips.of(model) != Strips()
     other_drag = any(hasattr(load, "coupled") and not isinstance(load, StripDrag) for load in model.loads)
     if said or other_drag or campaign.platform.sea_state_laws is not None or not decays or not model.hull.strips.element:
         return Conventions(campaign)
     say("calibrating to the decays", 0.01)
     run(fit := prepare(campaign), near=True)
     say("calibrating to the decays, strips as simpler programs take them", 0.02)
-    other = campaign.with_model(simpler(model))
+    other = campaign.with_model(SIMPLER.given_to(model))
     run(again := prepare(other), near=True)
     if (better := _unlikelihood(fit) - _unlikelihood(again)) < LEAST_TOGETHER:
         return Conventions(campaign, fit)
-    return Conventions(other, again, (f"{SIMPLER} (by {better:.0f} in -2 ln L of the decays)",))
+    return Conventions(other, again, SIMPLER, (f"{FOLLOWED} (by {better:.0f} in -2 ln L of the decays)",))
 
 
 def _unlikelihood(fit: Fit) -> float:

@@ -61,7 +61,7 @@ def diagnose(
         how, notes = options_for(campaign) if options is None else (options, ())
         taken = conventions_of(campaign, say) if by_a_program(how) else Conventions(campaign)
         search = Search(taken.campaign, pose(taken.campaign, how, candidates), say)
-        search.plain, notes = taken.fit, (*notes, *taken.notes)
+        search.plain, search.strips, notes = taken.fit, taken.strips, (*notes, *taken.notes)
         states.extend([] if kept is None else resumed(kept, search))
         return search, notes
 

@@ -58,7 +58,7 @@ def in_doubt(search: Search, state: State, before: Calibration, after: Calibrati
              if one.round == last and one.verdict is not None}  # fmt: skip
     tried |= {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
     verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
-    found = outdone({name: one.bic + one.net for name, one in verdicts.items()}, tried)
+    found = outdone({name: one.worth for name, one in verdicts.items()}, tried)
     every = risen(before.objective("holdout"), after.objective("holdout"))
     worse = [dof for dof in DOFS if risen(before.objective("holdout", dof), after.objective("holdout", dof))]
     found |= {one.name: HELD_OUT_ERROR for one in state.chosen if every or one.dof in worse}

@@ -19,6 +19,7 @@ from calibration.discovery.looks import Look, Place, Prior
 from calibration.discovery.pose import WIDE, Posed
 from calibration.fit import Fit, prepare, run
 from calibration.residuals import first_guess
+from calibration.strips import Strips
 
 Order = Literal["second", "first", "cut", "origin", "cut, origin"]
 """Seas with the second order that their records have, without, with its differences cut off, with it at the origin, or both."""
@@ -35,6 +36,7 @@ class Fits:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
         self.order: Order = "second"
         self.plain: Fit | None = None  # an ordinary calibration to the decays, where one is at hand
+        self.strips: Strips | None = None  # where they are not taken as the platform file says
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
         self.base = self.study.index([*posed.base, *posed.nuisances])
         # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only

@@ -18,7 +18,7 @@ from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem, dominant_period, gather
 from calibration.runs import Run
-from calibration.seas import Options, moving_channels, sea_of, sea_step, seas_of
+from calibration.seas import Options, Seas, moving_channels, sea_of, sea_step, seas_of
 from calibration.stretches import window
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock
@@ -65,29 +65,25 @@ def study_of(
         series += found
         cuts.append(rows)
     seas: list[SeaRecord] = []
+    other_options: dict[str, Options] = {}
     others: dict[str, list[SeaRecord]] = {}
-    highest_bound: float | None = None
     if waving:
         step = sea_step(model, options)
         recorded = seas_of(campaign, model.environment, options)
-        highest_bound = highest_difference(recorded) if by_a_program(options) else None
+        other_options = other_options_of(options, recorded)
+        others = {name: [] for name in other_options}
         for run, made in recorded:
             tests = [r for r in run.records if r.id in waving]
             if not tests:
                 continue
 
-            def record(sea: IrregularSea, linear: bool = False, run: Run = run, tests: Sequence[Record] = tests) -> SeaRecord:
-                return _sea_record(run, sea, tests, model, space, from_rest, step, linear)
-
-            sea = record(made.sea)
-            if options.order == 2:
-                others.setdefault("first", []).append(record(made.sea, linear=True))
-            if by_a_program(options):  # which may have simplified
-                others.setdefault("origin", []).append(record(replace(made.sea, acting="at the origin")))
-            if highest_bound is not None:
-                cut = sea_of(run, model.environment, replace(options, highest_difference=highest_bound)).sea
-                others.setdefault("cut", []).append(record(cut))
-                others.setdefault("cut, origin", []).append(record(replace(cut, acting="at the origin")))
+            sea = _sea_record(run, made.sea, tests, model, space, from_rest, step)
+            separated = {options.highest_difference: made.sea}
+            for name, how in other_options.items():
+                if (bound := how.highest_difference) not in separated:
+                    separated[bound] = sea_of(run, model.environment, how).sea
+                other = replace(separated[bound], acting=how.acting)
+                others[name].append(_sea_record(run, other, tests, model, space, from_rest, step))
             found, rows = series_of_sea(sea, tests, highest)
             series += found
             cuts.append(rows)
@@ -98,8 +94,21 @@ def study_of(
     return Study(
         space, model, tuple(names), directions, width, decays, tuple(seas),
         {name: tuple(some) for name, some in others.items()}, tuple(series), decaying, own_width, tuple(cuts),
-        highest_difference=highest_bound,
+        {"second": options, **other_options},
     )  # fmt: skip
+
+
+def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
+    """How seas may be instead, by `fits.Order`: a program, whose records are known by these, may have simplified."""
+    found: dict[str, Options] = {}
+    if options.order == 2:
+        found["first"] = replace(options, acting="nowhere")
+    if by_a_program(options):
+        found["origin"] = replace(options, acting="at the origin")
+        if (highest := highest_difference(recorded)) is not None:
+            found["cut"] = replace(options, highest_difference=highest)
+            found["cut, origin"] = replace(found["cut"], acting="at the origin")
+    return found
 
 
 def highest_of(model: Model) -> float:
@@ -180,16 +189,15 @@ def _sea_record(
     space: ParameterSpace,
     from_rest: bool,
     step: float,
-    linear: bool = False,
 ) -> SeaRecord:
-    """The tests of one run, and its sea for as long as they last; of the first order alone where `linear`."""
+    """The tests of one run, and its sea for as long as they last."""
     times = run.time[: 1 + max(int(run.samples(r)[-1]) for r in tests)]
     period = float(made.components.period)
     dt = period / fourier_length(period / step)
     count = int(np.ceil((times[-1] - times[0]) / dt - 1e-9))
     instants = clock("ab4", float(times[0]), dt, count)
     hull, computed = (model.hull.extremities(), model.cylinders), (model.transfer, model.excitation)
-    sea = made.prepared(*hull, instants, EXCURSIONS * EXCURSION, linear, *computed)
+    sea = made.prepared(*hull, instants, EXCURSIONS * EXCURSION, *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
     n = min(len(w) for w in windows)

@@ -20,6 +20,7 @@ LEAST_NET = 10.0  # by which -2 ln L of what was not fitted falls: very strong, 
 LEAST_CLEAR = 3.0  # standard deviations
 LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
 LEAST_SEEN = 3.0  # ... and less than that many times the floor, is no business of engineers, nor sure of its name
+SLIGHT = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
 FITTED, HELD_OUT, BLOCKS = "fitted tests", "held-out tests", "blocks left out in turn"
 LOST, TIMES = 0.1, 3.0  # of a decay's motion, and of what is left alone: what a joint fit may leave of it
 
@@ -122,6 +123,11 @@ class Verdict(NamedTuple):
     matters: float
     refused: str
 
+    @property
+    def worth(self) -> float:
+        """What it gains in fitted and held-out tests together."""
+        return self.bic + self.net
+
 
 def judge(study: Study, before: State, after: State, one: Candidate, prior: Prior, count: float, grounds: Grounds) -> Verdict:
     """Whether an effect is believed; `count` are independent observations, for BIC."""
@@ -153,7 +159,7 @@ def refusal(bic: float, held: float | None, net: float, clear: float, matters: f
     if clear < LEAST_CLEAR:
         return f"its parameters are no more than {clear:.1f} standard deviations from none"
     if matters < 1:
-        return f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
+        return SLIGHT
     return ""
 
 

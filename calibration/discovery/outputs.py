@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -47,6 +47,8 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
     return {
         "campaign": diagnosis.campaign,
         "platform": before["platform"],
+        **({} if diagnosis.strips is None else {"strips": diagnosis.strips.model_dump()}),
+        **({} if diagnosis.seas is None else {"seas": asdict(diagnosis.seas)}),
         "jaxhydro": before["jaxhydro"],
         "baseline": before["baseline"],
         "missing": {

@@ -6,6 +6,8 @@ import numpy as np
 
 from calibration.discovery.judgement import Verdict
 from calibration.result import Calibration, Estimate
+from calibration.seas import Options
+from calibration.strips import Strips
 
 # what an effect is in doubt for beside others that explain more
 SECOND_ORDER = "second_order"  # where the waves' own second order was left out
@@ -158,7 +160,8 @@ class Diagnosis:
     `verdict` is "found", "nothing_missing" or "unexplained", which may have effects: all in doubt. `anatomy_before` and
     `anatomy_after` are the residuals of both, motion by motion; `unexplained_share`, of the error's energy above the floor
     that is left at the end, `signature` what is known of it in words; `next_test` what to measure next. `latent`, where the
-    verdict is "unexplained", are the forces that would make the model follow the records.
+    verdict is "unexplained", are the forces that would make the model follow the records. `strips` is how strips are taken,
+    where the platform file does not say so, and `seas` how waves are made and act: both are part of what was found.
     """
 
     campaign: str
@@ -176,3 +179,5 @@ class Diagnosis:
     notes: tuple[str, ...]
     seconds: float
     latent: tuple[LatentForce, ...] = ()
+    strips: Strips | None = None
+    seas: Options | None = None

@@ -8,11 +8,12 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.fits import Order
-from calibration.discovery.judgement import LEAST_BIC, LEAST_CLEAR, LEAST_NET, LEAST_TOGETHER, Left, State
+from calibration.discovery.judgement import LEAST_BIC, LEAST_CLEAR, LEAST_NET, LEAST_TOGETHER, SLIGHT, Left, State
 from calibration.discovery.linear import away, likelihoods, predict
 from calibration.discovery.pose import Posed
 from calibration.discovery.scoring import ITERATIONS, Scoring
 from calibration.discovery.trials import Found, Scored, Tried, in_order
+from calibration.discovery.words import called, several
 
 ROUNDS = 10  # effects at most
 SHORTLIST = 5
@@ -24,6 +25,7 @@ SIMPLER = {
     "cut": "differences of frequencies above {highest:.3g} Hz bind nothing, as where a program cuts them off",
     "origin": "waves act at second order by their horizontal flow at the origin, on all of the platform, as in some programs",
 }
+SHARED = "{first} hardly matters beside {later}, yet gains more: they share what they explain, and may stand for one other law"
 ORDERS: tuple[Order, ...] = ("cut, origin", "origin", "cut", "first")  # a program's as it may be, then what it may be in part
 HOPELESS = 300.0  # of -2 ln L, by which waves of another order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
@@ -67,7 +69,8 @@ class Search(Scoring):
             self.declared_in_second_order = state
             self.notes.append(f"{FIRST_ORDER} {better}")
         else:
-            said = "; ".join(SIMPLER[part] for part in taken.split(", ")).format(highest=self.study.highest_difference)
+            highest = self.study.options[taken].highest_difference
+            said = "; ".join(SIMPLER[part] for part in taken.split(", ")).format(highest=highest)
             self.notes.append(f"{said}: motions are followed better so {better}, and the records have no sums of frequencies")
             self.expect(best.look.place)  # what other seas left is none of it
         return self.refit(self.study.look(best.look.place, self.base), (), name, 0.14)
@@ -173,12 +176,16 @@ class Search(Scoring):
         return other if self.gain(without, other) > LEAST_TOGETHER else without
 
     def pruned(self, state: State) -> State:
-        """The model without what later effects have made needless: every effect but the last is tried to be taken out."""
+        """The model without what later effects have made needless: every effect but the last is tried to be taken out. What
+        gains more than any of these is not needless where it only hardly matters beside them: they share it."""
         for one in state.chosen[:-1]:
             rest = tuple(other for other in state.chosen if other is not one)
             look = self.study.look(self.renewed(state.look.place, one.labels), self.active(rest))
             without = self.refit(look, rest, f"without {one.name}", 0.97)
-            verdict = self.judge(without, state, one, last=True)
+            verdict, later = self.judge(without, state, one, last=True), state.chosen[state.chosen.index(one) + 1 :]
+            if verdict.refused == SLIGHT and verdict.worth > max(self.found[other.name].verdict.worth for other in later):
+                verdict = verdict._replace(refused="")
+                self.notes.append(SHARED.format(first=called(one.name), later=several([called(other.name) for other in later])))
             if verdict.refused:
                 self.refuse(one, f"with what was found after it, {verdict.refused}", verdict)
                 state = without

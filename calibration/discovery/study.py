@@ -24,7 +24,7 @@ from calibration.discovery.looks import Look, Place, Seen, Series
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem
-from calibration.seas import moving
+from calibration.seas import Options, moving
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.model import Model
 
@@ -35,9 +35,9 @@ LOST = 1e100  # motions and slopes that are as large are of a simulation that ov
 class Study:
     """All records of a campaign that take part, against one model. Directions (d, p), orthogonal, are what is free: most are
     one parameter each, some move several together. `width` is how many are looked along at a time; `cuts` are the rows of the
-    decays and of every sea; `other_seas` the seas as they may be instead, by `fits.Order`, where they are cut
-    with differences of frequencies up to `highest_difference` (Hz). `expected` (n,) is how
-    large rows are expected beside their floor (`calibration.discovery.expected`), None where that is not known."""
+    decays and of every sea; `other_seas` the seas as they may be instead, by `fits.Order`; `options` how all of them are made.
+    `expected` (n,) is how large rows are expected beside their floor (`calibration.discovery.expected`), None where that is not
+    known."""
 
     space: ParameterSpace
     model: Model
@@ -51,8 +51,8 @@ class Study:
     decay_records: tuple[Record, ...]
     own_width: np.ndarray
     cuts: tuple[Rows, ...]
+    options: Mapping[str, Options]
     expected: np.ndarray | None = None
-    highest_difference: float | None = None
 
     @property
     def labels(self) -> tuple[str, ...]:

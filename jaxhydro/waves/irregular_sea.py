@@ -19,7 +19,7 @@ from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import Box, supports
 from jaxhydro.waves.transfer import Transfer
 
-Acting = Literal["everywhere", "at the origin"]
+Acting = Literal["everywhere", "at the origin", "nowhere"]
 _elevation = eqx.filter_jit(elevation_spectrum)
 EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
 
@@ -27,9 +27,10 @@ EXCURSION = 20.0  # m that a platform may drift along the waves before its sea i
 class IrregularSea(AbstractSea):
     """Components on successive harmonics of a period, with what they bind at second order where `order` is 2: by `kinds` at
     sums and differences of their frequencies, or at one of these alone; differences up to `highest_difference` (Hz; None: all),
-    as with OpenFAST's `WvHiCOffD`. `acting`: bound waves act "everywhere" as waves, or only by their horizontal flow "at the
+    as with OpenFAST's `WvHiCOffD`. `acting`: bound waves act "everywhere" as waves; only by their horizontal flow "at the
     origin", which the whole platform is in, wherever it is: without vertical flow or pressure, as where a program takes long
-    waves for a current that changes. Their elevation is everywhere all the same.
+    waves for a current that changes; or "nowhere": gauges have them, platforms do not feel them. Their elevation is everywhere
+    all the same.
 
     Stretching and `ramp` (s) are those of `WaveSea`. `flow`, `elevation` and `drift` are by direct summation, for few points
     and components, and of waves that act everywhere; simulations call `prepared`.
@@ -46,9 +47,9 @@ class IrregularSea(AbstractSea):
 
     def direct(self) -> WaveSea:
         """The same sea by direct summation: exact, N components and at second order N^2 pairs at every point, where they act.
-        Raises ValueError where that is at the origin only."""
+        Raises ValueError where that is not everywhere."""
         if self.order == 2 and self.acting != "everywhere":
-            raise ValueError("bound waves that act at the origin only are for simulations: `prepared`")
+            raise ValueError(f"bound waves that act {self.acting} are for simulations: `prepared`")
         waves = PlaneWaves.free(self.components, self.environment)
         bound = None
         if self.order == 2:
@@ -102,18 +103,16 @@ class IrregularSea(AbstractSea):
         cylinders: Cylinders | None,
         clock: Clock,
         excursion: float = EXCURSION,
-        linear: bool = False,
         transfer: Transfer | None = None,
         exciting: Excitation | None = None,
     ) -> "SupportSea":
-        """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock; of its
-        first order alone where `linear`, in arrays of the same shapes. `drift` has the forces of a `transfer`, too, and
-        `excitation` those of first order.
+        """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock. `drift`
+        has the forces of a `transfer`, too, and `excitation` those of first order.
 
         Raises ValueError for components of several headings, that are no harmonics, or where the clock's steps do not divide
         the period or are too long for the highest frequency.
         """
-        shared = self.preparation(points, cylinders, clock, excursion, linear, transfer, exciting)
+        shared = self.preparation(points, cylinders, clock, excursion, transfer, exciting)
         return shared.of(self.components)
 
     def preparation(
@@ -122,7 +121,6 @@ class IrregularSea(AbstractSea):
         cylinders: Cylinders | None,
         clock: Clock,
         excursion: float = EXCURSION,
-        linear: bool = False,
         transfer: Transfer | None = None,
         exciting: Excitation | None = None,
     ) -> Preparation:
@@ -131,7 +129,7 @@ class IrregularSea(AbstractSea):
         heading, period = float(waves.heading[0]), float(waves.period)
         if np.ptp(np.asarray(waves.heading)) > 1e-12:
             raise ValueError("a short-crested sea is evaluated directly: it has no support wavenumbers of one heading")
-        if self.acting != "everywhere":  # that flow is looked up there
+        if self.acting == "at the origin":  # that flow is looked up there
             points = np.concatenate([points, np.zeros((3, 1))], axis=1)
         middle, box = Box.of(points, heading, depth, excursion)
         free = float(waves.wavenumber[-1])
@@ -164,5 +162,4 @@ class IrregularSea(AbstractSea):
             size,
             clock,
             box.half,
-            linear,
         )

@@ -41,13 +41,12 @@ class Preparation(eqx.Module):
     size: int = eqx.field(static=True)  # steps in a period
     clock: Clock = eqx.field(static=True)
     half: float = eqx.field(static=True)  # m, of the box
-    linear: bool = eqx.field(static=True)
 
     def of(self, waves: Components) -> SupportSea:
         """The sea of these components, made ready."""
         like, clock = self.like, self.clock
         arrays = (self.table, self.spacing, self.middle, self.along, self.radius)
-        order = 1 if self.linear else like.order
+        order = 1 if like.acting == "nowhere" else like.order
         apart = order == 2 and like.acting == "at the origin"
         options = (*self.options, apart)
         pairs = (like.kinds, like.highest_difference)
