@@ -46,8 +46,9 @@ def applied(path: str | PathLike[str], model: Model, platform: str, everything: 
     Raises InputError for a file that is none, for values that the model has no place for, and for those that cannot be.
     """
     saved = read_saved(path)
-    strips = saved.strips if saved.strips is not None and saved.strips != Strips.of(model) else None
-    model = fitting(saved, model if strips is None else strips.given_to(model), path)
+    declared = model if saved.strips is None else saved.strips.given_to(model)
+    strips = saved.strips if Strips.of(declared) != Strips.of(model) else None  # without drag there is no speed of it
+    model = fitting(saved, declared, path)
     own = everything or not saved.platform or saved.platform == platform
     values = {k: v for k, v in saved.values().items() if own or not k.startswith(OF_CAMPAIGN)}
     if not saved.values():

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from calibration.manifest import DOFS, IN_WAVES, WAVE, Manifest
-from calibration.records import Series, factors, read_series, there
+from calibration.records import Series, factors, frozen, read_series, there
 from calibration.signals import constant_stretches, dominant_period, flanks, line, missing_code, resolution, spikes, wave_height
 from jaxhydro.problems import Problem
 
@@ -115,6 +115,8 @@ class _Check:
             yield self.found("error", "", None, f"{count} samples", f"{LEAST_SAMPLES} samples or more in the window")
         elif self.test.transient > 0 and after < LEAST_SAMPLES:
             left = f"{self.at(self.test.transient)} of a record of {self.at(end - start)}, which leaves {after}"
+            if missing := int((~self.series.good).sum()):
+                left = f"{left}, as {missing} of its {count} rows lack a value"
             yield self.found("error", "", None, left, f"a transient that leaves {LEAST_SAMPLES} samples or more")
 
     def zero(self) -> Iterator[Finding]:
@@ -211,8 +213,12 @@ class _Check:
         values, time = self.values[channel], self.time
         grain = resolution(values)
         if grain == 0:
-            yield self.found("error" if channel == self.driven else "warning", channel, None,
-                             f"one value throughout, {values[0]:.6g}", "a signal that moves")
+            said = f"one value throughout, {values[0]:.6g}"
+            if channel == self.driven:
+                yield self.found("error", channel, None, said, "a signal that moves")
+            else:
+                left_out = ": left out" if frozen(self.series, channel) else ""
+                yield self.found("warning", channel, None, f"{said}{left_out}")
             return
         starts, lengths = constant_stretches(values, grain)
         long = max(LEAST_SAMPLES, int((self.period or 0) / 3 / self.step))

@@ -2,9 +2,8 @@
 
 import time as clock
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from calibration import seas_results, tables
@@ -24,7 +23,7 @@ from calibration.sea_laws_outputs import laws_table, sentence, states_table, wri
 from calibration.sea_residuals import Objective
 from calibration.search import SearchInterrupted, search
 from calibration.searches import Budget
-from calibration.seas import Diverged, Options, compare
+from calibration.seas import Diverged, Options, compare, unusual
 from calibration.seas_outputs import write_comparison
 from jaxhydro.console import complain, progress, say, table
 from jaxhydro.problems import InputError, Problem
@@ -107,9 +106,11 @@ def run(
         # what a law adds is begun from in waves only; effects found are not declared
         known = [k for k in used.values if k in declared.values or (tests == "waves" and of_law(k))]
         begin = {"start": {k: used.values[k] for k in known}}
-        _told(used, start, campaign)
+        _told(used._replace(values=begin["start"]), start, campaign)
         if used.strips is not None:
-            complain(f"warning: {start} goes with {used.strips}, which the platform file does not say: begun from with its own")
+            complain(f"warning: values are begun from, strips stay as the platform file has them: {start} has {used.strips}")
+        if tests != "decays" and used.seas is not None and (said := unusual(used.seas)):
+            complain(f"warning: waves are taken with all that they bind; for {start} they were not: {said}")
     words: tuple[str, ...] = ()
     if method is not None:
         values, said = _searched(campaign, method, seed, seconds)
@@ -180,12 +181,12 @@ def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tup
 
 
 def simulate_campaign(
-    campaign: Path, out: Path, *, calibration: Path | None, asked: Mapping[str, Any] = MappingProxyType({})
+    campaign: Path, out: Path, *, calibration: Path | None, asked: Mapping[str, Any] | None = None
 ) -> bool:
     """Simulate a campaign's tests in their measured waves, compare, write and print; False where a motion grows without bound.
 
-    `asked` are fields of `Options`; others are those of the calibration, where it has seas. Raises InputError,
-    EquilibriumError.
+    `asked` are fields of `Options`; others are those of a diagnosis of this campaign, but for how waves are bound and act where
+    the order is asked for. Raises InputError, EquilibriumError.
     """
     begun = clock.monotonic()
     loaded = load(campaign, out, seas_results.counted)
@@ -196,11 +197,15 @@ def simulate_campaign(
         _told(used, calibration, loaded)
         if used.strips is not None:
             say(f"Strips as they were when these were found: {used.strips}")
-    options = replace(Options() if used is None or used.seas is None else used.seas, **asked)
+    asked = asked or {}
+    seas = used.seas if used is not None and used.campaign == loaded.manifest.name else None
+    if seas is not None and "order" in asked:  # with all of theory's second order, then
+        seas = replace(seas, **{name: getattr(Options(), name) for name in ("kinds", "highest_difference", "acting")})
+    options = replace(seas or Options(), **asked)
     if not options.cutoff > options.low:
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])
-    if said := _otherwise(options, asked):
+    if seas is not None and (said := unusual(replace(options, **{name: getattr(Options(), name) for name in asked}))):
         say(f"Seas as they were when these were found: {said}")
     stable_modes(model)
     try:
@@ -219,16 +224,6 @@ def simulate_campaign(
     table("Energy in bands", *seas_results.bands_table(found), left=3)
     say(f"Results are in {out}, after {clock.monotonic() - begun:.0f} s")
     return True
-
-
-def _otherwise(options: Options, asked: Mapping[str, Any]) -> str:
-    """What of seas is neither as usual nor asked for, in words."""
-    usual, words = Options(), []
-    for name in (field.name for field in fields(options) if field.name not in asked):
-        if (value := getattr(options, name)) != getattr(usual, name):
-            said = f"{value:.3g} Hz" if isinstance(value, float) else " and ".join(value) if isinstance(value, tuple) else value
-            words.append(f"{name.replace('_', ' ')}: {said}")
-    return ", ".join(words)
 
 
 def _told(used: Applied, source: Path, campaign: Campaign) -> None:

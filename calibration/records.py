@@ -17,7 +17,7 @@ import pandas as pd
 
 from calibration.manifest import IN_WAVES, SI, WAVE, Channel, Manifest, Test, quantity
 from calibration.readers import read_table
-from calibration.signals import missing_code, noise_level
+from calibration.signals import missing_code, noise_level, resolution
 from jaxhydro.problems import InputError, Problem, suggest
 
 _LEAST_NOISE = 1e-6                              # m at the scale of the file, or rad: finer than any basin's sensor
@@ -180,10 +180,19 @@ def whole_series(manifest: Manifest, folder: Path, test: Test) -> tuple[Series, 
     return series[0], still_water(manifest, series[::-1])[-1]
 
 
+def frozen(series: Series, channel: str) -> bool:
+    """Whether a motion of a test that moves has one value throughout, and others not: it was not measured, `checks` says so."""
+    motions = [values[series.good] for name, values in series.values.items() if name != WAVE]
+    moves = series.test.kind == "decay" or series.test.kind in IN_WAVES
+    still = channel != WAVE and resolution(series.values[channel][series.good]) == 0
+    return moves and still and any(resolution(values) > 0 for values in motions)
+
+
 def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Record:
     test, scale, good = series.test, factors(manifest, series.channels), series.good
     time = series.time[good] * scale["time"]
-    values = {name: column[good] * scale[name] - zeros.get(name, 0.0) for name, column in series.values.items()}
+    values = {name: column[good] * scale[name] - zeros.get(name, 0.0)
+              for name, column in series.values.items() if not frozen(series, name)}
     stated = factors(manifest, manifest.all_channels)
     floor = {name: _LEAST_NOISE * (1.0 if quantity(name) == "angle" else manifest.scale) for name in values}
     noise = {name: manifest.noise[name] * abs(stated[name]) if name in manifest.noise

@@ -5,7 +5,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from calibration.folder import DIAGNOSIS, RESULT
 from calibration.seas import Options
@@ -14,7 +14,7 @@ from jaxhydro.body_schema import ConstantDrag, HighPassAtEnds, KeuleganCarpenter
 from jaxhydro.problems import InputError, NonNegative, Number, Positive, Problem, validate
 from jaxhydro.waves.irregular_sea import Acting
 from jaxhydro.waves.sea import Stretching
-from jaxhydro.waves.second_order import KINDS, Kind
+from jaxhydro.waves.second_order import Kind
 
 
 class Open(BaseModel):
@@ -104,14 +104,20 @@ class Drawn(Open):
 class SeasTaken(Open):
     """How waves were made and act. See `calibration.seas.Options`."""
 
-    order: Literal[1, 2] = 2
-    stretching: Stretching = "vertical"
-    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
+    order: Literal[1, 2]
+    stretching: Stretching
+    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None
     low: NonNegative
     cutoff: Positive
-    kinds: tuple[Kind, ...] = KINDS
-    highest_difference: Positive | None = None
-    acting: Acting = "everywhere"
+    kinds: tuple[Kind, ...] = Field(min_length=1)
+    highest_difference: Positive | None
+    acting: Acting
+
+    @model_validator(mode="after")
+    def _band(self) -> "SeasTaken":
+        if not self.low < self.cutoff:
+            raise ValueError(f"`cutoff` above `low`, {self.low:g} Hz")
+        return self
 
     def options(self) -> Options:
         """The same, as calibrations take it."""

@@ -53,6 +53,20 @@ class Options:
     acting: Acting = "everywhere"
 
 
+def unusual(options: Options) -> str:
+    """What of seas is not as `Options` has it where nothing is said, in words."""
+    usual, words = Options(), []
+    of_second = {
+        "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",
+        "highest_difference": f"differences up to {options.highest_difference or 0:.3g} Hz",
+        "acting": f"bound waves act {options.acting}",
+    }  # fmt: skip
+    for name in (field.name for field in dataclasses.fields(options)):
+        if (value := getattr(options, name)) != getattr(usual, name) and (options.order == 2 or name not in of_second):
+            words.append(of_second.get(name, f"{name}: {value:.3g} Hz" if isinstance(value, float) else f"{name}: {value}"))
+    return ", ".join(words)
+
+
 @dataclass(frozen=True, eq=False)
 class RunSea:
     """The sea of a run. `mismatch`: share of the record, in the band, that the orders asked for miss."""

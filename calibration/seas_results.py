@@ -85,7 +85,8 @@ def document(found: Compared, options: Options, about: dict[str, Any], applied: 
     """The content of comparison.json; `error` is the contract's."""
     coefficients = {"source": "platform", "values": {}, "not_identifiable": [], "left_out": []} if applied is None else {
         "source": f"calibration of {applied.campaign}", "values": applied.values, "not_identifiable": list(applied.vague),
-        "left_out": list(applied.left)}  # fmt: skip
+        "left_out": list(applied.left),
+        **({} if applied.strips is None else {"strips": applied.strips.model_dump()})}  # fmt: skip
     return {
         **about,
         "jaxhydro": jaxhydro.__version__,

@@ -6,6 +6,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 from jaxhydro.model import Model
+from jaxhydro.problems import Flag
 
 
 class Strips(BaseModel):
@@ -14,9 +15,9 @@ class Strips(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
-    directions: Literal["body", "earth"] = "body"
-    drag_speed: Literal["vector", "component"] = "vector"
-    centripetal: bool = True
+    directions: Literal["body", "earth"]
+    drag_speed: Literal["vector", "component"]
+    centripetal: Flag
 
     @classmethod
     def of(cls, model: Model) -> "Strips":
@@ -28,7 +29,9 @@ class Strips(BaseModel):
         })  # fmt: skip
 
     def given_to(self, model: Model) -> Model:
-        """The model with strips so loaded."""
+        """The model with strips so loaded; itself where they are."""
+        if self == Strips.of(model):
+            return model
         coupled = self.drag_speed == "vector"
         loads = tuple(
             replace(load, coupled=coupled) if hasattr(load, "coupled") else load  # type: ignore[call-arg]
@@ -38,3 +41,6 @@ class Strips(BaseModel):
 
     def __str__(self) -> str:
         return ", ".join(f"{key}: {str(value).lower()}" for key, value in self.model_dump().items())
+
+
+USUAL = Strips(directions="body", drag_speed="vector", centripetal=True)

@@ -218,7 +218,10 @@ Duration = Annotated[
 Dt = Annotated[float, typer.Option("--dt", help="Time between the samples that are written, s.")]
 Calibrated = Annotated[
     Path | None,
-    typer.Option("--calibration", help="A calibration.json or diagnosis.json whose values, and effects found, are used."),
+    typer.Option(
+        "--calibration",
+        help="A calibration.json or diagnosis.json whose values, effects and strips are used; of its own campaign seas, too.",
+    ),
 ]
 Step = Annotated[
     float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")

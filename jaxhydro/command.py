@@ -94,6 +94,7 @@ def print_used(used: Used) -> None:
 def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple[Model, Used]:
     """`calibrated`, with what is to be known, and nothing is printed."""
     from calibration.applied import applied
+    from calibration.seas import unusual
 
     used = applied(source, model, asked, everything=True)
     warnings = []
@@ -101,6 +102,8 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
         warnings.append(f"the fit of {source} did not converge")
     if used.platform and used.platform != name:
         warnings.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
+    if said := "" if used.seas is None else unusual(used.seas):
+        warnings.append(f"in the seas of its campaign {source} has {said}; waves here are as options say")
     if used.vague:
         warnings.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
     return used.model, Used(used.values, used.reference, warnings, "" if used.strips is None else str(used.strips))

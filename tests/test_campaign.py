@@ -347,10 +347,20 @@ def test_zero_by_a_test_in_its_own_units(tmp_path):
     assert found["rest"].values["surge"].std() == pytest.approx(4e-3, rel=0.2)
 
 
+def test_a_frozen_motion_is_left_out(tmp_path):
+    """Of a test that moves, where another motion does: a model would be fitted to a sensor that was off."""
+    assert set(records(write(tmp_path))["d-1"].values) == {"surge", "pitch"}
+    assert set(records(write(tmp_path, files={"d.csv": spoilt(p={(0, 400): 1.5})}))["d-1"].values) == {"surge"}
+    document = manifest()
+    document["tests"].append({"id": "rest", "kind": "static", "file": "r.csv"})
+    still = {"r.csv": table(T, 0 * T, 0.5 + 0.01 * NOISE[1, :400])}
+    assert set(records(write(tmp_path, document, still))["rest"].values) == {"surge", "pitch"}
+
+
 def test_declared_noise_is_used_and_the_rest_is_estimated(tmp_path):
     t = np.arange(2000) * 0.05
     slow = 3 * np.exp(-0.01 * t) * np.cos(2 * np.pi * t / 7)
-    folder = write(tmp_path, manifest(noise={"pitch": 0.5}), {"d.csv": table(t, slow + 0.02 * NOISE[0, :2000], 0 * t)})
+    folder = write(tmp_path, manifest(noise={"pitch": 0.5}), {"d.csv": table(t, slow + 0.02 * NOISE[0, :2000], 0.1 * slow)})
     record = records(folder)["d-1"]
     assert record.noise == {"surge": pytest.approx(0.02, rel=0.15), "pitch": pytest.approx(np.deg2rad(0.5))}
     assert not record.noise_declared
@@ -419,7 +429,7 @@ def spoilt(**changes):
     (table(x=np.clip(SURGE, -2.2, 9)), "at its lowest value, -2.2"),
     (spoilt(x={(77, 78): 4.0}), "channel surge: a spike at 7.7 s, 4 between"),
     (table(x=SURGE + 0.05 * T), "channel surge: its mean drifts by"),
-    (spoilt(p={(0, 400): 1.5}), "channel pitch: one value throughout, 1.5"),
+    (spoilt(p={(0, 400): 1.5}), "channel pitch: one value throughout, 1.5: left out"),
     (table(*(column[:60] for column in (T, SURGE, PITCH))), "channel surge: only 1.2 cycles"),
     (table(*(column[::5] for column in (T, SURGE, PITCH))), "channel surge: only 11.9 samples per cycle"),
     (table(t=np.round(T * 0.837, 2)), "channel time: times are written to 0.01 s, where steps are 0.0837"),

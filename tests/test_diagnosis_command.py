@@ -23,7 +23,7 @@ from calibration.outputs import write_calibration
 from calibration.report import write_report
 from calibration.saved import read_saved
 from calibration.seas import Diverged, Options
-from calibration.strips import Strips
+from calibration.strips import USUAL, Strips
 from jaxhydro import cli
 from jaxhydro.problems import InputError, Problem
 
@@ -159,16 +159,17 @@ def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis,
     (content := json.loads(path.read_text()))["augmented"]["parameters"] = {"column.Ca_t": {"value": 1.5, "unit": "-"}}
     path.write_text(json.dumps(content))
     used = applied(path, model, "VolturnUS-S")
-    assert (used.strips, used.seas) == (simpler, seas) and Strips.of(used.model) == simpler and Strips.of(model) == Strips()
-    assert applied(path, used.model, "VolturnUS-S").strips is None and Strips().given_to(used.model).directions == "body"
+    assert (used.strips, used.seas) == (simpler, seas) and Strips.of(used.model) == simpler and Strips.of(model) == USUAL
+    assert applied(path, used.model, "VolturnUS-S").strips is None and Strips.of(USUAL.given_to(used.model)) == USUAL
     assert Strips.of(cli._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
     assert "directions: earth, drag_speed: component, centripetal: false" in capsys.readouterr().out
     begun: list[Any] = []
     monkeypatch.setattr("calibration.command.calibrate", lambda _, **how: begun.append(how["start"]) or result.baseline)
-    assert "goes with directions: earth" in run("calibrate", DEMO, "--start", path, "--out", tmp_path / "o")
+    assert "has directions: earth" in run("calibrate", DEMO, "--start", path, "--out", tmp_path / "o")
     assert begun == [{"column.Ca_t": 1.5}]
-    path.write_text(json.dumps(content | {"strips": {"directions": "up"}, "seas": content["seas"] | {"acting": "there"}}))
-    with pytest.raises(InputError, match=r"expected one of body, earth, found .up.\n.*acting: expected one of everywhere, "):
+    wrong = {"strips": content["strips"] | {"directions": "up"}, "seas": content["seas"] | {"acting": "there"}}
+    path.write_text(json.dumps(content | wrong))
+    with pytest.raises(InputError, match=r"expected one of body, earth, found .up.\n  seas.acting: expected one of every"):
         read_saved(path)
 
 

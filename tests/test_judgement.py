@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from calibration.discovery import judgement
 from calibration.discovery.bands import Rows, bands_of, powers
 from calibration.discovery.blocks import COUNT, parts
 from calibration.discovery.candidates import Candidate
@@ -15,7 +16,19 @@ from calibration.discovery.conclusion import much
 from calibration.discovery.descent import fit
 from calibration.discovery.doubts import in_doubt, in_motion, like, outdone
 from calibration.discovery.gathering import series_of_sea
-from calibration.discovery.judgement import BLOCKS, FITTED, HELD_OUT, LEAST_MATTER, Grounds, Left, Verdict, refusal, worse
+from calibration.discovery.judgement import (
+    BLOCKS,
+    FITTED,
+    HELD_OUT,
+    LEAST_MATTER,
+    SLIGHT,
+    Grounds,
+    Left,
+    Verdict,
+    judge,
+    refusal,
+    worse,
+)
 from calibration.discovery.linear import likelihoods
 from calibration.discovery.looks import Look, Prior, Series
 from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
@@ -224,6 +237,16 @@ def test_gain_is_of_what_is_asked():
     nothing = left([0, 0], [0, 0])
     assert Grounds(study, np.array([True, True]), nothing, nothing, True).gain() == (0.0, True)
     assert Grounds(study, np.array([True, True]), nothing, nothing, False).gain() == (0.0, False)
+
+
+@pytest.mark.parametrize(("refused", "said"), [("", "worse"), (SLIGHT, "worse"), ("grows", "grows")])
+def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against_it(refused, said, monkeypatch):
+    for name, value in {"refusal": refused, "worse": "worse", "clearness": 9.0}.items():
+        monkeypatch.setattr(judgement, name, lambda *_, value=value: value)
+    study = SimpleNamespace(used=np.array([True]))
+    state = SimpleNamespace(likelihood=np.zeros(1), left=None, look=SimpleNamespace(place=SimpleNamespace(x=None)))
+    grounds = SimpleNamespace(gain=lambda: (0.5, True), net=20.0, matters=lambda: 0.5, unseen=True, study=study)
+    assert judge(study, state, state, Candidate("a", None, ("a",)), None, 100.0, grounds).refused == said
 
 
 def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():

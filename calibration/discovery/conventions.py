@@ -8,7 +8,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.judgement import LEAST_TOGETHER
 from calibration.fit import Fit, observations, prepare, run
-from calibration.strips import Strips
+from calibration.strips import USUAL, Strips
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.strip_drag import StripDrag
 
@@ -34,7 +34,7 @@ def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Con
     platform file says how they are taken, or has other laws of drag than a constant coefficient."""
     decays = [record for record in campaign.used("fit") if record.kind == "decay"]
     model = campaign.model
-    said = bool(set(Strips.model_fields) & campaign.platform.model_fields_set) or Strips.of(model) != Strips()
+    said = bool(set(Strips.model_fields) & campaign.platform.model_fields_set) or Strips.of(model) != USUAL
     other_drag = any(hasattr(load, "coupled") and not isinstance(load, StripDrag) for load in model.loads)
     if said or other_drag or campaign.platform.sea_state_laws is not None or not decays or not model.hull.strips.element:
         return Conventions(campaign)

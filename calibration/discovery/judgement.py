@@ -139,7 +139,8 @@ def judge(study: Study, before: State, after: State, one: Candidate, prior: Prio
     refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow" if wrong else ""
     where = FITTED if not grounds.unseen else HELD_OUT if grounds.study is study else BLOCKS
     refused = refused or refusal(bic, held if told else None, net, clear, matters, where)
-    refused = refused or worse(study, one.dof, before.left, after.left)
+    if refused in ("", SLIGHT):  # which is said where nothing else speaks against it
+        refused = worse(study, one.dof, before.left, after.left) or refused
     return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
 
 

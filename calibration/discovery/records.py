@@ -38,7 +38,7 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
         seen = [share for one in found if (share := one[i]) is not None]
         if seen and kind in kinds and float(np.median(seen)) < PRESENT:
             kinds.remove(kind)  # type: ignore[arg-type]
-            percent = 100 * float(np.median(seen))
+            percent = 100 * max(0.0, float(np.median(seen)))
             words.append(f"the wave records have {percent:.0f} % of the second order at {kind}s of frequencies "
                          "that waves of their height bind: it is left out of the seas")  # fmt: skip
     if not kinds:

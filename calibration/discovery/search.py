@@ -25,7 +25,7 @@ SIMPLER = {
     "cut": "differences of frequencies above {highest:.3g} Hz bind nothing, as where a program cuts them off",
     "origin": "waves act at second order by their horizontal flow at the origin, on all of the platform, as in some programs",
 }
-SHARED = "{first} hardly matters beside {later}, yet gains more: they share what they explain, and may stand for one other law"
+SHARED = "{first} hardly matters beside {later}, yet explains more: they share what they explain, and may be one other law"
 ORDERS: tuple[Order, ...] = ("cut, origin", "origin", "cut", "first")  # a program's as it may be, then what it may be in part
 HOPELESS = 300.0  # of -2 ln L, by which waves of another order may be worse, not fitted, and yet be fitted
 BEYOND = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
@@ -178,6 +178,7 @@ class Search(Scoring):
     def pruned(self, state: State) -> State:
         """The model without what later effects have made needless: every effect but the last is tried to be taken out. What
         gains more than any of these is not needless where it only hardly matters beside them: they share it."""
+        spared: list[Candidate] = []
         for one in state.chosen[:-1]:
             rest = tuple(other for other in state.chosen if other is not one)
             look = self.study.look(self.renewed(state.look.place, one.labels), self.active(rest))
@@ -185,12 +186,15 @@ class Search(Scoring):
             verdict, later = self.judge(without, state, one, last=True), state.chosen[state.chosen.index(one) + 1 :]
             if verdict.refused == SLIGHT and verdict.worth > max(self.found[other.name].verdict.worth for other in later):
                 verdict = verdict._replace(refused="")
-                self.notes.append(SHARED.format(first=called(one.name), later=several([called(other.name) for other in later])))
+                spared.append(one)
             if verdict.refused:
                 self.refuse(one, f"with what was found after it, {verdict.refused}", verdict)
                 state = without
             else:
                 self.found[one.name] = self.found[one.name]._replace(verdict=verdict)
+        for one in spared:
+            later = state.chosen[state.chosen.index(one) + 1 :]
+            self.notes.append(SHARED.format(first=called(one.name), later=several([called(other.name) for other in later])))
         return state
 
     def weighed(self, state: State) -> State:

@@ -50,7 +50,8 @@ class Prepared(NamedTuple):
         if (used := self.setup.calibrated) is None:
             return about | {"notes": self.notes}
         reference = {} if used.reference is None else {"sea_state_reference": used.reference._asdict()}
-        about["calibration"] = {"file": self.calibration, "values": used.values} | reference
+        strips = {"strips": used.strips} if used.strips else {}
+        about["calibration"] = {"file": self.calibration, "values": used.values} | reference | strips
         return about | {"notes": self.notes + used.warnings}
 
 
