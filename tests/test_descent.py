@@ -54,7 +54,7 @@ def study():
     space = SimpleNamespace(labels=("rate", "decay"), start=jnp.array([1.0, 0.1]), free=free)
     found = Oscillations(
         space, None, ("rate", "decay"), np.eye(2), 8, SimpleNamespace(data=SimpleNamespace(dofs=(0,))), (), (), series,
-        tuple(SimpleNamespace(use=use) for use in uses), np.full((3, 2), np.inf), (Rows.of([cut] * 3, SAMPLES),),
+        tuple(SimpleNamespace(use=use) for use in uses), np.full((3, 2), np.inf), (Rows.of([cut] * 3, SAMPLES),), {},
     )  # fmt: skip
     truth = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     object.__setattr__(found, "looks", [])
