@@ -217,7 +217,7 @@ class _Check:
             if channel == self.driven:
                 yield self.found("error", channel, None, said, "a signal that moves")
             else:
-                left_out = ": left out" if frozen(self.series, channel) else ""
+                left_out = ": left out" if channel in frozen(self.series) else ""
                 yield self.found("warning", channel, None, f"{said}{left_out}")
             return
         starts, lengths = constant_stretches(values, grain)

@@ -205,7 +205,7 @@ def simulate_campaign(
     if not options.cutoff > options.low:
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])
-    if seas is not None and (said := unusual(replace(options, **{name: getattr(Options(), name) for name in asked}))):
+    if seas is not None and (said := unusual(options, asked)):
         say(f"Seas as they were when these were found: {said}")
     stable_modes(model)
     try:

@@ -180,19 +180,21 @@ def whole_series(manifest: Manifest, folder: Path, test: Test) -> tuple[Series, 
     return series[0], still_water(manifest, series[::-1])[-1]
 
 
-def frozen(series: Series, channel: str) -> bool:
-    """Whether a motion of a test that moves has one value throughout, and others not: it was not measured, `checks` says so."""
-    motions = [values[series.good] for name, values in series.values.items() if name != WAVE]
-    moves = series.test.kind == "decay" or series.test.kind in IN_WAVES
-    still = channel != WAVE and resolution(series.values[channel][series.good]) == 0
-    return moves and still and any(resolution(values) > 0 for values in motions)
+def frozen(series: Series) -> set[str]:
+    """Motions of a test that moves which have one value throughout, where others have not: not measured, `checks` says so."""
+    if series.test.kind != "decay" and series.test.kind not in IN_WAVES:
+        return set()
+    good, motions = series.good, set(series.values) - {WAVE}
+    still = {name for name in motions if resolution(series.values[name][good]) == 0}
+    return still if still < motions else set()
 
 
 def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Record:
     test, scale, good = series.test, factors(manifest, series.channels), series.good
+    out = frozen(series)
     time = series.time[good] * scale["time"]
     values = {name: column[good] * scale[name] - zeros.get(name, 0.0)
-              for name, column in series.values.items() if not frozen(series, name)}
+              for name, column in series.values.items() if name not in out}
     stated = factors(manifest, manifest.all_channels)
     floor = {name: _LEAST_NOISE * (1.0 if quantity(name) == "angle" else manifest.scale) for name in values}
     noise = {name: manifest.noise[name] * abs(stated[name]) if name in manifest.noise

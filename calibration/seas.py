@@ -5,7 +5,7 @@ file. Everything is SI at full scale.
 """
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, TypeAlias
 
@@ -53,15 +53,15 @@ class Options:
     acting: Acting = "everywhere"
 
 
-def unusual(options: Options) -> str:
-    """What of seas is not as `Options` has it where nothing is said, in words."""
+def unusual(options: Options, asked: Collection[str] = ()) -> str:
+    """What of seas is not as `Options` has it where nothing is said, in words, what was `asked` for left aside."""
     usual, words = Options(), []
     of_second = {
         "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",
         "highest_difference": f"differences up to {options.highest_difference or 0:.3g} Hz",
         "acting": f"bound waves act {options.acting}",
     }  # fmt: skip
-    for name in (field.name for field in dataclasses.fields(options)):
+    for name in (field.name for field in dataclasses.fields(options) if field.name not in asked):
         if (value := getattr(options, name)) != getattr(usual, name) and (options.order == 2 or name not in of_second):
             words.append(of_second.get(name, f"{name}: {value:.3g} Hz" if isinstance(value, float) else f"{name}: {value}"))
     return ", ".join(words)
