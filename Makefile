@@ -2,9 +2,10 @@
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/ready
+TESTS := $(BIN)/python -m pytest -n 2 --dist loadfile --durations=40 --durations-min=5
 export JAX_COMPILATION_CACHE_DIR ?= $(CURDIR)/.venv/jax-cache
 
-.PHONY: install demo test validate bench lint lock
+.PHONY: install demo test test-slow validate bench lint lock
 
 install: $(READY)
 
@@ -18,8 +19,11 @@ $(READY): requirements.lock pyproject.toml
 demo: $(READY)     ## calibrate VolturnUS-S to the nine embedded decays: coefficients, errors, figures, a page, in out/demo
 	$(BIN)/jaxhydro demo --out out/demo
 
-test: $(READY)     ## all tests, on two cores
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not validate" --durations=40 --durations-min=5
+test: $(READY)     ## what every change is tested with, on two cores
+	$(TESTS) -m "not slow and not validate"
+
+test-slow: $(READY) ## whole jobs: diagnoses, calibrations in waves, notebooks
+	$(TESTS) -m "slow and not validate"
 
 validate: $(READY) ## slow: regenerates the evidence in docs/validation.md
 	$(BIN)/python -m pytest -m validate -s

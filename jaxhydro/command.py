@@ -4,7 +4,7 @@ import dataclasses
 import math
 from collections.abc import Collection
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -62,12 +62,12 @@ def model_of(platform: Platform, diffraction: str | None = None, elements: int |
 
 class Used(NamedTuple):
     """Values of a calibration in a model, by label; the sea state (m, s) that exponents among them count from; why they may not
-    be this platform's; how strips are taken with them, where the platform says otherwise."""
+    be this platform's; how strips are taken with them (`calibration.strips.Strips`), where the platform says otherwise."""
 
     values: dict[str, float]
     reference: SeaState | None
     warnings: list[str]
-    strips: str
+    strips: Any
 
 
 def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
@@ -85,7 +85,7 @@ def print_used(used: Used) -> None:
         hs, tp = used.reference
         counted = f"; exponents count from Hs {hs:.3g} m, Tp {tp:.3g} s"
     say(f"Calibrated values used: {', '.join(used.values)}{counted}")
-    if used.strips:
+    if used.strips is not None:
         say(f"Strips as they were when these were found: {used.strips}")
     for warning in used.warnings:
         complain(f"warning: {warning}")
@@ -106,7 +106,7 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
         warnings.append(f"in the seas of its campaign {source} has {said}; waves here are as options say")
     if used.vague:
         warnings.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
-    return used.model, Used(used.values, used.reference, warnings, "" if used.strips is None else str(used.strips))
+    return used.model, Used(used.values, used.reference, warnings, used.strips)
 
 
 def calibration_file(path: str) -> Path:

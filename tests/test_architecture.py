@@ -55,6 +55,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.sweep",),
     ("jaxhydro.sweep.command",),
     ("jaxhydro.cli",),
+    ("jaxhydro.__main__",),
 )
 SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
     "matrix": "*",

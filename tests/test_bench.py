@@ -32,6 +32,7 @@ KEYS = (
 )
 
 
+@pytest.mark.slow
 def test_quick_bench(tmp_path, tmp_path_factory):
     command = [sys.executable, "-m", "benchmarks.bench", "--quick", "--out", str(tmp_path / "results.md")]
     # the processes it starts share what they compile

@@ -68,6 +68,11 @@ def test_it_starts_as_a_program_without_what_is_heavy() -> None:
     assert done.stdout.strip() == "[]"
 
 
+def test_it_starts_as_a_module_too() -> None:
+    done = subprocess.run([sys.executable, "-m", "jaxhydro", "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == f"jaxhydro {jaxhydro.__version__}"
+
+
 def test_the_compilation_cache_is_where_it_may_be(monkeypatch, tmp_path) -> None:
     before = jax.config.jax_compilation_cache_dir
     try:

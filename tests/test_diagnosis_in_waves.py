@@ -117,6 +117,7 @@ def campaign_of(folder: Path, force, tones=MappingProxyType({})) -> Campaign:
     return load_campaign(folder)
 
 
+@pytest.mark.slow
 def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
     """Named first, all of it, within what its deviation and rounding allow; the sea that was held out is followed."""
     campaign = campaign_of(tmp_path, excited)
@@ -173,6 +174,7 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
     assert nothing is None
 
 
+@pytest.mark.slow
 def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     """And nothing beside it, a wave's phase further off than slopes lead."""
     campaign = campaign_of(tmp_path, lambda omega: pressure(omega) * np.exp(-25j * omega**2 / G))
@@ -181,6 +183,7 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
     assert found.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
 
 
+@pytest.mark.slow
 def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     """Records with differences of frequencies up to some, and no sums: where motions are followed best so, seas are as the
     program has them, are when the search goes on, and where what was found is simulated. With sums, records are a basin's."""
@@ -283,6 +286,7 @@ def test_a_campaign_turned_round(tmp_path: Path) -> None:
     assert again.manifest == one.manifest
 
 
+@pytest.mark.slow
 def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     """What goes with neither motion nor waves: no name, no law, though the motion follows it; and the force as it acted,
     through the sea that was made ready."""
@@ -297,6 +301,7 @@ def test_a_force_that_nothing_explains_is_shown(tmp_path: Path) -> None:
     assert_allclose(np.std(force.shown.force), np.std(acted), rtol=0.02)
 
 
+@pytest.mark.slow
 def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     """Of one run with two tests, the second held out: all that is fitted as of the whole run, and zeros of what is not; the
     same however many directions are looked along at a time."""

@@ -308,6 +308,7 @@ def test_the_information_of_a_made_decay_is_that_of_the_fitted_one(surge) -> Non
     np.testing.assert_allclose(second[:3], first[:3], rtol=0.03)
 
 
+@pytest.mark.slow
 def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
     fit, tests, found, model = surge
     noise = effective_noise(fit, tests) | {"pitch": math.radians(0.01)}

@@ -163,6 +163,7 @@ def test_what_swings_in_a_rolling_body(tmp_path, inertia, period):
     assert said["mass"].standard_deviation < 0.1 * inertia
 
 
+@pytest.mark.slow
 def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch):
     """A coefficient that two blocks give follows the third one, too. And a search that was killed goes on from the effect that
     it had let in, of the same campaign alone."""
@@ -239,6 +240,7 @@ class Runaway(AbstractLoad):
         return Action(force=force, memory_rate=6.0 * memory + now.earth_velocity()[3])
 
 
+@pytest.mark.slow
 def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
     """The others are scored as ever, whatever one of them does off its null."""
     own = Candidate(
@@ -250,6 +252,7 @@ def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
     assert "explains too little" in next(one.reason for one in found.rejected if one.effect == "runaway")
 
 
+@pytest.mark.slow
 def test_a_model_of_ones_own_is_calibrated(tmp_path):
     """With a load that no platform file has, freed by its label like any other."""
     campaign = campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x))

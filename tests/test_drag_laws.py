@@ -337,6 +337,7 @@ def test_in_an_irregular_sea(sea) -> None:
     assert np.abs((plain - ab4) / scale).max() > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["tsit5", pytest.param("ab4", marks=pytest.mark.validate)])
 def test_gradients_through_a_memory(method: str, monkeypatch) -> None:
     """Tangents that run along = linearisations = reverse = differences, for coefficient, share, cut-off and exponent."""

@@ -24,7 +24,7 @@ def test_notebooks_are_numbered() -> None:
 
 @pytest.mark.parametrize(
     "path",
-    [pytest.param(path, marks=[pytest.mark.validate] if path.stem in LONG else []) for path in NOTEBOOKS],
+    [pytest.param(path, marks=pytest.mark.validate if path.stem in LONG else pytest.mark.slow) for path in NOTEBOOKS],
     ids=lambda path: path.stem,
 )
 def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:

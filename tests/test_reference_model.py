@@ -277,6 +277,7 @@ def test_what_is_not_modelled_is_refused():
             ReferenceModel(platform(**changes))
 
 
+@pytest.mark.slow
 def test_shipped_campaign_is_what_the_script_makes(tmp_path):
     made = demo.make_campaign(tmp_path, seed=1)
     assert {path.name for path in made} == {path.name for path in demo.FOLDER.iterdir()}

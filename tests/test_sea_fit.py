@@ -130,6 +130,7 @@ def test_coefficients_of_a_made_run_are_found_back(fitted) -> None:
     assert max(abs(b.before) for row in tests["sea-a"].bands.values() for b in row.values()) > 0.1
 
 
+@pytest.mark.slow
 def test_spectra_find_them_back_too(campaign) -> None:
     result = calibrate_in_waves(campaign, free=LABELS, start=start_of(campaign), objective="spectrum", options=OPTIONS)
     true = build(campaign.platform).values

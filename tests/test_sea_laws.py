@@ -28,6 +28,8 @@ from jaxhydro.platform import build
 from jaxhydro.problems import InputError
 from jaxhydro.waves.sea_state import SeaState
 
+pytestmark = pytest.mark.slow  # nearly all need its fit
+
 OPTIONS = Options(order=1, diffraction="none", cutoff=0.2)
 HEIGHTS, LENGTH, STEP = (2.5, 5.0, 7.5), 400.0, 0.5  # m, s, s
 LABELS = ("column.Cd_t",)

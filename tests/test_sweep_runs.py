@@ -162,6 +162,7 @@ def test_the_command_writes_what_the_life_is(file, whole) -> None:
 # --- results do not depend on how they came about
 
 
+@pytest.mark.slow
 def test_a_killed_sweep_goes_on_and_is_bitwise_the_same(file, whole, tmp_path) -> None:
     out = tmp_path / "o"
     code = "from jaxhydro.cli import main; main()"
@@ -266,6 +267,7 @@ def test_a_worker_that_is_killed_loses_nothing(file, whole, tmp_path) -> None:
     assert results(tmp_path / "o")["series"][1, 1].tobytes() == results(whole)["series"][1, 1].tobytes()
 
 
+@pytest.mark.slow
 def test_a_cluster_that_loses_a_worker_gives_the_same(file, whole, tmp_path) -> None:
     distributed = pytest.importorskip("distributed")
     killed: list[int] = []

@@ -207,6 +207,7 @@ def parts(records) -> dict:
     return found | {"wave": records["sea-2"][:, 3] / tank.NOISE["wave"]}
 
 
+@pytest.mark.slow
 def test_every_effect_acts_where_it_should(short):
     every = {f"{name}:{variant}" if variant else name
              for name, law in tank_effects.EFFECTS.items() for variant in law.variants()}

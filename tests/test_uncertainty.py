@@ -164,6 +164,7 @@ def test_the_other_unknowns_are_refitted(ship: Likelihood) -> None:
     assert alone > 5 * found.drop[0] > 0
 
 
+@pytest.mark.slow
 @measured
 def test_a_profile_finds_its_way_where_the_others_follow_on_a_curve() -> None:
     """The roll of KVLCC2: linear damping takes over where quadratic damping goes, far beyond what the covariance says."""
@@ -281,6 +282,7 @@ def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) ->
         assert [at[0] for at, _ in row] == [1000 * k + 6 + i for i in range(len(row))]
 
 
+@pytest.mark.slow
 def test_nuts_agrees_with_the_covariance(ship: Likelihood) -> None:
     found = sample(ship, draws=100, warmup=40, chains=2, seed=3)
     assert found.value.shape == (2, 100, 3) and found.divergences == 0

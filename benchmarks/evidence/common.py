@@ -17,8 +17,8 @@ CACHE = Path(os.environ.get("JAXHYDRO_VALIDATE_CACHE", ROOT / ".venv" / "validat
 DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 # the edge of the packages, and sweeps, which only that edge knows: no number depends on them
 EDGE = {
-    "cli", "command", "console", "export", "files", "formatting", "interrupts", "outputs", "plot", "report", "saved",
-    "tables", "sea_command", "sweep_page",
+    "__main__", "cli", "command", "console", "export", "files", "formatting", "interrupts", "outputs", "plot", "report",
+    "saved", "tables", "sea_command", "sweep_page",
 }  # fmt: skip
 SWEEPS = ROOT / "jaxhydro" / "sweep"
 TRUE = {

@@ -50,7 +50,7 @@ class Prepared(NamedTuple):
         if (used := self.setup.calibrated) is None:
             return about | {"notes": self.notes}
         reference = {} if used.reference is None else {"sea_state_reference": used.reference._asdict()}
-        strips = {"strips": used.strips} if used.strips else {}
+        strips = {} if used.strips is None else {"strips": used.strips.model_dump()}
         about["calibration"] = {"file": self.calibration, "values": used.values} | reference | strips
         return about | {"notes": self.notes + used.warnings}
 
