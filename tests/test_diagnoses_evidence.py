@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from benchmarks.evidence.diagnoses import Case, Share, Tally, conclude, doubts, factors, outcome
+from benchmarks.evidence.diagnoses import Case, Share, Tally, conclude, doubts, factors, merged, outcome
 from calibration.discovery.judgement import Verdict
 
 
@@ -68,3 +68,14 @@ def test_a_page_of_them_says_what_falls_short():
         "diagnosis: false alarms in 2 of 3",
         "diagnosis: 14 of 224 campaigns run",
     ]
+
+
+def test_errors_are_over_those_with_nothing_missing_of_their_time():
+    """A campaign with nothing missing is run again by other sources; of two effects one is, too."""
+    before = {"nothing-1": said([], 0.2, sources="then"), "nothing-2": said([], 0.3, sources="then"),
+              "current-2-1": said(["current"], 0.3, sources="then"), "umbilical-2-1": said(["umbilical"], 0.3, sources="then"),
+              "umbilical-2-2": said(["umbilical"], 0.3, sources="then")}  # fmt: skip
+    after = merged(merged(before, {"nothing-1": said([], 0.1)}), {"current-2-1": said(["current"], 0.15)})
+    assert {name for name, one in after.items() if "floor" in one} == {"umbilical-2-1"} and merged(after, after) == after
+    ratio = factors({Case.of(name): one for name, one in after.items()})
+    assert [round(ratio[Case.of(name)], 12) for name in ("current-2-1", "umbilical-2-1", "umbilical-2-2")] == [1.5, 1.5, 1.0]

@@ -136,9 +136,23 @@ def kept() -> dict[str, dict[str, Any]]:
     return {result.pop("name"): result for result in results}
 
 
+def merged(before: dict[str, dict[str, Any]], results: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """These beside what is kept of others. One of earlier sources keeps, as its `floor`, the error that was its seed's with nothing
+    missing, where that is another now."""
+    every = before | {name: {k: v for k, v in one.items() if k not in UNKEPT} for name, one in results.items()}
+    for name, old in before.items():
+        nothing = Case("", 2, Case.of(name).seed).name
+        if nothing not in before or every[name]["sources"] != old["sources"]:
+            continue
+        floors = [one["error"][1] for one in (before[nothing], every[nothing])]
+        if "floor" in old or (floors[0] != floors[1] and every[nothing]["sources"] != old["sources"]):
+            every[name] = every[name] | {"floor": old.get("floor", floors[0])}
+    return every
+
+
 def keep_all(results: dict[str, dict[str, Any]]) -> None:
     """These for later runs, beside what is kept of others, a line each."""
-    every = kept() | {name: {k: v for k, v in one.items() if k not in UNKEPT} for name, one in results.items()}
+    every = merged(kept(), results)
     lines = [json.dumps({"name": case.name} | every[case.name]) for case in cases() if case.name in every]
     beside = KEPT.with_suffix(".part")
     beside.write_text("".join(f"{line}\n" for line in lines))
@@ -220,10 +234,10 @@ def run(figures: Path, processes: int, most: int) -> Section:
 
 def factors(results: dict[Case, dict[str, Any]]) -> dict[Case, float]:
     """Error of the tests that were not fitted, with what was found in the model, over that of the campaign with nothing missing
-    whose platform and waves are the same: of those that have one."""
+    whose platform and waves are the same, by sources of about its time: of those that have one."""
     floor = {case.seed: result["error"][1] for case, result in results.items() if not case.effect}
-    known = {case: result["error"][1] for case, result in results.items() if case.effect and case.seed in floor}
-    return {case: error / floor[case.seed] for case, error in known.items()}
+    known = {case: result for case, result in results.items() if case.effect and case.seed in floor}
+    return {case: result["error"][1] / result.get("floor", floor[case.seed]) for case, result in known.items()}
 
 
 class Share(NamedTuple):
@@ -357,7 +371,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
         f"run{by}. {tally.text()} {other_strengths(said, results)}\n\n{LAWS}\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
-        f"nothing missing; a force: the law proposed for what is unexplained, and the share that it gives in what was not "
+        f"nothing missing, by sources of its time; a force: the law proposed for what is unexplained, and the share that it gives in what was not "
         f"fitted; in doubt: what helps, and is outdone by something that is refused):\n\n"
         + table(("effect in the tank", *STRENGTHS.values()), rows)
     )  # fmt: skip
