@@ -137,8 +137,8 @@ def kept() -> dict[str, dict[str, Any]]:
 
 
 def merged(before: dict[str, dict[str, Any]], results: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-    """These beside what is kept of others. One of earlier sources keeps, as its `floor`, the error that was its seed's with nothing
-    missing, where that is another now."""
+    """These beside what is kept of others. One of earlier sources keeps, as its `floor`, the error that was its seed's with
+    nothing missing, where that is another now."""
     every = before | {name: {k: v for k, v in one.items() if k not in UNKEPT} for name, one in results.items()}
     for name, old in before.items():
         nothing = Case("", 2, Case.of(name).seed).name
@@ -371,8 +371,8 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
         f"run{by}. {tally.text()} {other_strengths(said, results)}\n\n{LAWS}\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
-        f"nothing missing, by sources of its time; a force: the law proposed for what is unexplained, and the share that it gives in what was not "
-        f"fitted; in doubt: what helps, and is outdone by something that is refused):\n\n"
+        f"nothing missing, by sources of its time; a force: the law proposed for what is unexplained, and the share that it "
+        f"gives in what was not fitted; in doubt: what helps, and is outdone by something that is refused):\n\n"
         + table(("effect in the tank", *STRENGTHS.values()), rows)
     )  # fmt: skip
     nulls = {case: result for case, result in results.items() if not case.effect}
