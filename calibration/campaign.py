@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
 from calibration.checks import Finding, check_records
-from calibration.manifest import Manifest, platform_source, read_manifest
+from calibration.manifest import IN_WAVES, Manifest, platform_source, read_manifest
 from calibration.plausible import check_plausible
 from calibration.records import Record, read_series, records_of
 from jaxhydro.model import Model
@@ -47,6 +48,15 @@ class Campaign:
         return {record.id: record for record in self.records}[id]
 
 
+def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]:
+    """Tests in waves of another heading than the platform's tables are of."""
+    for i, test in enumerate(manifest.tests):
+        other = platform.of_other_waves(test.sea.heading) if test.kind in IN_WAVES and test.use != "ignore" else None
+        if other is not None:
+            expected = f"{other[1]:g} deg, the {other[0]} of {manifest.platform}"
+            yield Problem(f"tests[{i}].sea.heading", expected, f"{test.sea.heading:g} deg")
+
+
 def load_campaign(path: str | PathLike[str]) -> Campaign:
     """The campaign in a folder, or of a campaign.yaml.
 
@@ -62,6 +72,8 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     except InputError as error:
         problems += [Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint)
                      for p in error.problems]
+    else:
+        problems += _of_other_waves(manifest, platform)
     try:
         series = read_series(manifest, folder)
     except InputError as error:

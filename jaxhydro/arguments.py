@@ -27,7 +27,8 @@ EPILOG = "\n\n".join((
     "[bold]Formats[/bold]",
     "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
     "example to copy: `jaxhydro demo` prints where they are.",
-    "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so.",
+    "Exit status: 0 done; 2 the input is wrong; 3 not converged, or runs of a sweep failed, with what was reached written and "
+    "marked so, or a motion that grew beyond all bounds, with nothing written; 130 stopped.",
 ))  # fmt: skip
 EXAMPLES = "\n\n".join((
     "[bold]Examples[/bold]",
@@ -36,6 +37,18 @@ EXAMPLES = "\n\n".join((
     "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
     "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
     "jaxhydro simulate my-campaign --calibration results/calibration.json --out seas",
+))  # fmt: skip
+
+FITTING = "\n\n".join((
+    "[bold]Examples[/bold]",
+    "jaxhydro calibrate my-campaign --out results",
+    "jaxhydro calibrate my-campaign --tests waves --start results/calibration.json --out tuned",
+    "jaxhydro calibrate my-campaign --tests waves --law choose --out laws",
+    "jaxhydro calibrate my-campaign --tests all --out joint",
+    "jaxhydro report results",
+    "[bold]What it writes[/bold]",
+    "calibration.json (docs/formats.md), simulated.nc, figures. Exit status: 0 done; 2 the input is wrong; 3 not converged or "
+    "stopped, or a record is not followed, with what was reached written and marked so; 130 stopped, nothing was written.",
 ))  # fmt: skip
 
 DIAGNOSING = "\n\n".join((
@@ -49,7 +62,8 @@ DIAGNOSING = "\n\n".join((
     "waves only.",
     "[bold]What it writes[/bold]",
     "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "
-    "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so.",
+    "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so; "
+    "130 stopped, and the same command goes on.",
 ))  # fmt: skip
 
 QUANTIFYING = "\n\n".join((
@@ -220,7 +234,8 @@ Calibrated = Annotated[
     Path | None,
     typer.Option(
         "--calibration",
-        help="A calibration.json or diagnosis.json whose values, effects and strips are used; of its own campaign seas, too.",
+        help="A calibration.json or diagnosis.json, or its folder, whose values, effects and strips are used; of its own "
+        "campaign seas, too.",
     ),
 ]
 Step = Annotated[
@@ -234,22 +249,27 @@ Tests = Annotated[
     ),
 ]
 Aim = Annotated[
-    Objective, typer.Option(help="In waves, fit energy in bands, spectra in them, the motion, energy and motion, or blocks.")
+    Objective,
+    typer.Option(
+        help="In waves, fit energy in bands, spectra in them, motion, energy and motion, or motion in blocks that start anew."
+    ),
 ]
 Robust = Annotated[Loss, typer.Option(help="With --tests all: cauchy lets outliers hardly count.")]
 OverSea = Annotated[
     Law,
     typer.Option(
         help="In waves, drag as a power of the sea state (damping, too) or of the motion, or slow motion apart; "
-        "choose: what held-out seas prefer."
+        "choose: what held-out seas prefer. With --tests waves."
     ),
 ]
 GlobalSearch = Annotated[
-    Method | None, typer.Option(help="Search the decays' coefficients within their bounds first, wherever the platform begins.")
+    Method | None, typer.Option(help="Search the decays' coefficients within their bounds first. Not with --start.")
 ]
 SearchSeed = Annotated[int, typer.Option(help="Of the search.", min=0)]
 SearchSeconds = Annotated[float, typer.Option(help="CPU time of the search, s.", min=1.0)]
-Begin = Annotated[Path | None, typer.Option(help="A calibration.json whose coefficients are begun from.")]
+Begin = Annotated[
+    Path | None, typer.Option(help="A calibration.json or diagnosis.json, or its folder, whose coefficients are begun from.")
+]
 Finished = Annotated[
     Path,
     typer.Option("--calibration", help="The calibration.json of this campaign's decays, or its folder.", show_default=False),
@@ -271,7 +291,7 @@ Workers = Annotated[
 Batch = Annotated[
     int | None,
     typer.Option(
-        help="Runs that each takes at a time: on a GPU at once, else one after the other. Results do not depend on it.",
+        help="Runs that each takes at a time: on a GPU at once, else one after the other. Results on CPUs do not depend on it.",
         show_default="1; on a GPU what its memory holds",
         min=1,
     ),

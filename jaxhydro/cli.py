@@ -116,7 +116,8 @@ def simulate(
 ) -> None:
     """Motions in irregular waves, regular waves and free decays: series, statistics and figures.
 
-    With a campaign, its irregular tests in the waves that were measured.
+    With a campaign, its tests in regular and irregular waves, in the waves that were measured; only --order, --stretching,
+    --diffraction, --cutoff and --calibration go with one.
     """
     given = sea_options.by_option(ctx.params)
     if sea_options.is_campaign(platform):
@@ -139,14 +140,14 @@ def simulate(
     _start()
     from jaxhydro import command, sea_command
 
-    model = _model(platform, calibration, diffraction, elements)
+    model = _model(platform, calibration, diffraction, elements, heading if sea is not None or regular is not None else None)
     job = command.Job(platform, out, duration, dt, offset, step)
     stretch = sea_options.stretching(given)
     if not (command.run(model, job, regular, heading, stretch) if sea is None else sea_command.run(model, job, sea)):
         raise typer.Exit(NOT_CONVERGED)
 
 
-@app.command()
+@app.command(epilog=arguments.FITTING)
 def calibrate(
     campaign: Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")],
     out: Out,
@@ -250,7 +251,7 @@ def sweep(
     restart: Annotated[bool, typer.Option("--restart", help="Forget the runs that are in the folder.")] = False,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Do runs that failed again.")] = False,
 ) -> None:
-    """All sea states of a scatter table, from all headings, with all seeds: results.zarr, lifetime statistics, figures.
+    """All sea states of a scatter table, with all headings and all seeds: results.zarr, lifetime statistics, figures.
 
     Stopped or killed, the same command goes on where it was.
     """
@@ -313,10 +314,15 @@ def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, aske
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _model(platform: str, calibration: Path | None, diffraction: str | None, elements: int | None) -> "Model":
+def _model(
+    platform: str, calibration: Path | None, diffraction: str | None, elements: int | None, heading: float | None = None
+) -> "Model":
+    """The model of a platform, for waves of a heading (deg)."""
     from jaxhydro.command import calibrated, model_of
     from jaxhydro.platform_schema import load_platform
 
     declared = load_platform(platform)
+    if heading is not None and (other := declared.of_other_waves(heading)) is not None:
+        raise options.wrong("--heading", f"{other[1]:g}, the {other[0]} of the platform file, expected; found {heading:g}")
     model = model_of(declared, diffraction, elements)
     return model if calibration is None else calibrated(model, platform, declared.name, calibration)

@@ -232,6 +232,8 @@ class Excitation(Schema):
 
 
 BESIDE = ("radiation", "excitation", "drift")  # keys that name a file
+OF_WAVES = ("excitation", "drift")  # ... that is of waves of one heading
+SAME = 1e-6  # deg
 
 
 class ReferenceSea(Schema):
@@ -284,6 +286,11 @@ class Platform(Consistent):
     centripetal: bool = True
     drag_speed: Literal["vector", "component"] = "vector"
     sea_state_laws: SeaStateLaws | None = None
+
+    def of_other_waves(self, heading: float) -> tuple[str, float] | None:
+        """Key and heading (deg) of forces that were computed for waves of another heading than this."""
+        tables = {f"{key}.heading": one.heading for key in OF_WAVES if (one := getattr(self, key)) is not None}
+        return next(((key, own) for key, own in tables.items() if abs((own - heading + 180) % 360 - 180) > SAME), None)
 
     def _faults(self) -> Iterator[Problem]:
         bed = -self.water.depth

@@ -10,15 +10,19 @@ import pytest
 from numpy.testing import assert_allclose
 from test_loads import COLUMN, PONTOON, RHO, G, build, model_of, only
 from test_water_effects import HULL, WATER, acts, irregular, with_values
+from typer.testing import CliRunner
 
 import jaxhydro as jh
+from calibration.campaign import load_campaign
 from calibration.discovery.candidates import sought
 from calibration.discovery.catalogue import catalogue
 from calibration.discovery.listed import Scales
+from jaxhydro import cli
 from jaxhydro.interop.excitation import read_excitation
 from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia, WaveGaugePosition
 from jaxhydro.problems import InputError
-from jaxhydro.sweep.run import _platform_text
+from jaxhydro.sweep import load_sweep
+from jaxhydro.sweep.run import _platform_text, prepared
 from jaxhydro.waves import Clock
 from jaxhydro.waves.excitation import Excitation
 
@@ -215,6 +219,32 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     path.write_text(text + "\nexcitation: {file: none.3}\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"none\.3: expected a \.3 file, found no such file"):
         jh.load_model(path)
+
+
+def test_seas_of_another_heading_are_refused(tmp_path: Path) -> None:
+    """By simulations, sweeps and campaigns; a whole turn is no other heading."""
+    written(tmp_path, rows_of(forces()), "hull.3")
+    text = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")
+    (path := tmp_path / "a.yaml").write_text(text + "\nexcitation: {file: hull.3, heading: 360}\n", encoding="utf-8")
+    platform = jh.load_platform(path)
+    assert [platform.of_other_waves(heading) for heading in (0.0, -360.0, 30.0)] == [None, None, ("excitation.heading", 360.0)]
+    for waves in (("--hs", "2", "--tp", "9"), ("--wave-height", "2", "--wave-period", "9")):
+        words = ["simulate", str(path), *waves, "--heading", "30", "--out", str(tmp_path / "out")]
+        result = CliRunner().invoke(cli.app, words)
+        assert result.exit_code == 2 and "360, the excitation.heading of the" in result.output, result.output
+    file = tmp_path / "sweep.yaml"
+    file.write_text("platform: a.yaml\nscatter: [{hs: 2.0, tp: 9.0}]\nheadings: [0, 30]\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"excitation.heading: expected 30 deg, as in the sweep's headings, found 360 deg"):
+        prepared(load_sweep(file), str(file))
+    np.savetxt(tmp_path / "sea.csv", np.zeros((100, 3)), delimiter=",", header="t,x,w", comments="")
+    tests = "".join(f"  - {{id: sea-{i}, kind: irregular, file: sea.csv, sea: {{heading: {i}}}}}\n" for i in (0, 30))
+    (tmp_path / "campaign.yaml").write_text(
+        "name: c\nplatform: a.yaml\nchannels: {time: {column: t, unit: s}, surge: {column: x, unit: m}}\n"
+        f"wave_channel: {{column: w, unit: m}}\ntests:\n{tests}", encoding="utf-8")  # fmt: skip
+    words = r"tests\[1\]\.sea\.heading: expected 360 deg, the excitation\.heading of a\.yaml, found 30 deg"
+    with pytest.raises(InputError, match=words) as error:
+        load_campaign(tmp_path)
+    assert len(error.value.problems) == 1
 
 
 @pytest.mark.skipif(not WAMIT.exists() or not RUN.exists(), reason="../shared/reference has no iea15-umaine or no openfast")

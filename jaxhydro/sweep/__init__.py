@@ -1,4 +1,4 @@
-"""Sweeps: one platform in every sea state of a scatter table, from every heading, with every seed: `run_sweep`."""
+"""Sweeps: one platform in every sea state of a scatter table, with every heading, with every seed: `run_sweep`."""
 
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.run import Progress, run_sweep

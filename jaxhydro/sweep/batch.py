@@ -18,7 +18,7 @@ from jaxhydro.loads import MooringLines
 from jaxhydro.model import Model
 from jaxhydro.platform_schema import load_platform
 from jaxhydro.plot import for_people
-from jaxhydro.problems import InputError
+from jaxhydro.problems import InputError, Problem
 from jaxhydro.rotations import rotation
 from jaxhydro.sea_command import build_sea
 from jaxhydro.sea_options import Asked
@@ -52,6 +52,10 @@ class Setup(NamedTuple):
 def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setup:
     """From a platform's name or file and a calibration's file. Raises InputError, EquilibriumError."""
     declared = load_platform(platform)
+    for heading in sorted({case.heading for case in plan.cases}):
+        if (other := declared.of_other_waves(heading)) is not None:
+            expected = f"{heading:g} deg, as in the sweep's headings"
+            raise InputError(str(platform), [Problem(other[0], expected, f"{other[1]:g} deg")])
     model = model_of(declared, plan.diffraction)
     used = None
     if calibration is not None:

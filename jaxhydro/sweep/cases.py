@@ -1,4 +1,4 @@
-"""What a sweep runs, in order: every case, a sea state from a heading, with every seed. Plain values, as kept on disk."""
+"""What a sweep runs, in order: every case, a sea state with a heading, and every seed. Plain values, as kept on disk."""
 
 import json
 import math

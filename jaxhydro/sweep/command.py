@@ -114,7 +114,7 @@ def _print_plan(made: Prepared) -> None:
     rows = [
         ("Sea states", f"{len(states)}"),
         ("Headings", ", ".join(f"{heading:g}" for heading in headings[:8]) + (" ..." if len(headings) > 8 else "") + " deg"),
-        ("Cases, a sea state from a heading", f"{len(plan.cases)}"),
+        ("Cases, a sea state with a heading", f"{len(plan.cases)}"),
         ("Seeds", f"{len(plan.seeds)}"),
         ("Runs", f"{len(plan)} of {plan.duration:g} s, statistics from {plan.start:g} s on"),
         ("Step at most", f"{made.setup.limit:.3g} s"),

@@ -95,7 +95,7 @@ def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
 
 
 class Sweep(Consistent):
-    """A sweep file: every sea state from every heading with every seed. What is left out is as in `jaxhydro simulate`."""
+    """A sweep file: every sea state with every heading and every seed. What is left out is as in `jaxhydro simulate`."""
 
     platform: Text
     calibration: Text | None = None
