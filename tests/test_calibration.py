@@ -439,6 +439,7 @@ def test_twenty_far_starts_all_arrive(ship_campaign: Campaign, ship) -> None:
     assert min(objectives) == pytest.approx(ship[0].objective("fit"), rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_model_that_is_too_stiff_arrives(tmp_path: Path) -> None:
     """The roll stiffness half too large: the period is 18 % too short, and the inertia cannot help."""
     time, roll = roll_decay(10.0)
@@ -525,6 +526,7 @@ def test_froude_scaled_records_give_the_same_coefficients(heave) -> None:
 # what one surge decay does not tell
 
 
+@pytest.mark.slow
 def test_one_surge_decay_knows_the_sum_of_two_added_masses_and_neither(tmp_path: Path) -> None:
     true = {"column.Ca_t": 1.50, "column.Cd_t": 2.09, "pontoon.Ca_t": 0.11, "pontoon.Cd_t": 1.84,
             "linear_damping.B11": 4.4e4}  # fmt: skip
@@ -577,6 +579,7 @@ def test_the_measured_roll_of_kvlcc2() -> None:
     assert jh.natural_modes(result.model).of("roll") == pytest.approx(period, rel=0.005)
 
 
+@pytest.mark.slow
 @measured
 def test_the_measured_surge_of_focal_campaign_4() -> None:
     result = calibrate(load_campaign(MEASURED / "focal-c4"))

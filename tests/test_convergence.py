@@ -39,6 +39,7 @@ def test_a_lumped_strip_is_at_the_middle() -> None:
     assert count[0] == count[1] == 4 * 8
 
 
+@pytest.mark.slow
 def test_periods_by_elements(found) -> None:
     """Heave's added mass is the sum whatever the lumps; of pitch's n lumps miss L^2 / (12 n^2): errors of T^2 fall by 4."""
     assert found.elements == (4, 1, 2)
@@ -49,6 +50,7 @@ def test_periods_by_elements(found) -> None:
     assert (one / two, two / four) == pytest.approx((4, 4), rel=0.03)
 
 
+@pytest.mark.slow
 def test_motions_by_elements(found) -> None:
     """Against the finest: none for itself, less for two than for one; changes of integrals follow."""
     for dof in ("surge", "heave", "pitch"):
@@ -59,6 +61,7 @@ def test_motions_by_elements(found) -> None:
     assert_allclose(found.integral["heave"]["wave_frequency"][1], (1 + heave[1]) * found.integral["heave"]["wave_frequency"][0])
 
 
+@pytest.mark.slow
 def test_the_same_in_a_cut_platform(sea: IrregularSea, found) -> None:
     """One row is the simulation of the platform with that many elements."""
     motion = np.asarray(simulate(build(with_elements(PLATFORM, "pontoon", 2, points=1)), TIMES, sea)["heave"])

@@ -135,6 +135,7 @@ def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
     assert_allclose(used.model.values["computed_excitation.share"], share.value)
 
 
+@pytest.mark.slow
 def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:
     """Where strips have the force that acts, nothing is missing, whatever the table says."""
     campaign = campaign_of(tmp_path, pressure)
@@ -142,6 +143,7 @@ def test_a_table_that_says_otherwise_is_left_alone(tmp_path: Path) -> None:
     assert found.verdict == "nothing_missing" and not found.effects
 
 
+@pytest.mark.slow
 def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
     """When and how much, of waves whose record has incident ones only."""
     share, delay = 0.08, 47.3
@@ -257,6 +259,7 @@ def test_second_order_is_taken_again(tmp_path: Path) -> None:
     assert_allclose(again[1].likelihood[used].sum(), declared.likelihood[used].sum(), atol=1.0)
 
 
+@pytest.mark.slow
 def test_a_wrong_sign_is_found(tmp_path: Path) -> None:
     """Of the motion, or of the waves, which one motion cannot tell; turned round, nothing is missing."""
     campaign = campaign_of(tmp_path, lambda omega: -pressure(omega))

@@ -25,6 +25,8 @@ from jaxhydro.platform import build
 from jaxhydro.problems import InputError
 from jaxhydro.statics import held_at
 
+pytestmark = pytest.mark.slow
+
 LABELS = ("column.Ca_t", "column.Cd_t", "pontoon.Ca_z", "pontoon.Cd_z", "linear_damping.B11")
 FACTORS = (0.8, 1.5, 1.2, 0.6, 1.6)
 NOISE = {"surge": 0.02, "heave": 0.005, "pitch": 2e-4}
@@ -121,7 +123,6 @@ def test_a_natural_period_and_its_slope(model, dof: str) -> None:
     assert float(slope) == pytest.approx(rough, rel=1e-4)
 
 
-@pytest.mark.slow
 def test_residuals_of_offsets_and_periods(campaign, model) -> None:
     """At the truth the noise's, off it what is declared; their Gauss-Newton matrices against differences."""
     space = parameter_space(model, LABELS)
@@ -161,7 +162,6 @@ def found_back(result, model) -> None:
         assert abs(one.value - true) < min(3 * one.standard_deviation, 0.05 * true) + 0.01 * true, label
 
 
-@pytest.mark.slow
 def test_coefficients_are_found_back_without_waves(campaign, start, model) -> None:
     """By decays, offsets and periods, within three of their deviations and 5 %; the stages are said, and what was fitted."""
     said = []

@@ -188,6 +188,7 @@ def test_steps_follow_the_fastest_memory() -> None:
     assert not np.abs(coarse).max() < 10
 
 
+@pytest.mark.slow
 def test_gradients_by_the_share() -> None:
     """Forward = reverse = differences, of a decay; vmap over shares is a loop."""
     model, times = platform(), np.linspace(0.0, 30.0, 31)

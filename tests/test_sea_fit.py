@@ -93,6 +93,7 @@ def test_residuals_are_what_the_comparison_says(campaign, problem) -> None:
         assert np.linalg.norm(group) == pytest.approx(off, rel=0.02)
 
 
+@pytest.mark.slow
 def test_gradient_through_a_sea_and_its_spectra(problem) -> None:
     """Gradient and Gauss-Newton matrix of all residuals against central differences."""
     stacked = eqx.filter_jit(lambda p, x: jnp.concatenate(p.residuals(x)))
@@ -115,6 +116,7 @@ def fitted(campaign):
     return result, said, build(campaign.platform).values
 
 
+@pytest.mark.slow
 def test_coefficients_of_a_made_run_are_found_back(fitted) -> None:
     """Two drag coefficients of the NumPy model, within 3 % or two of their deviations; the held-out sea is met too."""
     result, said, true = fitted
@@ -140,6 +142,7 @@ def test_spectra_find_them_back_too(campaign) -> None:
         assert abs(one.value - float(true[label])) < max(0.03 * float(true[label]), 2 * one.standard_deviation), label
 
 
+@pytest.mark.slow
 def test_what_is_written(fitted, tmp_path) -> None:
     result, _, _ = fitted
     content = document(result)

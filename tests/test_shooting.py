@@ -23,6 +23,8 @@ from jaxhydro.integrate import clock
 from jaxhydro.platform import build
 from jaxhydro.problems import InputError
 
+pytestmark = pytest.mark.slow
+
 OPTIONS = Options(order=1, diffraction="none", cutoff=0.2)
 LENGTH, STEP = 1000.0, 0.5  # s
 DOFS = ("surge", "heave")
@@ -118,7 +120,6 @@ def test_blocks_of_the_truth_are_the_record(campaign, seas) -> None:
         assert_allclose(group, np.asarray(shoot(fit.problem, fit.unknowns).residual)[:, i][present[:, i]])
 
 
-@pytest.mark.slow
 def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
     """The step, and the parameters' covariance, against the dense Jacobian of all residuals by all unknowns, by differences."""
     fit = fit_of(campaign, seas, START)
@@ -177,7 +178,6 @@ def test_a_sea_from_a_later_step(seas) -> None:
         assert_allclose(moved.drift(time), later.drift(time), rtol=1e-5)  # by cubics, one-sided at a clock's start
 
 
-@pytest.mark.slow
 def test_coefficients_are_found_where_whole_motions_lead_astray(campaign, tmp_path) -> None:
     """Surge alone, from a natural period that is 15 % too long: fitted sample by sample, it stays out of phase."""
     alone = document()

@@ -183,6 +183,7 @@ def test_a_killed_sweep_goes_on_and_is_bitwise_the_same(file, whole, tmp_path) -
     assert_bitwise(out, whole)
 
 
+@pytest.mark.slow
 def test_a_sweep_that_is_told_to_end_says_that_it_can_go_on(file, tmp_path) -> None:
     """SIGTERM, as SLURM sends it before a job's time is over."""
     words = ["sweep", str(file), "--out", str(tmp_path / "o"), "--workers", "1"]

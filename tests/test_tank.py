@@ -106,6 +106,7 @@ def test_rests_and_keeps_its_energy():
         assert_allclose(crest, 3.0, rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_campaigns_files(monkeypatch, tmp_path):
     monkeypatch.setattr(tank, "DURATIONS", {"surge": 24.0, "heave": 16.0, "pitch": 20.0, "sea": 30.0})
     specs = [Spec(tmp_path / "null", None, 2, SEED), Spec(tmp_path / "two", ["umbilical", "coulomb_friction:pitch"], 2, SEED),

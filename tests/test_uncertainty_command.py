@@ -34,6 +34,7 @@ def written(ship: tuple[Path, Path, Likelihood], tmp_path_factory: pytest.TempPa
     return out, run("uncertainty", folder, *how, "--out", out)
 
 
+@pytest.mark.slow
 def test_what_is_written_is_what_python_finds(ship: tuple[Path, Path, Likelihood], written: tuple[Path, str]) -> None:
     (_, _, likely), (out, said) = ship, written
     content = json.loads((out / "uncertainty.json").read_text())
