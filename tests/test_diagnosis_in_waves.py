@@ -157,6 +157,7 @@ def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
     assert said["coefficient"].standard_deviation < 0.01 and said["delay"].standard_deviation < 0.2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("label", "turns", "far", "near"), [
     ("wave_gauge_position.distance", lambda omega: omega**2 / G, -25.0, 2.0),
     ("sensor_lag.delay", lambda omega: -omega, 2.2, -0.1),
@@ -238,6 +239,7 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
             assert errors[test.id][one.channel]["relative"] == pytest.approx(one.relative, rel=0.02)
 
 
+@pytest.mark.slow
 def test_second_order_is_taken_again(tmp_path: Path) -> None:
     """Where waves of first order were taken, and follow no better any more, those of the record; with the declared model that
     was fitted in them."""
@@ -273,6 +275,7 @@ def test_a_wrong_sign_is_found(tmp_path: Path) -> None:
     assert "a wrong sign in heave" in page and "cannot tell it from a wrong sign in wave" in page
 
 
+@pytest.mark.slow
 def test_a_campaign_turned_round(tmp_path: Path) -> None:
     """As if its manifest said so, of a test that has a sign of its own, too."""
     campaign = campaign_of(tmp_path, pressure)

@@ -78,6 +78,7 @@ def test_cells_without_energy_are_left_out() -> None:
     assert float(kept.measured[0]) == pytest.approx(float(whole.measured[0]), rel=LEAST)
 
 
+@pytest.mark.slow
 def test_residuals_are_what_the_comparison_says(campaign, problem) -> None:
     """ln(1 + error) of every band, and the motions' RMSE over their deviations, by another path: compare, SciPy's Welch."""
     groups = [np.asarray(g) for g in eqx.filter_jit(lambda p: p.residuals(p.space.start))(problem)]
@@ -154,6 +155,7 @@ def test_what_is_written(fitted, tmp_path) -> None:
     assert {figure["file"] for figure in saved["figures"]} >= {"figures/spectra-sea-a.png", "figures/test-wave.png"}
 
 
+@pytest.mark.slow
 def test_messages(campaign, made, tmp_path) -> None:  # noqa: F811
     with pytest.raises(InputError, match="--tests waves"):
         calibrate(campaign)
