@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Discriminator, Field, RootModel, Tag, model
 
 from jaxhydro.body_schema import Coefficients, Inertia, Member, Part, RigidBody
 from jaxhydro.environment import STANDARD_GRAVITY
+from jaxhydro.interop.tables import same_heading
 from jaxhydro.problems import (
     Consistent,
     Faults,
@@ -233,7 +234,6 @@ class Excitation(Schema):
 
 BESIDE = ("radiation", "excitation", "drift")  # keys that name a file
 OF_WAVES = ("excitation", "drift")  # ... that is of waves of one heading
-SAME = 1e-6  # deg
 
 
 class ReferenceSea(Schema):
@@ -290,7 +290,7 @@ class Platform(Consistent):
     def of_other_waves(self, heading: float) -> tuple[str, float] | None:
         """Key and heading (deg) of forces that were computed for waves of another heading than this."""
         tables = {f"{key}.heading": one.heading for key in OF_WAVES if (one := getattr(self, key)) is not None}
-        return next(((key, own) for key, own in tables.items() if abs((own - heading + 180) % 360 - 180) > SAME), None)
+        return next(((key, own) for key, own in tables.items() if not same_heading(own, heading)), None)
 
     def _faults(self) -> Iterator[Problem]:
         bed = -self.water.depth

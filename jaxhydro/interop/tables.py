@@ -1,6 +1,7 @@
 """WAMIT's numeric output files that tabulate forces by period and heading."""
 
 from os import PathLike
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -52,12 +53,16 @@ def _is_number(word: str) -> bool:
     return True
 
 
+def same_heading(one: float | Float[np.ndarray, "..."], other: float) -> Any:
+    """Whether waves run the same way (deg), whole turns aside."""
+    return np.abs((one - other + 180) % 360 - 180) < SAME
+
+
 def of_heading(
     path: str | PathLike[str], rows: Float[np.ndarray, "r c"], headings: slice, heading: float
 ) -> Float[np.ndarray, "s c"]:
     """The rows for waves of one heading (deg). Raises InputError where there are none."""
-    turned = np.abs((rows[:, headings] - heading + 180) % 360 - 180)
-    mine = rows[(turned < SAME).all(axis=1)]
+    mine = rows[same_heading(rows[:, headings], heading).all(axis=1)]
     if not len(mine):
         same = (np.ptp(rows[:, headings], axis=1) < SAME)
         known = ", ".join(f"{beta:g}" for beta in np.unique(rows[same, headings.start]))
