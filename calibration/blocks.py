@@ -36,17 +36,18 @@ class Blocks(eqx.Module):
 
 
 class Cutting(NamedTuple):
-    """A run while it is cut."""
+    """A run while it is cut. Blocks begin `lag` (s) before their samples: the recorded motions are that late."""
 
     run: SeaRun
     path: State
     dofs: tuple[int, ...]
     blocks: list[tuple]
+    lag: float = 0.0
 
     def step_of(self, samples: np.ndarray) -> np.ndarray:
-        """The last step of the clock at or before samples of the run."""
-        off = (np.asarray(self.run.times)[samples] - float(self.run.times[0])) / float(self.run.step)
-        return np.floor(off + 1e-6).astype(int)
+        """The last step of the clock at or before the motion that samples of the run show, within the run."""
+        off = (np.asarray(self.run.times)[samples] - self.lag - float(self.run.times[0])) / float(self.run.step)
+        return np.clip(np.floor(off + 1e-6).astype(int), 0, self.run.steps)
 
     def cut(self, pieces: Sequence[Piece], numbers: Sequence[int], period: float, none: int) -> None:
         """Cut the motions of one test, of these numbers, into equal blocks."""
@@ -66,9 +67,9 @@ class Cutting(NamedTuple):
                 j, x = self.dofs.index(one.dof), np.asarray(one.measured)
                 measured[j], piece[j] = x[part], number
                 factor[j] = math.sqrt(one.weight / count) / x.std()
-                smooth[:, j], loose[:, j] = smoothed(times[one.begin + samples], x, at)
+                smooth[:, j], loose[:, j] = smoothed(times[one.begin + samples], x, at + self.lag)
             here = times[pieces[0].begin + part]
-            needed = math.ceil((here[-1] - at) / float(self.run.step) - 1e-6)
+            needed = math.ceil((here[-1] - self.lag - at) / float(self.run.step) - 1e-6)
             self.blocks.append((begins[i], span, here, measured, factor, smooth, loose, piece, max(needed, span)))
 
     def stacked(self) -> Blocks:

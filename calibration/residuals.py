@@ -20,6 +20,7 @@ from calibration.records import Record
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
+from jaxhydro.observe import observe
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.sea import StillWater
 
@@ -147,7 +148,7 @@ class Problem(eqx.Module):
         )
         if not model.senses:  # three motions cost less than six
             return (grid.at(record.time, record.dofs)[0] - base[dofs] + offset).T
-        return ((model.seen(grid.at(record.time)[0]) - model.seen(base))[:, dofs] + offset).T
+        return (observe(model, grid, record.time, base, in_waves=False)[:, dofs] + offset).T
 
     def products(
         self, unknowns: Unknowns, until: Float[Array, " r"]

@@ -26,6 +26,7 @@ from jaxhydro.analysis import SEGMENT, band_weights
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
+from jaxhydro.observe import observe
 from jaxhydro.simulate import farthest
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.sea_state import SeaState
@@ -94,19 +95,20 @@ class SeaProblem(eqx.Module):
     objective: Objective = eqx.field(static=True)
     tail: Float[Array, " g"] | None = None  # of every group, where residuals cease to count by their squares
 
-    def motions(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, "t 6"], ...], Float[Array, "6"]]:
-        """Position in every run at its times, and the position that was measured as zero (m, rad)."""
+    def motions(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, "t 6"], Float[Array, "t 6"]], ...]:
+        """Position of the reference point and readings of the sensors (m, rad), run by run at its times."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model) if self.rest is None else self.rest
         at_rest = State(rest, jnp.zeros(6), model.rest().memory)
 
-        def position(run: SeaRun) -> Float[Array, "t 6"]:
+        def motion(run: SeaRun) -> tuple[Float[Array, "t 6"], Float[Array, "t 6"]]:
             here = model if run.state is None else model.in_sea(run.state)
             start = at_rest if run.start is None else run.start
-            return integrate(here, run.sea, start, run.times[0], run.step, run.steps, "ab4").at(run.times)[0]
+            grid = integrate(here, run.sea, start, run.times[0], run.step, run.steps, "ab4")
+            readings = observe(model, grid, run.times, rest if self.from_rest else None, in_waves=True)
+            return grid.at(run.times)[0], readings
 
-        positions = tuple(map(position, self.runs))
-        return positions, rest if self.from_rest else jnp.zeros(6)
+        return tuple(map(motion, self.runs))
 
     @property
     def observations(self) -> int:
@@ -135,11 +137,11 @@ class SeaProblem(eqx.Module):
     def look(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
         """`residuals`, and whether the hull stays in the box that every sea was prepared for: beyond, its flow is wrong."""
         energies, motions = [], []
-        positions, base = self.motions(x)
-        far = [farthest(one, self.points, run.sea) - run.sea.half for one, run in zip(positions, self.runs, strict=True)]
-        for run, position in zip(self.runs, positions, strict=True):
+        found = self.motions(x)
+        far = [farthest(one, self.points, run.sea) - run.sea.half for (one, _), run in zip(found, self.runs, strict=True)]
+        for run, (_, readings) in zip(self.runs, found, strict=True):
             for piece in run.pieces:
-                there = position[piece.begin : piece.begin + piece.measured.shape[0], piece.dof] - base[piece.dof]
+                there = readings[piece.begin : piece.begin + piece.measured.shape[0], piece.dof]
                 if self.objective in OF_ENERGY and piece.energies is not None:
                     off = jnp.log(piece.energies.of(there) / piece.energies.measured)
                     energies.append(math.sqrt(piece.weight) * off)

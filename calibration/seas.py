@@ -9,6 +9,8 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, TypeAlias
 
+import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
@@ -20,6 +22,7 @@ from calibration.stretches import stretches, walk, window
 from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.model import Model
+from jaxhydro.observe import observe
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.simulate import largest_step
 from jaxhydro.statics import equilibrium
@@ -162,7 +165,7 @@ def compare(
     made = seas_of(campaign, model.environment, options) if made is None else made
     step = sea_step(model, options)
     from_rest = campaign.manifest.zero is not None
-    still = np.asarray(equilibrium(model)) if from_rest else np.zeros(6)
+    origin = equilibrium(model) if from_rest else None
     notes = [] if from_rest else [NO_ZERO]
     tests = []
     for run, one in made:
@@ -172,19 +175,23 @@ def compare(
         try:
             for part, found_there, _ in walk(model, run, parts, one.sea, step):
                 motion = np.full((len(run.time), 6), np.nan)
-                motion[part.begin : part.end + 1] = there = np.asarray(found_there.response.position)
-                if not np.isfinite(there).all():
-                    first = run.time[part.begin + np.argmin(np.isfinite(there).all(axis=1))]
-                    raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
                 times = run.time[: part.end + 1]
+                readings = _observed(model, found_there.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)
+                motion[part.begin : part.end + 1] = there = np.asarray(readings)
+                if not np.isfinite(there).all():
+                    first = times[part.begin + np.argmin(np.isfinite(there).all(axis=1))]
+                    raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
                 wave = one.sea.gauge(times[part.begin :], run.position)
                 wave = np.concatenate([np.full(part.begin, np.nan), wave])
-                tests += [_test(run, record, motion - still, wave, campaign.manifest.scale) for record in part.records]
+                tests += [_test(run, record, motion, wave, campaign.manifest.scale) for record in part.records]
         except ValueError as error:
             raise Diverged(f"{run.file}: {error}") from None
         notes += [*run.notes, *one.notes]
     order = [record.id for record in campaign.records]
     return Compared(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step)
+
+
+_observed = eqx.filter_jit(observe)
 
 
 class Diverged(ArithmeticError):

@@ -29,6 +29,7 @@ from calibration.sea_residuals import SeaProblem, SeaRun
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import MORE, Grid, integrate, states
 from jaxhydro.model import Model, State
+from jaxhydro.observe import motion_behind, observe
 from jaxhydro.simulate import farthest
 from jaxhydro.statics import equilibrium, natural_modes
 
@@ -98,13 +99,17 @@ class BlockProblem(eqx.Module):
         constant = jnp.append(self.constant + self.wide * constants, 0.0)[block.piece]
         position, rate = block.smooth + block.loose * own.reshape(2, -1)
         fitted, there = block.loose[0] > 0, block.state
-        q = there.position.at[dofs].set(jnp.where(fitted, base[dofs] + position - constant, there.position[dofs]))
         rates = model.position_rate(there.position, there.velocity)
-        rates = rates.at[dofs].set(jnp.where(fitted, rate, rates[dofs]))
+        reading, reading_rate = jax.jvp(model.seen, (there.position,), (rates,))
+        origin = model.seen(base)[dofs]
+        reading = reading.at[dofs].set(jnp.where(fitted, origin + position - constant, reading[dofs]))
+        reading_rate = reading_rate.at[dofs].set(jnp.where(fitted, rate, reading_rate[dofs]))
+        q, rates = motion_behind(model, reading, reading_rate)
         sea = run.sea.from_step(block.begin, block.steps + MORE)
         state = State(q, model.body_velocity(q, rates), there.memory)
         grid = integrate(here, sea, state, sea.start, run.step, block.steps, "ab4")
-        return (grid.at(block.times, self.dofs)[0] - base[dofs] + constant).T, grid, constant
+        readings = observe(model, grid, block.times, base, in_waves=True)[:, dofs]
+        return (readings + constant).T, grid, constant
 
     def shoot(self, unknowns: Unknowns) -> Shot:
         """All blocks."""
@@ -112,7 +117,7 @@ class BlockProblem(eqx.Module):
 
         def one(own: Array, block: Blocks, run: SeaRun) -> Shot:
             seen, grid, _ = self.simulated(x, constants, own, block, run)
-            ends = grid.position[:, jnp.array(self.dofs)]
+            ends = grid.position[:, jnp.array(self.dofs)]  # of the platform itself: what is to join
             beyond = farthest(grid.position, self.sea.points, run.sea) - run.sea.half
             return Shot((seen - block.measured) * block.factor, ends[0], ends[block.span], beyond)
 
@@ -172,20 +177,23 @@ def pose_blocks(sea: SeaProblem, period: float) -> BlockProblem:
     """The tests of a problem in waves, cut into blocks of `CYCLES` times a period (s)."""
     dofs = _fitted(sea)
     total = sum(len(run.pieces) for run in sea.runs)
-    rest = np.asarray(equilibrium(sea.model)) if sea.from_rest else np.zeros(6)
+    origin = sea.model.seen(equilibrium(sea.model) if sea.from_rest else jnp.zeros(6))
+    late = sea.model.clock_lag()
+    lag = 0.0 if late is None else float(late)
     blocks: list[Blocks] = []
     constant: list[float] = []
     wide: list[float] = []
     for run in sea.runs:
         path = _continuous(sea.model, run)
-        made = Cutting(run, path, dofs, [])
+        readings = np.asarray(sea.model.seen(path.position) - origin)
+        made = Cutting(run, path, dofs, [], lag)
         for test in dict.fromkeys(piece.test for piece in run.pieces):
             pieces = [piece for piece in run.pieces if piece.test == test]
             made.cut(pieces, range(len(constant), len(constant) + len(pieces)), period, total)
             for piece in pieces:
                 x = np.asarray(piece.measured)
                 at = made.step_of(np.arange(piece.begin, piece.begin + len(x)))
-                constant.append(float(x.mean() - np.asarray(path.position)[at, piece.dof].mean() + rest[piece.dof]))
+                constant.append(float(x.mean() - readings[at, piece.dof].mean()))
                 wide.append(float(x.std()))
         blocks.append(made.stacked())
     return BlockProblem(sea, tuple(blocks), jnp.asarray(constant), jnp.asarray(wide), dofs)

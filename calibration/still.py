@@ -20,6 +20,7 @@ from jaxhydro.statics import equilibrium, held_at, linearised
 WIDTHS = np.array([1.0, 1.0, 1.0, 50.0, 50.0, 50.0])  # as `natural_modes` compares rotations with translations
 ALIKE = 0.7  # of a shape's largest entry: surge and sway of one period may come mixed
 NEAR = 1e-4  # of an eigenvalue, off which inverse iterations are shifted
+CORRECTIONS = 3  # steps of Newton's method, where sensors track another point
 
 
 class OffsetProblem(eqx.Module):
@@ -37,15 +38,27 @@ class OffsetProblem(eqx.Module):
     from_rest: bool = eqx.field(static=True)
     tail: Float[Array, "1"] | None = None
 
-    def positions(self, x: Float[Array, " p"]) -> Float[Array, "s 6"]:
-        """Where the platform is in every test (m, rad), from the position measured as zero."""
+    def readings(self, x: Float[Array, " p"]) -> Float[Array, "s 6"]:
+        """What the sensors read in every test (m, rad), from the position measured as zero."""
         model = self.space.model(self.model, x)
         base = equilibrium(model) if self.from_rest else jnp.zeros(6)
-        found = [held_at(model, dof, q[dof] + base[dof]) for dof, q in zip(self.held, self.measured, strict=True)]
-        return jnp.stack(found) - base
+
+        def reading(dof: int, at: Float[Array, ""]) -> Float[Array, "6"]:
+            return model.seen(held_at(model, dof, at)) - model.seen(base)
+
+        def held(dof: int, measured: Float[Array, ""]) -> Float[Array, ""]:
+            """Where the motion of the platform is held for the tracked point to read what was measured (Newton)."""
+
+            def corrected(_: int, at: Float[Array, ""]) -> Float[Array, ""]:
+                value, slope = jax.jvp(lambda at: reading(dof, at)[dof], (at,), (jnp.ones_like(at),))
+                return at + (measured - value) / slope
+
+            return jax.lax.fori_loop(0, CORRECTIONS if model.senses else 0, corrected, measured + base[dof])
+
+        return jnp.stack([reading(dof, held(dof, q[dof])) for dof, q in zip(self.held, self.measured, strict=True)])
 
     def residuals(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
-        off = (self.positions(x) - self.measured) / self.unit
+        off = (self.readings(x) - self.measured) / self.unit
         return off[tuple(jnp.array(self.compared).T)]
 
     def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:

@@ -85,6 +85,8 @@ def print_used(used: Used) -> None:
         hs, tp = used.reference
         counted = f"; exponents count from Hs {hs:.3g} m, Tp {tp:.3g} s"
     say(f"Calibrated values used: {', '.join(used.values)}{counted}")
+    if of_sensors := sorted({label.split(".")[0] for label in used.values if label.startswith("sensor_")}):
+        say(f"{' and '.join(of_sensors)}: of that campaign's sensors; the motions here are those of the reference point")
     if used.strips is not None:
         say(f"Strips as they were when these were found: {used.strips}")
     for warning in used.warnings:

@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro import adams_bashforth
 from jaxhydro.environment import DOFS
-from jaxhydro.integrate import Adjoint, Method, clock, integrate
+from jaxhydro.integrate import Adjoint, Grid, Method, clock, integrate
 from jaxhydro.model import Model, State
 from jaxhydro.response import Response
 from jaxhydro.rotations import rotation
@@ -62,9 +62,9 @@ def _simulate(
     steps: int,
     method: Method,
     adjoint: Adjoint,
-) -> Response:
+) -> tuple[Response, Grid]:
     grid = integrate(model, sea, start, times[0], step, steps, method, adjoint)
-    return Response(times, *grid.at(times))
+    return Response(times, *grid.at(times)), grid
 
 
 def simulate(
@@ -115,7 +115,7 @@ def simulate(
         return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / step - 1e-9))
-    return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)
+    return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)[0]
 
 
 @jax.jit
@@ -125,9 +125,13 @@ def _begun(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Arr
 
 
 class InIrregular(NamedTuple):
-    """A simulation in an irregular sea, the sea as it was prepared, and the steps taken: size (s) and number."""
+    """A simulation in an irregular sea, the sea as it was prepared, and the steps taken: size (s) and number.
+
+    `response` is the motion at the times asked for, `grid` that at the ends of all steps.
+    """
 
     response: Response
+    grid: Grid
     sea: SupportSea
     step: float
     steps: int
@@ -154,11 +158,11 @@ def in_irregular(
     computed: Any = {"transfer": model.transfer, "exciting": model.excitation}
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
-        found = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
+        found, grid = _simulate(model, prepared, start, times, jnp.asarray(step), steps, method, adjoint)
         met: Any = model.through(prepared)  # with the box moved where the sea is
         reached = float(_farthest(found.position, jnp.asarray(points), met))
         if not reached + margin > prepared.half:
-            return InIrregular(found, prepared, step, steps)
+            return InIrregular(found, grid, prepared, step, steps)
         if reached > prepared.half + 10 * EXCURSION:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
         excursion += reached + margin - prepared.half + 0.5 * EXCURSION

@@ -27,7 +27,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.loads",),
     ("jaxhydro.model",),
     ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response"),
-    ("jaxhydro.simulate",),
+    ("jaxhydro.observe", "jaxhydro.simulate"),
     # files in, files out: the edge
     ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start", "jaxhydro.interrupts"),
     ("jaxhydro.problems",),

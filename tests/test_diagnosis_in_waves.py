@@ -91,16 +91,21 @@ def record(seed: int, force, tones=MappingProxyType({})) -> np.ndarray:
     return np.column_stack([np.arange(0.0, DURATION, STEP), series(amplitude, omega) + noise[0], heave + noise[1]])
 
 
-def campaign_of(folder: Path, force, tones=MappingProxyType({})) -> Campaign:
-    """Two seas, one held out; a table of the true force, relative to rho g, as WAMIT writes it."""
-    (folder / "platform.yaml").write_text(PLATFORM)
+def write_table(folder: Path, force) -> None:
+    """buoy.3: a heave force relative to rho g, as WAMIT writes it."""
     rows = []
     for omega in np.linspace(0.1, 1.6, 61)[::-1]:
         for mode in range(1, 7):
-            value = complex(excited(np.array([omega]))[0]) / (RHO * G) if mode == 3 else 0j
+            value = complex(force(np.array([omega]))[0]) / (RHO * G) if mode == 3 else 0j
             rows.append(f"{2 * np.pi / omega:.6e} 0.0 {mode} {abs(value):.6e} {np.degrees(np.angle(value)):.6e} "
                         f"{value.real:.6e} {value.imag:.6e}")  # fmt: skip
     (folder / "buoy.3").write_text("\n".join(rows) + "\n")
+
+
+def campaign_of(folder: Path, force, tones=MappingProxyType({})) -> Campaign:
+    """Two seas, one held out; a table of the force that tests of tables are about."""
+    (folder / "platform.yaml").write_text(PLATFORM)
+    write_table(folder, excited)
     tests = []
     for seed, use in enumerate(("fit", "holdout")):
         columns = record(seed, force, tones)

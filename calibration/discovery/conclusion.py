@@ -17,8 +17,9 @@ from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence, Finding
 from calibration.discovery.words import called
-from calibration.records import Record
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
+from calibration.runs import runs
+from calibration.seas import peak_period
 from calibration.seas_results import bands_of
 from jaxhydro.analysis import band_weights
 from jaxhydro.environment import DOFS
@@ -174,6 +175,8 @@ def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
             dof_name = record.degree_of_freedom
             found[record.id] = TestFit(record.id, record.use, "decay", dof_name, record.time, tuple(rows), {}, record.file)
     by_id = {r.id: r for r in campaign.records}
+    all_runs = runs(campaign) if study.seas else ()
+    peaks = {record.id: peak_period(run, record, campaign.manifest.scale) for run in all_runs for record in run.records}
     for sea, residuals in zip(study.seas, motions):
         n = sea.measured.shape[-1]
         every = np.asarray(residuals).reshape(len(sea.tests), -1, n)
@@ -184,14 +187,13 @@ def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
                 for dof, m, r in zip(sea.dofs, values, residual)
             )
             time = np.asarray(sea.times[begin : begin + n])
-            bands = _bands(series, float(time[1] - time[0]), record, campaign) if record.kind == "irregular" else {}
+            bands = _bands(series, float(time[1] - time[0]), peaks[test]) if record.kind == "irregular" else {}
             found[test] = TestFit(test, record.use, record.kind, None, time, series, {}, record.file, bands)
     return [found[r.id] for r in campaign.records if r.id in found]
 
 
-def _bands(series: Sequence[Series], step: float, record: Record, campaign: Campaign) -> dict[str, dict[str, BandError]]:
-    """Relative errors of energies in bands, as the paper's."""
-    period = (record.test.peak_period or 10.0) * campaign.manifest.scale**0.5
+def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, dict[str, BandError]]:
+    """Relative errors of energies in bands, as the paper's, of a sea with this peak period (s)."""
     found: dict[str, dict[str, BandError]] = {}
     for one in series:
         if not one.scored:

@@ -15,6 +15,7 @@ from calibration.parameters import ParameterSpace
 from calibration.residuals import Data, Problem
 from jaxhydro.integrate import Grid, integrate
 from jaxhydro.model import Model, State
+from jaxhydro.observe import observe
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.support_sea import SupportSea
 
@@ -87,9 +88,7 @@ class SeaRecord(eqx.Module):
     def residual(self, x: Float[Array, " p"], count: Int[Array, ""]) -> Float[Array, "w c n"]:
         """Simulated over `count` steps less measured, test by test; zeros of tests that have not ended then."""
         model, rest, grid = self.simulated(x, count)
-        late = model.clock_lag()
-        position = grid.at(self.times if late is None else self.times - late)[0]
-        motion = model.seen(position) - (model.seen(rest) if self.from_rest else jnp.zeros(6))
+        motion = observe(model, grid, self.times, rest if self.from_rest else None, in_waves=True)
         n = self.measured.shape[-1]
         found = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
         ended = self.times[np.array(self.begins) + n - 1] <= self.times[0] + (count + ROUNDING) * self.step
