@@ -44,9 +44,10 @@ class Guarded(TyperGroup):
             complain(NOTHING)
             raise typer.Exit(STOPPED) from None
         except RuntimeError as error:
+            from jaxhydro.start import Float64Error
             from jaxhydro.statics import EquilibriumError
 
-            if not isinstance(error, EquilibriumError):
+            if not isinstance(error, EquilibriumError | Float64Error):
                 raise
             complain(str(error))
             raise typer.Exit(BAD_INPUT) from None
@@ -137,7 +138,6 @@ def simulate(
     dt = options.interval(dt, "--dt", duration)
     step = None if step is None else options.interval(step, "--step", duration)
     out = options.results_folder(out, "motion.csv")
-    _start()
     from jaxhydro import command, sea_command
 
     model = _model(platform, calibration, diffraction, elements, heading if sea is not None or regular is not None else None)
@@ -186,7 +186,6 @@ def diagnose(
     name an effect. The answer may be that nothing is missing, or that something is and none of the known effects explains it.
     """
     out = options.results_folder(out, "diagnosis.json")
-    _start()
     from calibration.discovery.command import diagnose_campaign
 
     if not diagnose_campaign(campaign, out, figures):
@@ -211,7 +210,6 @@ def uncertainty(
     fit's covariance allow for it; on request also profiles of the likelihood, a bootstrap, and draws from the posterior.
     """
     out = options.results_folder(out, "uncertainty.json")
-    _start()
     from calibration.uncertainty_command import quantify
 
     how: dict[str, Any] = {"draws": bootstrap, "nuts": nuts, "level": level, "seed": seed, "figures": figures}
@@ -256,7 +254,6 @@ def sweep(
     Stopped or killed, the same command goes on where it was.
     """
     out = options.results_folder(out, "sweep.json")
-    _start()
     from jaxhydro.sweep import command
 
     try:
@@ -270,7 +267,6 @@ def sweep(
 @app.command()
 def platforms() -> None:
     """List the built-in platforms."""
-    _start()
     from jaxhydro.command import particulars
     from jaxhydro.platform_schema import builtin_platforms
 
@@ -283,7 +279,6 @@ def _calibrate(
 ) -> None:
     """Calibrate; where the truth is known, compare with it and make the report page."""
     out = options.results_folder(out, "calibration.json")
-    _start()
     from calibration import command
 
     loaded, kind = command.load_fitted(campaign, out, tests)
@@ -298,16 +293,8 @@ def _calibrate(
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _start() -> None:
-    """Set JAX up."""
-    from jaxhydro.start import start
-
-    start()
-
-
 def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any]) -> None:
     out = options.results_folder(out, "comparison.json")
-    _start()
     from calibration.command import simulate_campaign
 
     if not simulate_campaign(campaign, out, calibration=calibration, asked=asked):
