@@ -8,6 +8,7 @@ from typer.core import TyperGroup
 
 from jaxhydro import arguments, options, sea_options
 from jaxhydro.console import complain, say, table
+from jaxhydro.files import campaign_file
 from jaxhydro.interrupts import asked_to_stop, ended_by_signals
 from jaxhydro.problems import InputError
 
@@ -54,15 +55,16 @@ class Guarded(TyperGroup):
 
 
 app = typer.Typer(
-    cls=Guarded, help=arguments.HELP, epilog=arguments.EPILOG, no_args_is_help=True, add_completion=False,
+    cls=Guarded, help=arguments.HELP, epilog=arguments.EPILOG, no_args_is_help=True,
     rich_markup_mode="rich", pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
 )  # fmt: skip
-Out = Annotated[Path, typer.Option("--out", help="Folder for the results; made where absent.", show_default=False)]
+OUT = "Folder for the results; made where absent."
+Out = Annotated[Path, typer.Option("--out", help=OUT, show_default=False)]
 
 
 def main() -> None:
     """The entry point."""
-    app()
+    app(prog_name="jaxhydro")  # also of `python -m jaxhydro`
 
 
 def _version(wanted: bool) -> None:
@@ -86,7 +88,11 @@ def _options(
 def simulate(
     ctx: typer.Context,
     platform: Annotated[
-        str, typer.Argument(help="A platform file, a built-in name (see `jaxhydro platforms`), or a campaign's folder.")
+        str,
+        typer.Argument(
+            help="A platform file, a built-in name (see `jaxhydro platforms`), or a campaign's folder.",
+            autocompletion=options.platforms_like,
+        ),
     ],
     out: Out,
     hs: arguments.Hs = None,
@@ -122,7 +128,9 @@ def simulate(
     """
     given = sea_options.by_option(ctx.params)
     if sea_options.is_campaign(platform):
+        campaign_file(platform)
         return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given))
+    options.check_platform(platform)
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
     sea = sea_options.asked(given, options.finite(heading, "--heading"))
     if sea is not None and regular is not None:
@@ -224,13 +232,14 @@ def report(
     ],
 ) -> None:
     """Make one self-contained HTML page, report.html, of what is in a result folder."""
+    options.check_results(folder)
     from calibration.report import write_report
 
     say(f"{write_report(folder)}")
 
 
 @app.command()
-def demo(out: Out = Path("jaxhydro-demo")) -> None:
+def demo(out: Annotated[Path, typer.Option("--out", help=OUT)] = Path("jaxhydro-demo")) -> None:
     """Calibrate to the nine embedded decays of VolturnUS-S, compare with the true coefficients, make a page."""
     from importlib import resources
 

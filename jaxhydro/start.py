@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from typing import Any
 
 # XLA's newer emitters take twice as long to compile these programs for a CPU, and the programs are no faster
 QUICK = "--xla_cpu_use_fusion_emitters=false"
@@ -46,11 +47,16 @@ def start() -> None:
 
 def need_float64() -> None:
     """Raise Float64Error unless JAX computes in float64."""
-    import jax
-
-    if not jax.config.jax_enable_x64:
+    if not _setting("jax_enable_x64"):
         ways = "Remove JAX_ENABLE_X64=0 and JAXHYDRO_X64=0 from the environment"
         raise Float64Error(f"jaxhydro needs float64. {ways}, or call jax.config.update('jax_enable_x64', True).")
+
+
+def _setting(name: str) -> Any:
+    """A setting of JAX as it is now, `with jax.enable_x64(True)` too."""
+    import jax
+
+    return getattr(jax.config, name)
 
 
 def _off(variable: str) -> bool:
@@ -61,9 +67,9 @@ def _keep_programs() -> None:
     """Keep compiled programs on disk: in the user's cache folder, else in ~/.cache/jaxhydro/xla if that can be written."""
     import jax
 
-    if not jax.config.jax_enable_compilation_cache:
+    if not _setting("jax_enable_compilation_cache"):
         return
-    if not jax.config.jax_compilation_cache_dir:
+    if not _setting("jax_compilation_cache_dir"):
         home = os.environ.get("XDG_CACHE_HOME") or "~/.cache"
         try:
             # JAX reads the variable itself, but only when it is imported
@@ -76,5 +82,5 @@ def _keep_programs() -> None:
             return
         jax.config.update("jax_compilation_cache_dir", str(folder))
     for setting, value in EVERYTHING.items():
-        if setting.upper() not in os.environ and getattr(jax.config, setting) == UNTOUCHED[setting]:
+        if setting.upper() not in os.environ and _setting(setting) == UNTOUCHED[setting]:
             jax.config.update(setting, value)
