@@ -38,7 +38,7 @@ from jaxhydro.waves import (
     spectrum_components,
 )
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "DOFS",

@@ -317,7 +317,7 @@ def small_campaign(folder: Path, **changes: str) -> Path:
 def test_bad_campaigns_are_told(tmp_path: Path) -> None:
     pytest.importorskip("calibration.fit")
     cases = [
-        (tmp_path / "none", "expected a YAML file, found no such file"),
+        (tmp_path / "none", "expected a campaign's folder, or its campaign.yaml, found no such folder"),
         (small_campaign(tmp_path / "a", decay="decai"), "tests[0].kind: expected one of decay"),
         (small_campaign(tmp_path / "b", **{"heave-1.csv": "heave-2.csv"}), "Did you mean 'heave-1.csv'?"),
         (small_campaign(tmp_path / "c", **{"use: fit": "use: holdout"}), "at least one decay test marked `use: fit`"),
