@@ -23,7 +23,6 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.bench_timing import Row, pin
-from jaxhydro.start import quick_compilation
 from jaxhydro.sweep import worker
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -94,10 +93,8 @@ def main() -> None:
         os.environ |= worker.environment()  # one thread on the CPU, while programs for the GPU are compiled by many
     else:
         pin()
-    quick_compilation()
     import jax
 
-    jax.config.update("jax_enable_x64", True)
     # what compiles in this process is timed too
     jax.config.update("jax_enable_compilation_cache", arguments.quick)
     from jaxhydro.files import write_whole

@@ -20,11 +20,6 @@ STEP = STEPS["rk4"]
 FINE = 0.125  # s, of the references that errors are measured against
 RELEASED = [0, 2, 4]
 NOT_RUN = "not run"
-CACHE = {
-    "JAX_ENABLE_X64": "1",
-    "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",  # as the command line has it
-    "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
-}
 
 
 def alike(strips: int) -> ReferenceModel:
@@ -140,7 +135,7 @@ def waiting(duration: float, quick: bool) -> tuple[list[Row], list[str]]:
 
         def run(what: str) -> dict[str, float]:
             command = [sys.executable, "-m", "benchmarks.bench_cases", what, str(duration)]
-            environment = os.environ | CACHE | {"JAX_COMPILATION_CACHE_DIR": str(Path(folder) / what.partition(",")[0])}
+            environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": str(Path(folder) / what.partition(",")[0])}
             done = subprocess.run(command, cwd=ROOT, env=environment, check=True, stdout=subprocess.PIPE, text=True)
             return json.loads(done.stdout)
 

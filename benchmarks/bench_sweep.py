@@ -15,7 +15,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from benchmarks.bench_batch import model_of, prepared, seas_of
-from benchmarks.bench_decay import CACHE
 from benchmarks.bench_sea import CUTOFF, ELEMENTS, HEIGHT, LOW, PERIOD, PLATFORM, STEP
 from benchmarks.bench_timing import Row, contest, times
 from jaxhydro import State, equilibrium
@@ -122,7 +121,7 @@ print(json.dumps([hour(), hour()]))
 def waiting() -> tuple[list[Row], list[str]]:
     """The first hour of a sea in a new process: with an empty compilation cache, then with what that left."""
     with tempfile.TemporaryDirectory() as folder:
-        environment = os.environ | CACHE | {"JAX_COMPILATION_CACHE_DIR": folder, "JAX_ENABLE_COMPILATION_CACHE": "1"}
+        environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": folder, "JAX_ENABLE_COMPILATION_CACHE": "1"}
 
         def run() -> tuple[str, str]:
             command = [sys.executable, "-c", FIRST]

@@ -36,7 +36,7 @@ from benchmarks.evidence import (
     study_text,
     tuned_seas,
 )
-from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, begin, say
+from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, say
 
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
@@ -146,7 +146,6 @@ def main() -> None:
     parser.add_argument("--fresh", action="store_true", help="forget finished parts first")
     parser.add_argument("--stale", action="store_true", help="take finished parts of earlier sources")
     options = parser.parse_args()
-    begin()
     common.accept_stale = options.stale
     parts = former()
     for number, name in enumerate(options.only, 1):

@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
+from jaxhydro.files import campaign_file
 from jaxhydro.problems import (
     Faults,
     InputError,
@@ -275,8 +276,7 @@ def _unknown(where: str, expected: str, name: str, known: Iterable[str]) -> Prob
 
 def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
     """The manifest in a campaign's folder, or at a path, and the folder. Raises InputError with all that is wrong."""
-    path = Path(path)
-    path = path / "campaign.yaml" if _there(path, folder=True) else path
+    path = campaign_file(path)
     folder = path.parent
     data: Any = read_yaml(path, "campaign")
     manifest = validate(Manifest, data, str(path))
@@ -305,8 +305,8 @@ def _is_path(platform: str) -> bool:
     return bool(re.search(r"[/\\]|\.[A-Za-z]\w*$", platform))
 
 
-def _there(path: Path, folder: bool = False) -> bool:
+def _there(path: Path) -> bool:
     try:
-        return path.is_dir() if folder else path.is_file()
+        return path.is_file()
     except (OSError, ValueError):                # a name that no file can have
         return False

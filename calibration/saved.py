@@ -11,7 +11,7 @@ from calibration.folder import DIAGNOSIS, RESULT
 from calibration.seas import Options
 from calibration.strips import Strips
 from jaxhydro.body_schema import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
-from jaxhydro.problems import InputError, NonNegative, Number, Positive, Problem, validate
+from jaxhydro.problems import InputError, NonNegative, Number, Positive, Problem, suggest_path, validate
 from jaxhydro.waves.irregular_sea import Acting
 from jaxhydro.waves.sea import Stretching
 from jaxhydro.waves.second_order import Kind
@@ -199,7 +199,8 @@ def read_as(kind: type[S], path: str | PathLike[str]) -> S:
     try:
         data = json.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
-        raise wrong(path, f"a {RESULT}, as `jaxhydro calibrate` writes it", "no such file") from None
+        found = "no such file" if path.suffix else "no such folder"
+        raise wrong(path, f"a {RESULT}, as `jaxhydro calibrate` writes it", found, hint=suggest_path(path)) from None
     except (json.JSONDecodeError, RecursionError) as error:
         place = f"line {error.lineno}, column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
         found = f"a mistake in it ({getattr(error, 'msg', 'lists nested too deeply')})"

@@ -1,4 +1,20 @@
-"""Floating-wind platforms in waves, by differentiable strip theory. Switch JAX's float64 on before building a model."""
+"""Floating-wind platforms in waves, by differentiable strip theory.
+
+The import sets JAX up for the whole process:
+
+- float64 is switched on. `JAXHYDRO_X64=0` in the environment leaves JAX's precision alone.
+- Compiled programs are kept on disk, in `~/.cache/jaxhydro/xla`, and reused by later processes. `XDG_CACHE_HOME` moves
+  this folder. `JAXHYDRO_COMPILATION_CACHE=0` leaves JAX's compilation cache alone.
+- XLA compiles quickly for CPUs: `XLA_FLAGS` gets `--xla_cpu_use_fusion_emitters=false`, unless it names that option. Child
+  processes inherit it.
+
+Your own JAX settings have precedence: `JAX_ENABLE_X64`, `JAX_COMPILATION_CACHE_DIR`, `JAX_ENABLE_COMPILATION_CACHE`, and a
+cache folder that is set with `jax.config` before the import.
+"""
+
+from jaxhydro.start import start as _start
+
+_start()  # before the imports below, which may compute
 
 from jaxhydro.convergence import Convergence, convergence
 from jaxhydro.environment import DOFS, Environment
@@ -22,7 +38,7 @@ from jaxhydro.waves import (
     spectrum_components,
 )
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "DOFS",

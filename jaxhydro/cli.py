@@ -8,6 +8,7 @@ from typer.core import TyperGroup
 
 from jaxhydro import arguments, options, sea_options
 from jaxhydro.console import complain, say, table
+from jaxhydro.files import campaign_file
 from jaxhydro.interrupts import asked_to_stop, ended_by_signals
 from jaxhydro.problems import InputError
 
@@ -44,24 +45,26 @@ class Guarded(TyperGroup):
             complain(NOTHING)
             raise typer.Exit(STOPPED) from None
         except RuntimeError as error:
+            from jaxhydro.start import Float64Error
             from jaxhydro.statics import EquilibriumError
 
-            if not isinstance(error, EquilibriumError):
+            if not isinstance(error, EquilibriumError | Float64Error):
                 raise
             complain(str(error))
             raise typer.Exit(BAD_INPUT) from None
 
 
 app = typer.Typer(
-    cls=Guarded, help=arguments.HELP, epilog=arguments.EPILOG, no_args_is_help=True, add_completion=False,
+    cls=Guarded, help=arguments.HELP, epilog=arguments.EPILOG, no_args_is_help=True,
     rich_markup_mode="rich", pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
 )  # fmt: skip
-Out = Annotated[Path, typer.Option("--out", help="Folder for the results; made where absent.", show_default=False)]
+OUT = "Folder for the results; made where absent."
+Out = Annotated[Path, typer.Option("--out", help=OUT, show_default=False)]
 
 
 def main() -> None:
     """The entry point."""
-    app()
+    app(prog_name="jaxhydro")  # also of `python -m jaxhydro`
 
 
 def _version(wanted: bool) -> None:
@@ -85,7 +88,11 @@ def _options(
 def simulate(
     ctx: typer.Context,
     platform: Annotated[
-        str, typer.Argument(help="A platform file, a built-in name (see `jaxhydro platforms`), or a campaign's folder.")
+        str,
+        typer.Argument(
+            help="A platform file, a built-in name (see `jaxhydro platforms`), or a campaign's folder.",
+            autocompletion=options.platforms_like,
+        ),
     ],
     out: Out,
     hs: arguments.Hs = None,
@@ -121,7 +128,9 @@ def simulate(
     """
     given = sea_options.by_option(ctx.params)
     if sea_options.is_campaign(platform):
+        campaign_file(platform)
         return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given))
+    options.check_platform(platform)
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
     sea = sea_options.asked(given, options.finite(heading, "--heading"))
     if sea is not None and regular is not None:
@@ -137,7 +146,6 @@ def simulate(
     dt = options.interval(dt, "--dt", duration)
     step = None if step is None else options.interval(step, "--step", duration)
     out = options.results_folder(out, "motion.csv")
-    _start()
     from jaxhydro import command, sea_command
 
     model = _model(platform, calibration, diffraction, elements, heading if sea is not None or regular is not None else None)
@@ -186,7 +194,6 @@ def diagnose(
     name an effect. The answer may be that nothing is missing, or that something is and none of the known effects explains it.
     """
     out = options.results_folder(out, "diagnosis.json")
-    _start()
     from calibration.discovery.command import diagnose_campaign
 
     if not diagnose_campaign(campaign, out, figures):
@@ -211,7 +218,6 @@ def uncertainty(
     fit's covariance allow for it; on request also profiles of the likelihood, a bootstrap, and draws from the posterior.
     """
     out = options.results_folder(out, "uncertainty.json")
-    _start()
     from calibration.uncertainty_command import quantify
 
     how: dict[str, Any] = {"draws": bootstrap, "nuts": nuts, "level": level, "seed": seed, "figures": figures}
@@ -226,13 +232,14 @@ def report(
     ],
 ) -> None:
     """Make one self-contained HTML page, report.html, of what is in a result folder."""
+    options.check_results(folder)
     from calibration.report import write_report
 
     say(f"{write_report(folder)}")
 
 
 @app.command()
-def demo(out: Out = Path("jaxhydro-demo")) -> None:
+def demo(out: Annotated[Path, typer.Option("--out", help=OUT)] = Path("jaxhydro-demo")) -> None:
     """Calibrate to the nine embedded decays of VolturnUS-S, compare with the true coefficients, make a page."""
     from importlib import resources
 
@@ -256,7 +263,6 @@ def sweep(
     Stopped or killed, the same command goes on where it was.
     """
     out = options.results_folder(out, "sweep.json")
-    _start()
     from jaxhydro.sweep import command
 
     try:
@@ -270,7 +276,6 @@ def sweep(
 @app.command()
 def platforms() -> None:
     """List the built-in platforms."""
-    _start()
     from jaxhydro.command import particulars
     from jaxhydro.platform_schema import builtin_platforms
 
@@ -283,7 +288,6 @@ def _calibrate(
 ) -> None:
     """Calibrate; where the truth is known, compare with it and make the report page."""
     out = options.results_folder(out, "calibration.json")
-    _start()
     from calibration import command
 
     loaded, kind = command.load_fitted(campaign, out, tests)
@@ -298,16 +302,8 @@ def _calibrate(
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _start() -> None:
-    """Set JAX up."""
-    from jaxhydro.start import start
-
-    start()
-
-
 def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any]) -> None:
     out = options.results_folder(out, "comparison.json")
-    _start()
     from calibration.command import simulate_campaign
 
     if not simulate_campaign(campaign, out, calibration=calibration, asked=asked):

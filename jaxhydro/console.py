@@ -3,11 +3,12 @@
 import math
 import sys
 import time as clock
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
@@ -15,6 +16,7 @@ from rich.text import Text
 
 EVERY = 10.0  # s between lines of progress that go to a file
 WIDTH = 120  # where there is no terminal to ask
+WIDE_GAP, NARROW_GAP = 3, 2  # characters between the columns of a table
 
 
 def console(stderr: bool = False) -> Console:
@@ -34,14 +36,51 @@ def complain(message: str) -> None:
 
 
 def table(title: str, heads: Iterable[str], rows: Iterable[Iterable[str]], left: int = 1, stderr: bool = False) -> None:
-    """Print a table; columns from the `left`-th on are numbers."""
-    drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for i, head in enumerate(heads):
-        drawn.add_column(Text(head), justify="left" if i < left else "right", overflow="fold")
-    for row in rows:
+    """Print a table; columns from the `left`-th on are numbers.
+
+    Long cells are wrapped between words. Words stay whole, since names and labels are typed again, and a table of many
+    columns may be wider than the terminal for that.
+    """
+    shown = console(stderr)
+    lines = [list(heads), *(list(row) for row in rows)]
+    columns = list(zip(*lines, strict=True))
+    gap = WIDE_GAP
+    if sum(map(_longest, columns)) > shown.width - _between(columns, gap):
+        gap = NARROW_GAP
+    widths = column_widths(columns, shown.width - _between(columns, gap))
+    shown.width = max(shown.width, sum(widths) + _between(columns, gap))  # rich would cut what is beyond
+    # one space of every gap is the box's own
+    drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, gap - 2))
+    for i, (head, width) in enumerate(zip(lines[0], widths)):
+        drawn.add_column(Text(head), justify="left" if i < left else "right", overflow="fold", width=width)
+    for row in lines[1:]:
         drawn.add_row(*(Text(cell) for cell in row))
     say(f"\n{title}", "bold", stderr)
-    console(stderr).print(drawn)
+    shown.print(drawn)
+
+
+def column_widths(columns: Sequence[Sequence[str]], room: int) -> list[int]:
+    """Widths of columns that together take `room` characters, or more where words would break.
+
+    The widest columns are narrowed first. A word breaks only if it is longer than half the room.
+    """
+    widths = [_longest(column) for column in columns]
+    least = [min(_longest(word for cell in column for word in cell.split()), max(room // 2, 1)) for column in columns]
+    while sum(widths) > room:
+        widest = max((i for i in range(len(widths)) if widths[i] > least[i]), key=lambda i: widths[i], default=None)
+        if widest is None:
+            break
+        widths[widest] -= 1
+    return widths
+
+
+def _longest(texts: Iterable[str]) -> int:
+    return max(map(cell_len, texts), default=1)
+
+
+def _between(columns: Sequence[Sequence[str]], gap: int) -> int:
+    """Characters of a table's line that are not of its cells: gaps, and a space at either end."""
+    return gap * (len(columns) - 1) + 2
 
 
 @contextmanager

@@ -8,7 +8,38 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from jaxhydro.problems import InputError, Problem
+from jaxhydro.problems import InputError, Problem, nearest, suggest_path
+
+MANIFEST = "campaign.yaml"
+YAML = (".yaml", ".yml")
+
+
+def is_there(path: Path) -> bool:
+    """Whether a file or folder exists. A name that no file can have does not."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
+def campaign_file(path: str | os.PathLike[str]) -> Path:
+    """The campaign.yaml in a campaign's folder, or the file itself.
+
+    Raises InputError where the folder or the file does not exist, or the folder has no campaign.yaml.
+    """
+    path = Path(path)
+    expected = f"a campaign's folder, or its {MANIFEST}"
+    if not is_there(path):
+        found = "no such file" if path.suffix in YAML else "no such folder"
+        raise InputError(str(path), [Problem("", expected, found, suggest_path(path))])
+    if not path.is_dir():
+        return path
+    if not (path / MANIFEST).is_file():
+        others = {file.stem: file.name for file in path.iterdir() if file.suffix in YAML}
+        near = nearest(Path(MANIFEST).stem, others)
+        hint = f"Did you mean '{path / others[near]}'?" if near else ""
+        raise InputError(str(path), [Problem("", expected, f"a folder without {MANIFEST}", hint)])
+    return path / MANIFEST
 
 
 def check_folder(folder: str | os.PathLike[str], option: str = "--out") -> Path:

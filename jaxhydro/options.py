@@ -6,8 +6,9 @@ from pathlib import Path
 import typer
 
 from jaxhydro.environment import DOFS
-from jaxhydro.files import check_folder
-from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.files import YAML, check_folder, is_there
+from jaxhydro.platform_schema import builtin_platforms
+from jaxhydro.problems import InputError, Problem, suggest, suggest_path
 
 LARGEST = 5_000_000  # samples or steps of one simulation
 
@@ -86,3 +87,24 @@ def results_folder(out: Path, mine: str) -> Path:
         if name != mine and ours:
             raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has the results of {of}")])
     return out
+
+
+def platforms_like(incomplete: str) -> list[str]:
+    """Built-in platforms that begin so, for the shell to complete; where there is none, it completes names of files."""
+    return [name for name in builtin_platforms() if name.startswith(incomplete)]
+
+
+def check_platform(name: str) -> None:
+    """Raise InputError where a platform's argument is no built-in name and no file. What is in a file is not checked."""
+    known = builtin_platforms()
+    if name.lower() in known or is_there(Path(name)) or Path(name).suffix in YAML:
+        return
+    expected = f"a platform file, a built-in platform ({', '.join(known)}), or a campaign's folder"
+    raise InputError(name, [Problem("", expected, "no such file or folder", suggest(name, known) or suggest_path(name))])
+
+
+def check_results(folder: Path) -> None:
+    """Raise InputError where a folder of results does not exist."""
+    if not is_there(folder):
+        expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
+        raise InputError(str(folder), [Problem("", expected, "no such folder", suggest_path(folder))])

@@ -6,7 +6,6 @@ from os import PathLike
 from pathlib import Path
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -38,6 +37,7 @@ from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.model import Model, RigidBody, strongly_typed
 from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.start import need_float64
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
 
@@ -48,9 +48,8 @@ def load_model(path_or_name: str | PathLike[str]) -> Model:
 
 
 def build(platform: schema.Platform) -> Model:
-    """The model that a platform declares. Raises RuntimeError unless JAX's float64 is switched on."""
-    if not jax.config.read("jax_enable_x64"):
-        raise RuntimeError("jaxhydro needs float64: jax.config.update('jax_enable_x64', True) before anything else")
+    """The model that a platform declares. Raises Float64Error, a RuntimeError, unless JAX computes in float64."""
+    need_float64()
     water = platform.water
     environment = Environment(water.density, water.depth, water.gravity)
     mass, centre, inertia = platform.rigid_body.combined()

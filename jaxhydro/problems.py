@@ -102,6 +102,22 @@ def suggest(word: object, known: Iterable[str]) -> str:
     return f"Did you mean '{near}'?" if near else ""
 
 
+def suggest_path(path: str | PathLike[str]) -> str:
+    """A hint for a path that does not exist: `Did you mean 'tank/campaign.yaml'?`, or nothing where no name is near."""
+    missing = path = Path(path)
+    try:
+        while not missing.parent.exists():
+            missing = missing.parent
+        # by stems, since all files of a kind end alike; of those with one stem that with the same ending
+        entries = sorted(missing.parent.iterdir(), key=lambda entry: (entry.suffix == missing.suffix, entry.name))
+        stems = {entry.stem: entry for entry in entries}
+        near = nearest(missing.stem, stems)
+        found = missing.with_name(stems[near].name) / path.relative_to(missing) if near else missing
+        return f"Did you mean '{found}'?" if near and found.exists() else ""
+    except (OSError, ValueError):  # a folder that cannot be read, a name that no file can have
+        return ""
+
+
 _repr = reprlib.Repr()
 _repr.maxlevel, _repr.maxlist, _repr.maxdict, _repr.maxstring, _repr.maxother = 3, 6, 3, 50, 50
 
@@ -130,13 +146,13 @@ def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
     is another of KEYS than the `kind` asked for."""
     source = str(path)
 
-    def wrong(where: str, expected: str, found: str) -> InputError:
-        return InputError(source, [Problem(where, expected, found)])
+    def wrong(where: str, expected: str, found: str, hint: str = "") -> InputError:
+        return InputError(source, [Problem(where, expected, found, hint)])
 
     try:
         text = Path(path).read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
-        raise wrong("", "a YAML file", "no such file") from None
+        raise wrong("", "a YAML file", "no such file", suggest_path(path)) from None
     except IsADirectoryError:
         raise wrong("", "a YAML file", "a folder") from None
     except UnicodeDecodeError as error:

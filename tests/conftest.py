@@ -1,7 +1,6 @@
-"""Every test runs in float64, with compiled programs kept between runs where JAX_COMPILATION_CACHE_DIR says so."""
+"""Set up for all tests: `import jaxhydro` switches float64 and the compilation cache on."""
 
 import gc
-import os
 import sys
 from pathlib import Path
 
@@ -15,13 +14,9 @@ for folder in (Path(__file__).resolve().parents[1], Path(__file__).resolve().par
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
-from jaxhydro.start import quick_compilation  # noqa: E402
+import jaxhydro  # noqa: E402, F401
 
-quick_compilation()
-jax.config.update("jax_enable_x64", True)
-if folder_of_cache := os.environ.get("JAX_COMPILATION_CACHE_DIR"):
-    jax.config.update("jax_compilation_cache_dir", folder_of_cache)
-    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
+jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)  # tests compile thousands of small programs
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -3,7 +3,6 @@
 from functools import cache
 from pathlib import Path
 
-import jax
 import numpy as np
 
 import jaxhydro as jh
@@ -42,7 +41,6 @@ def fake_calibration(
 ) -> Calibration:
     """A result on the tests `only` of a campaign with the values `fitted`; one label is made not identifiable, one at a
     bound."""
-    jax.config.update("jax_enable_x64", True)
     campaign = load_campaign(folder)
     declared = jh.build(campaign.platform)
     fitted = NEAR_TRUTH if fitted is None else fitted

@@ -21,8 +21,6 @@ from calibration.transforms import Interval, LogInterval, Scaled
 from jaxhydro.problems import InputError
 from jaxhydro.statics import linearised
 
-jax.config.update("jax_enable_x64", True)
-
 ROOT = Path(__file__).resolve().parents[1]
 DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 MEASURED = ROOT.parent / "shared" / "measured"

@@ -573,7 +573,7 @@ def test_platform_and_data_mistakes_are_told_together(tmp_path):
 
 def test_a_campaign_that_is_not_there_or_not_yaml(tmp_path):
     assert "campaign.yaml" in failure(load_campaign, tmp_path)
-    assert "no such file" in failure(load_campaign, tmp_path / "nowhere")
+    assert "no such folder" in failure(load_campaign, tmp_path / "nowhere")
     (tmp_path / "campaign.yaml").write_text("a: [1, 2\nb: }")
     assert "line 2" in failure(load_campaign, tmp_path)
     (tmp_path / "campaign.yaml").write_text("- 1\n")

@@ -10,7 +10,6 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import jax
 import numpy as np
 import pandas as pd
 import pytest
@@ -71,24 +70,6 @@ def test_it_starts_as_a_program_without_what_is_heavy() -> None:
 def test_it_starts_as_a_module_too() -> None:
     done = subprocess.run([sys.executable, "-m", "jaxhydro", "--version"], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == f"jaxhydro {jaxhydro.__version__}"
-
-
-def test_the_compilation_cache_is_where_it_may_be(monkeypatch, tmp_path) -> None:
-    before = jax.config.jax_compilation_cache_dir
-    try:
-        monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
-        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-        cli._start()
-        assert jax.config.jax_compilation_cache_dir == str(tmp_path / "cache" / "jaxhydro" / "xla")
-        assert jax.config.jax_enable_x64
-        monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path / "own"))
-        cli._start()
-        assert jax.config.jax_compilation_cache_dir == str(tmp_path / "own")
-        monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", "/dev/null/none")
-        cli._start()
-        assert jax.config.jax_compilation_cache_dir == str(tmp_path / "own")
-    finally:
-        jax.config.update("jax_compilation_cache_dir", before)
 
 
 # --- simulate
@@ -203,7 +184,8 @@ def test_bad_calibrations_are_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", ["simulate", "calibrate", "demo"])
 def test_folders_that_cannot_be_written_are_told_before_the_work(command, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(cli, "_start", lambda: pytest.fail("the work began"))
+    for work in ("jaxhydro.cli._model", "calibration.command.load_fitted"):
+        monkeypatch.setattr(work, lambda *_: pytest.fail("the work began"))
     more = {"simulate": [PLATFORM, "--release", "surge=1"], "calibrate": [DEMO], "demo": []}[command]
     file = tmp_path / "file"
     file.write_text("keep")
@@ -335,7 +317,7 @@ def small_campaign(folder: Path, **changes: str) -> Path:
 def test_bad_campaigns_are_told(tmp_path: Path) -> None:
     pytest.importorskip("calibration.fit")
     cases = [
-        (tmp_path / "none", "expected a YAML file, found no such file"),
+        (tmp_path / "none", "expected a campaign's folder, or its campaign.yaml, found no such folder"),
         (small_campaign(tmp_path / "a", decay="decai"), "tests[0].kind: expected one of decay"),
         (small_campaign(tmp_path / "b", **{"heave-1.csv": "heave-2.csv"}), "Did you mean 'heave-1.csv'?"),
         (small_campaign(tmp_path / "c", **{"use: fit": "use: holdout"}), "at least one decay test marked `use: fit`"),

@@ -123,7 +123,7 @@ def test_results_do_not_replace_those_of_other_commands(searching, result: Diagn
     (theirs / "simulated.nc").unlink()
     assert "which has the results of a calibration" in run("diagnose", DEMO, "--out", theirs, status=2)
     run("diagnose", DEMO, "--no-figures", "--out", mine)
-    assert "no such file" in run("diagnose", tmp_path / "none", "--out", tmp_path / "o", status=2)
+    assert "no such folder" in run("diagnose", tmp_path / "none", "--out", tmp_path / "o", status=2)
     assert not (tmp_path / "o").exists()
 
 

@@ -25,8 +25,6 @@ from calibration.uncertainty_plot import draws_figure, profile_figure
 from jaxhydro.plot import style
 from jaxhydro.problems import InputError
 
-jax.config.update("jax_enable_x64", True)
-
 FREE = ["added_mass.A44", "linear_damping.B44", "quadratic_damping.B44"]
 N, STEP = 400, 0.1
 

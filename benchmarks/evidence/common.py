@@ -87,13 +87,6 @@ def keep(section: str, key: str, name: str, result: Any) -> Any:
     return json.loads(path.read_text())
 
 
-def begin() -> None:
-    """What every process does first."""
-    from jaxhydro.start import start
-
-    start()
-
-
 def parallel(
     section: str, key: str, names: Sequence[str], work: Callable[[str], Any], processes: int, go_on: bool = False
 ) -> Iterator[tuple[str, Any]]:
@@ -116,7 +109,6 @@ def parallel(
 
 def _worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the one that waits for them
-    begin()
 
 
 class _Named:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import SHARED, Absent, Section, begin, cached, fingerprint, keep, say, table
+from benchmarks.evidence.common import SHARED, Absent, Section, cached, fingerprint, keep, say, table
 from calibration.formatting import number, percent, with_deviation
 
 TITLE = "Measured decays"
@@ -50,7 +50,6 @@ def run(figures: Path) -> Section:
     """Both campaigns, each with a figure of its record and one of its cycles."""
     if not FOLDER.exists():
         raise Absent("the measured records (../shared/measured) are not on this machine")
-    begin()
     texts, drawn, short = [], [], []
     for name, words in CASES.items():
         key = fingerprint(FOLDER / name, Path(__file__))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import SHARED, TRUE, Absent, Section, begin, cached, fingerprint, keep, parallel, say
+from benchmarks.evidence.common import SHARED, TRUE, Absent, Section, cached, fingerprint, keep, parallel, say
 from benchmarks.evidence.measured_waves_text import (
     AT,
     CASES,
@@ -168,7 +168,6 @@ def run(figures: Path, processes: int = 2) -> Section:
     """All cases, and a figure of spectra."""
     if not (FOLDER / "focal-c2").exists():
         raise Absent("the measured records (../shared/measured) are not on this machine")
-    begin()
     key = fingerprint(FOLDER / "focal-c2", FOLDER / "focal-c4", Path(__file__), repr(CASES))
     if cached(NAME, key, "coefficients") is None:
         keep(NAME, key, "coefficients", fitted())

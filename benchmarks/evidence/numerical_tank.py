@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.evidence import numerical_tank_runs as runs
 from benchmarks.evidence import numerical_tank_truth as truth
-from benchmarks.evidence.common import Absent, Section, begin, cached, fingerprint, parallel, say, within
+from benchmarks.evidence.common import Absent, Section, cached, fingerprint, parallel, say, within
 from benchmarks.evidence.numerical_tank_text import shortcomings, words
 
 TITLE = "A numerical wave tank taken as measurements"
@@ -24,7 +24,6 @@ def run(figures: Path, processes: int) -> Section:
     """The declared model, calibrated; diagnoses of decays and sea, of the decays alone, with tables among candidates."""
     if not runs.FOLDER.exists() or not runs.HYDRO.exists():
         raise Absent("OpenFAST's runs and WAMIT's files (../shared/reference) are not on this machine")
-    begin()
     folder = runs.written()
     runs.written_with_tables()
     key = fingerprint(Path(runs.__file__), *sorted(folder.glob("*.csv")), *sorted(folder.glob("*.yaml")))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import SHARED, Absent, Section, begin, cached, fingerprint, say, table
+from benchmarks.evidence.common import SHARED, Absent, Section, cached, fingerprint, say, table
 
 TITLE = "Decays against OpenFAST"
 FOLDER = SHARED / "reference" / "openfast"
@@ -96,7 +96,6 @@ def run(figures: Path) -> Section:
     """Surge, heave and pitch released in OpenFAST and here."""
     if not FOLDER.exists():
         raise Absent("OpenFAST's runs (../shared/reference/openfast) are not on this machine")
-    begin()
     key = fingerprint(Path(__file__), *(FOLDER / f"decay_{dof}_strip" for dof in DECAYS))
     results = {dof: cached("openfast", key, dof, lambda dof=dof: decay(dof)) for dof in DECAYS}
     rows, notes = [], {}

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import Absent, Section, begin, cached, fingerprint, say, table
+from benchmarks.evidence.common import Absent, Section, cached, fingerprint, say, table
 from benchmarks.evidence.openfast import FOLDER
 from benchmarks.evidence.openfast_words import words
 
@@ -165,7 +165,6 @@ def run(figures: Path) -> Section:
     """Held and free platform, then other conventions."""
     if not FOLDER.exists():
         raise Absent("OpenFAST's runs (../shared/reference/openfast) are not on this machine")
-    begin()
     beside = Path(__file__).with_name("openfast_sea.py")
     key = fingerprint(Path(__file__), beside, beside.with_name("openfast.py"), *sorted(FOLDER.glob("*_c[1-4]*")))
     loads, motions, seas = {}, {}, {}

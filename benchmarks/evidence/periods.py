@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import ROOT, SHARED, Section, begin, cached, fingerprint, say, table
+from benchmarks.evidence.common import ROOT, SHARED, Section, cached, fingerprint, say, table
 from calibration.formatting import number
 
 TITLE = "VolturnUS-S against its published data"
@@ -126,7 +126,6 @@ def hub_by_counting(cell: float = 0.01) -> float:
 
 def run(figures: Path) -> Section:
     """Periods, balance and volume."""
-    begin()
     key = fingerprint(ROOT / "jaxhydro" / "platforms" / "volturnus-s.yaml", Path(__file__))
     found = cached("periods", key, "periods", worked_out)
     outer, hub = joints()

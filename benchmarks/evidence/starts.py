@@ -52,9 +52,6 @@ def of_start(name: str) -> dict[str, Any]:
 
 def outcomes(count: int = 20, processes: int = 2) -> list[dict[str, Any]]:
     """What all starts led to, from the cache where it has been worked out."""
-    from benchmarks.evidence.common import begin
-
-    begin()
     key = fingerprint(DEMO, f"{FACTOR} {OFF} {SEED}")
     names, found = [f"{i + 1}-of-{count}" for i in range(count)], {}
     for name, one in parallel("starts", key, names, of_start, processes):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.evidence import study_figures, study_reasons
-from benchmarks.evidence.common import ROOT, Section, begin, cached, fingerprint, keep, say, table
+from benchmarks.evidence.common import ROOT, Section, cached, fingerprint, keep, say, table
 from benchmarks.evidence.study import CASES, COLUMNS, CUTOFF, PLATFORM, SEAS, SEEDS, of_seed
 from benchmarks.evidence.study_words import OPENFAST, PAIRS, implied, joined, words
 
@@ -34,7 +34,6 @@ MacCamy-Fuchs and none on the centre column.
 
 def run(figures: Path) -> Section:
     """Four cases, two seas, ten seeds; what explains the differences; pontoon elements."""
-    begin()
     here = Path(__file__).parent
     key = fingerprint(ROOT / "jaxhydro" / "platforms" / f"{PLATFORM}.yaml", here / "study.py", here / "study_reasons.py")
     found: dict[str, list[dict[str, Any]]] = {}

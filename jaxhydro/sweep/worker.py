@@ -13,8 +13,6 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from jaxhydro.start import start
-
 Found = list[tuple[int, bool]]  # numbers of runs, and whether they are done
 FLAG = "--xla_cpu_multi_thread_eigen=false"
 
@@ -59,9 +57,8 @@ def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> Found:
 
 @lru_cache(maxsize=1)
 def prepare() -> None:
-    """Set JAX up, once in a process, and to one thread where it has not begun yet."""
+    """Limit this process to one thread of arithmetic, unless JAX has compiled a program before."""
     os.environ.update({name: value for name, value in environment().items() if name not in os.environ or name == "XLA_FLAGS"})
-    start()
 
 
 def main() -> None:
