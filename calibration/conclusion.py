@@ -11,6 +11,7 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.directions import Identifiability, family
+from calibration.grouped import grouped
 from calibration.identifiability import CLEAR, Spread
 from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
@@ -113,7 +114,7 @@ def remarks(
     kinds: Sequence[str] = ("decay",),
 ) -> tuple[str, ...]:
     """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
-    said = [str(finding) for finding in campaign.findings]
+    said = [str(finding) for finding in grouped(campaign.findings)]
     left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
     if left:
         said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
