@@ -26,11 +26,10 @@ def page(saved: Saved, folder: Path) -> str:
 
 def _parts(saved: Saved, folder: Path, source: str) -> Iterator[str]:
     fitted = saved.baseline
-    sentence = calibration_sentence(summary_of(saved, source))
-    if fitted.converged:
-        yield result_box(sentence)
-    else:
-        yield warning_box(sentence)
+    summary = summary_of(saved, source)
+    sentence = calibration_sentence(summary)
+    yield result_box(sentence) if summary.sound else warning_box(sentence)
+    if not fitted.converged:
         yield f"<p>{escape(UNCONVERGED.format('a calibration'))}</p>"
     yield f"<p>{escape(_how(saved))}</p>"
     yield "<h2>Parameters</h2>"

@@ -1,5 +1,6 @@
 """The result of a calibration in one sentence: how well tests are followed, and which coefficients are determined."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -30,24 +31,38 @@ class Agreement(NamedTuple):
     bands: dict[str, tuple[float, ...]]
 
 
+class FarOff(NamedTuple):
+    """The band of a motion whose energy is farthest off, and its absolute relative error."""
+
+    channel: str
+    band: str
+    error: float
+
+
 class CalibrationSummary(NamedTuple):
     """What the sentence says. `not_followed` are fitted decays by id, with RMSE over standard deviation; `far_off` are fitted
-    tests in irregular waves, with their largest relative error of energy in a band."""
+    tests in irregular waves whose energy is off by more than `OFF` in a band."""
 
     converged: bool
     not_followed: dict[str, float]
-    far_off: dict[str, float]
+    far_off: dict[str, FarOff]
     agreements: tuple[Agreement, ...]
     determined: tuple[str, ...]
     undetermined: tuple[str, ...]
     at_bound: tuple[str, ...]
+
+    @property
+    def sound(self) -> bool:
+        """Whether the fit converged and follows what it was made to."""
+        return self.converged and not self.not_followed and not self.far_off
 
 
 def summary_of(saved: Saved, source: str) -> CalibrationSummary:
     """The summary of a calibration.json. Raises InputError for errors in the file that are none, `source` being its name."""
     errors, bands = saved.errors(source), saved.bands(source)
     groups: dict[tuple[str, str], list[str]] = {}
-    lost, far = {}, {}
+    lost: dict[str, float] = {}
+    far: dict[str, FarOff] = {}
     for id, channels in errors.items():
         kind, use = _kind(saved, id), str(saved.baseline.error[id].get("use", ""))
         if use in ("fit", "holdout"):
@@ -55,9 +70,10 @@ def summary_of(saved: Saved, source: str) -> CalibrationSummary:
         scored = [one.relative for one in channels.values() if one.in_objective]
         if use == "fit" and kind == "decay" and scored and max(scored) >= LOST:
             lost[id] = max(scored)
-        energies = [abs(after) for row in bands[id].values() for _, after in row.values()]
-        if use == "fit" and energies and max(energies) > OFF:
-            far[id] = max(energies)
+        energies = [FarOff(name, band, abs(after)) for name, row in bands[id].items() for band, (_, after) in row.items()]
+        worst = max(energies, key=lambda one: one.error, default=None)
+        if use == "fit" and worst is not None and worst.error > OFF:
+            far[id] = worst
     agreements = tuple(
         _agreement(kind, use, [errors[id] for id in ids], [bands[id] for id in ids])
         for (use, kind), ids in sorted(groups.items(), key=lambda item: item[0][0])  # "fit" before "holdout"
@@ -97,8 +113,10 @@ def calibration_sentence(summary: CalibrationSummary) -> str:
 
     "9 decays followed to 0.4-1.7 %; all 11 coefficients determined."
     """
-    said = "; ".join([*map(_followed, summary.agreements), _determined(summary)])
-    return " ".join([*_failures(summary), f"{said[:1].upper()}{said[1:]}." if not summary.agreements else f"{said}."])
+    parts = [*map(_followed, summary.agreements), _determined(summary)]
+    # bands make clauses long: they are sentences of their own
+    said = [f"{part}." for part in parts] if any(one.bands for one in summary.agreements) else [f"{'; '.join(parts)}."]
+    return " ".join([*_failures(summary), *(re.sub("^(all|no) ", lambda word: word[0].capitalize(), one) for one in said)])
 
 
 def _failures(summary: CalibrationSummary) -> Iterator[str]:
@@ -107,8 +125,11 @@ def _failures(summary: CalibrationSummary) -> Iterator[str]:
         worst = max(lost.values())
         yield f"The model does not follow {_named(list(lost), 'decay')}: RMSE up to {percent(worst)} of the motion."
     if summary.far_off:
-        worst, tests = percent_span([max(summary.far_off.values())]), _named(list(summary.far_off), "test")
-        yield f"The model does not follow {tests}: the energy in a band is off by {worst}."
+        id, off = max(summary.far_off.items(), key=lambda item: item[1].error)
+        energy = f"{BANDS.get(off.band, off.band)} {off.channel} energy"
+        several = f" of {id}" if len(summary.far_off) > 1 else ""
+        tests = _named(list(summary.far_off), "test")
+        yield f"The model does not follow {tests}: the {energy}{several} is off by {percent_span([off.error])}."
     if not summary.converged and not lost:  # a fit that leaves a record behind is marked as not converged, too
         yield "The fit did not converge."
 
@@ -127,6 +148,8 @@ def _determined(summary: CalibrationSummary) -> str:
     total = len(known) + len(vague) + len(bound)
     if not total:
         return "no coefficient fitted"
+    if total == 1 and not known:
+        return f"{bound[0]} is at a bound" if bound else f"{vague[0]} not determined"
     if total == len(known):
         return f"all {total} coefficients determined" if total > 1 else f"{known[0]} determined"
     said = f"{len(known)} of {counted(total, 'coefficient')} determined"

@@ -100,8 +100,9 @@ def table(
 
 def _cell(head: str, text: str, number: bool) -> str:
     label = f' data-label="{escape(head)}"' if head else ""
-    kind = _right(number) or (" class=short" if len(text) <= SHORT else "")
-    return f"<td{kind}{label}>{breakable(text)}</td>"
+    short = len(text) <= SHORT
+    kind = _right(number) or (" class=short" if short else "")
+    return f"<td{kind}{label}>{escape(text) if short else breakable(text)}</td>"
 
 
 def _right(number: bool) -> str:
@@ -130,7 +131,7 @@ h1 { font-size: 1.5rem; margin: 0 0 .2rem; } h2 { font-size: 1.1rem; margin: 2re
 .warning { background: #fbe9e7; border-left: 4px solid #d1495b; padding: .6rem .9rem; font-weight: 600; }
 .verdict { background: #eef3f8; border-left: 4px solid #4f7cac; padding: .6rem .9rem; font-size: 1.1rem; }
 .size { font-size: 1.05rem; margin: .2rem 0 .4rem; } h3 { font-size: 1rem; margin: 1.3rem 0 .2rem; }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; margin-bottom: .8rem; }
 table { border-collapse: collapse; font-size: .92rem; overflow-wrap: break-word; }
 th, td { text-align: left; padding: .2rem .9rem .2rem 0; border-bottom: 1px solid #e4e6ea; vertical-align: top; }
 th { border-bottom: 1px solid #9aa1ab; font-weight: 600; vertical-align: bottom; }
@@ -144,14 +145,14 @@ figcaption { font-size: .85rem; line-height: 1.35; }
 @media (max-width: 45rem) {
   .figures { columns: 1; }
   /* a row of a table with many columns becomes a block: its first cell on top, then name and value of each column */
-  .many, .many tbody, .many tr, .many td { display: block; overflow-wrap: anywhere; }
+  .many, .many tbody, .many tr { display: block; overflow-wrap: anywhere; }
   .many thead { display: none; }
   .many tr { border-bottom: 1px solid #9aa1ab; padding: .4rem 0; }
-  .many td { border: 0; padding: .05rem 0; }
+  .many td { border: 0; padding: .05rem 0; display: inline-block; max-width: 100%; margin-right: 1.1em; }
   .many td:empty { display: none; }
-  .many td:first-child { font-weight: 600; }
+  .many td:first-child { display: block; font-weight: 600; }
   .many td { white-space: normal; text-align: left; }
-  .many td + td::before { content: attr(data-label); color: #6a717b; margin-right: .6em; }
+  .many td + td::before { content: attr(data-label); color: #6a717b; margin-right: .5em; }
 }
 @media print { body { margin: 0; max-width: none; font-size: 10pt; } }
 </style>

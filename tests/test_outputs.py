@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -16,6 +17,7 @@ from PIL import Image
 import calibration
 from calibration import outputs, plot
 from calibration.classical import classical
+from calibration.conclusion import strays
 from calibration.formatting import number, percent, with_deviation
 from calibration.outputs import NotFinite, dataset, document, write_calibration
 from calibration.report import write_report
@@ -393,6 +395,19 @@ def test_no_report_without_results(tmp_path: Path) -> None:
     (tmp_path / "results.zarr").mkdir()
     with pytest.raises(InputError, match="the same `jaxhydro sweep` goes on"):
         write_report(tmp_path)
+
+
+# --- notes
+
+
+def test_decays_of_one_motion_that_are_not_followed_make_one_note(result: Calibration) -> None:
+    first, heave = result.tests[:2]
+    still = tuple(replace(one, simulated=np.zeros_like(one.simulated)) for one in first.series)
+    lost = [replace(first, id=f"surge-{i}", series=still) for i in (1, 2)]
+    (note,) = strays([*lost, heave, replace(lost[0], use="holdout")], result.model)
+    assert note.startswith("the model does not follow surge-1 and surge-2: the RMSE is 100 % of the motion's standard")
+    assert re.search(r"Period in surge: measured 13\d s, declared model 1\d\d s\. Check scale", note)
+    assert strays([first, heave], result.model) == []
 
 
 # --- numbers

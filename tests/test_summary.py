@@ -62,6 +62,8 @@ def test_coefficients_that_are_not_determined_are_named_while_they_are_few() -> 
     some = SURE | {"c": coefficient(sd=None), "d": coefficient(sd=None, at_bound=True)}
     expected = "1 decay followed to 0.40 %; 2 of 4 coefficients determined; not determined: c; at a bound: d."
     assert said(saved(tests, some)) == expected
+    assert said(saved(tests, {"c": coefficient(sd=None)})) == "1 decay followed to 0.40 %; c not determined."
+    assert said(saved(tests, {"c": coefficient(at_bound=True)})).endswith("; c is at a bound.")
     many = SURE | {name: coefficient(sd=None) for name in "cdef"}
     assert said(saved(tests, many)).endswith("2 of 6 coefficients determined; not determined: 4 coefficients.")
 
@@ -84,10 +86,14 @@ def test_waves_are_told_by_their_bands() -> None:
     tests = {"sea": ("irregular", "fit", {"surge": error(0.9), "bands": bands}), "wave": ("regular", "fit", HIGH)}
     assert said(saved(tests, SURE)) == (
         "1 test in irregular waves followed to 12 % of the low-frequency energy and 2.0-5.0 % of the wave-frequency "
-        "energy; 1 test in regular waves followed to 1.7 %; all 2 coefficients determined."
+        "energy. 1 test in regular waves followed to 1.7 %. All 2 coefficients determined."
     )
     far = {"sea": ("irregular", "fit", {"bands": {"surge": {"low_frequency": 1.4}}})}
-    assert said(saved(far, SURE)).startswith("The model does not follow sea: the energy in a band is off by 140 %. 1 test in")
+    start = "The model does not follow sea: the low-frequency surge energy is off by 140 %. 1 test in irregular"
+    assert said(saved(far, SURE)).startswith(start)
+    farther = {"other": ("irregular", "fit", {"bands": {"heave": {"wave_frequency": 3.0}}})}
+    start = "The model does not follow sea and other: the wave-frequency heave energy of other is off by 300 %."
+    assert said(saved(far | farther, SURE)).startswith(start)
 
 
 def test_a_fit_to_offsets_alone_has_no_tests() -> None:

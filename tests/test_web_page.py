@@ -5,6 +5,7 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,7 @@ def test_a_table_of_many_columns_is_made_for_a_narrow_screen() -> None:
 
 
 def test_long_labels_may_break_and_numbers_may_not() -> None:
+    assert "<wbr>" not in table(["A"], [["linear_damping.B11"]]) and "<wbr>" in table(["A"], [["mass_properties.inertia_roll"]])
     assert breakable("coulomb_friction.surge <b>") == "coulomb_<wbr>friction.<wbr>surge &lt;b&gt;"
     assert breakable("0.95 to 1.5, 3_4") == "0.95 to 1.5, 3_4"
 
@@ -60,7 +62,11 @@ def test_pages_fit_the_window_of_a_browser(width: int, tmp_path: Path) -> None:
     write_diagnosis(fake_diagnosis(), tmp_path / "diagnosis")
     (tmp_path / "uncertainty").mkdir()
     (tmp_path / "uncertainty" / "uncertainty.json").write_text(json.dumps(CONTENT))
-    for name in ("calibration", "diagnosis", "uncertainty"):
+    write_diagnosis(replace(fake_diagnosis(), verdict="unexplained", effects=()), tmp_path / "unexplained", figures=False)
+    content = json.loads((tmp_path / "unexplained" / "diagnosis.json").read_text())
+    content["missing"]["unexplained"]["forces"] = [{"degree_of_freedom": "roll", "words": 5 * LONG}]
+    (tmp_path / "unexplained" / "diagnosis.json").write_text(json.dumps(content))
+    for name in ("calibration", "diagnosis", "unexplained", "uncertainty"):
         frame = tmp_path / f"{name}.html"
         frame.write_text(MEASURE % (width, write_report(tmp_path / name).as_uri()))
         options = ["--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--hide-scrollbars"]

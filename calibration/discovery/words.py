@@ -175,7 +175,7 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     part = "more than 99 %" if whole else percent(share)
     said.append(f"It explains {part} of the squared error of all fitted tests above the noise.")
     if evidence.clear is not None:
-        said.append(f"Its size is {number(evidence.clear, 2)} standard deviations away from none.")
+        said.append(f"Its size is {number(evidence.clear, 2)} standard deviations from no effect.")
     if evidence.score is not None:
         fell = f"−2 ln L fell by {number(evidence.score, 3)}"
         said.append(f"Before any refit, by its first-order effect beyond what the coefficients can explain, {fell}.")
