@@ -10,13 +10,16 @@ from calibration import seas_results, tables
 from calibration.applied import Applied, applied
 from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
-from calibration.folder import MOTION
+from calibration.folder import MOTION, RESULT
+from calibration.grouped import grouped
 from calibration.joint import calibrate_jointly
 from calibration.joint_fit import Loss
 from calibration.laws import LAWS, of_law
 from calibration.manifest import IN_WAVES
 from calibration.outputs import NotFinite, write_calibration
+from calibration.report import write_report
 from calibration.result import Calibration
+from calibration.saved import Saved, read_saved
 from calibration.sea_fit import calibrate_in_waves
 from calibration.sea_laws import SeaLaws, choose_law
 from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws
@@ -25,6 +28,7 @@ from calibration.search import SearchInterrupted, search
 from calibration.searches import Budget
 from calibration.seas import Diverged, Options, compare, unusual
 from calibration.seas_outputs import write_comparison
+from calibration.summary import calibration_sentence, summary_of
 from jaxhydro.console import complain, progress, say, table
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.statics import stable_modes
@@ -36,7 +40,7 @@ ENDED = {
 }  # fmt: skip
 
 
-def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.counted) -> Campaign:
+def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.tests_counted) -> Campaign:
     """The campaign, its warnings printed. Raises InputError, also where results would replace its own data."""
     campaign = load_campaign(path)
     for test in campaign.manifest.tests:
@@ -58,7 +62,7 @@ def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campai
         return tests or ("waves" if "decay" not in kinds and kinds & set(IN_WAVES) else "decays")
 
     used = {"decays": ("decay",), "waves": IN_WAVES, "all": ("decay", *IN_WAVES, "static")}
-    loaded = load(path, out, counted=lambda campaign: tables.counted(campaign, used[kind(campaign)]))
+    loaded = load(path, out, counted=lambda campaign: tables.tests_counted(campaign, used[kind(campaign)]))
     return loaded, kind(loaded)
 
 
@@ -71,6 +75,7 @@ def run(
     objective: Objective = "bands",
     law: str = "constant",
     loss: Loss = "squares",
+    truth: Mapping[str, float] | None = None,
     start: Path | None = None,
     method: str | None = None,
     seed: int = 0,
@@ -81,7 +86,8 @@ def run(
     `tests`: to "decays", to those in "waves" or to "all" kinds; in waves by `objective`. `law`, of tests in waves alone: how
     coefficients depend on the sea state, a `Law` or "choose". `loss` is that of all kinds together. `start` is a calibration
     whose values are begun from; `method` a global search of the decays' coefficients that finds them, from a `seed` and in so
-    many CPU `seconds`. Raises InputError, and Interrupted where nothing was reached.
+    many CPU `seconds`. `truth` are a synthetic campaign's true coefficients: they are compared with, and a report page is
+    made. Raises InputError, and Interrupted where nothing was reached.
     """
     if law != "constant" and tests != "waves":
         raise InputError("--law", [Problem("", f"--tests waves beside {law.replace('_', '-')}", f"--tests {tests}")])
@@ -136,31 +142,43 @@ def run(
         result = tables.unfinished(stopped.partial)
     result = replace(result, notes=(*words, *result.notes))
     try:
-        write_calibration(result, out, figures)
+        write_calibration(result, out, figures, truth)
         if laws is not None:
             write_laws(laws, out, figures)
     except NotFinite as error:
         complain(f"not converged: {error}; nothing was written")
         return None
-    table("Parameters", *tables.parameters(result))
-    table("Errors, before and after", *tables.errors(result), left=3)
-    if (damping := tables.linear_quadratic(result))[1]:
-        table("Classical analysis: x'' + p x' + q x'|x'| + w² x = 0", *damping)
-    if (energies := tables.bands(result))[1]:
-        table("Errors of energy in bands", *energies, left=4)
+    saved, source = read_saved(out / RESULT), str(out / RESULT)
+    _print_results(saved, source)
     if laws is not None:
         table("Laws over the sea state: error of ln(energy) in bands, root mean square", *laws_table(laws), left=1)
         table("Coefficients of one sea alone | by the chosen law", *states_table(laws), left=1)
         say(sentence(laws))
-    warned = {str(finding) for finding in campaign.findings}
+    warned = {str(finding) for finding in grouped(campaign.findings)}
     for note in result.notes:
         if note not in warned:
             say(f"Note: {note}")
-    say(tables.outcome(result))
-    say(f"Results are in {out}")
+    say(tables.outcome(saved))
+    if truth is not None:
+        table("Against the true coefficients", *tables.against(saved))
+        say(tables.agreement_with_truth(saved))
+    say(f"Results are in {out}" if truth is None else f"Open {write_report(out)}")
     if not result.converged:
         complain("not converged: the results are marked so")
+    say(calibration_sentence(summary_of(saved, source)), "bold")
     return result
+
+
+def _print_results(saved: Saved, source: str) -> None:
+    """Print the tables of a written calibration."""
+    heads, rows = tables.parameters(saved)
+    table("Parameters", (heads[0], *heads[2:]), [(row[0], *row[2:]) for row in rows])
+    heads, rows = tables.errors(saved, source)
+    table("Errors: RMSE over the motion's standard deviation, before and after", heads, rows, left=5)
+    if (damping := tables.linear_quadratic(saved))[1]:
+        table(tables.CLASSICAL, *damping)
+    if (energies := tables.bands(saved, source))[1]:
+        table("Errors of energy in bands", *energies, left=4)
 
 
 def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tuple[dict[str, float], str]:

@@ -11,11 +11,14 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.directions import Identifiability, family
+from calibration.formatting import percent_span
+from calibration.grouped import grouped
 from calibration.identifiability import CLEAR, Spread
 from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Estimate, Series, TestFit
+from calibration.statements import listed
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.response import decay_cycles
@@ -90,20 +93,28 @@ def series_of(
 
 
 def strays(tests: Sequence[TestFit], declared: Model) -> list[str]:
-    """What is to be said of fitted tests that the model does not follow: most often a unit, a scale or a mass is wrong."""
-    said, modes = [], None
+    """Sentences on fitted tests that the model does not follow, one for each motion. Most often a unit, a scale or a mass is
+    wrong."""
+    lost: dict[str, list[TestFit]] = {}
     for test in tests:
-        if test.use != "fit" or test.main.relative < LOST:
-            continue
-        modes = natural_modes(declared) if modes is None else modes
-        period = decay_cycles(test.time, test.main.measured - test.main.measured.mean(), test.main.noise).period
-        seen = f"{np.median(period):.3g} s" if len(period) else "none seen"
-        said.append(
-            f"the model does not follow {test.id}: the RMSE is {100 * test.main.relative:.0f} % of the record's standard "
-            f"deviation. Period in {test.main.channel}: measured {seen}, declared model {modes.of(test.main.channel):.3g} s. "
-            "Check scale, units, mass and stiffness"
-        )
-    return said
+        if test.use == "fit" and test.main.relative >= LOST:
+            lost.setdefault(test.main.channel, []).append(test)
+    if not lost:
+        return []
+    modes = natural_modes(declared)
+    return [
+        f"the model does not follow {listed([test.id for test in some])}: the RMSE is "
+        f"{percent_span([test.main.relative for test in some])} of the motion's standard deviation. Period in {channel}: "
+        f"measured {_periods(some)}, declared model {modes.of(channel):.3g} s. Check scale, units, mass and stiffness"
+        for channel, some in lost.items()
+    ]
+
+
+def _periods(tests: Sequence[TestFit]) -> str:
+    """The smallest and the largest median period of some tests."""
+    cycles = [decay_cycles(one.time, one.main.measured - one.main.measured.mean(), one.main.noise).period for one in tests]
+    medians = sorted({f"{float(np.median(period)):.3g}" for period in cycles if len(period)}, key=float)
+    return f"{' to '.join(dict.fromkeys((medians[0], medians[-1])))} s" if medians else "none seen"
 
 
 def remarks(
@@ -113,7 +124,7 @@ def remarks(
     kinds: Sequence[str] = ("decay",),
 ) -> tuple[str, ...]:
     """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
-    said = [str(finding) for finding in campaign.findings]
+    said = [str(finding) for finding in grouped(campaign.findings)]
     left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
     if left:
         said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")

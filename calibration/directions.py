@@ -65,8 +65,12 @@ class Identifiability:
         clear, total = int((self.spectrum < CLEAR).sum()), len(self.spectrum)
         known = f"{clear} of {total} independent combinations of parameters known to better than {percent(CLEAR)}"
         said = [f"{self.source}: {known}"]
-        said += [f"{label} stands at a bound and is taken as fixed there" for label in self.at_bound]
-        said += [f"no record responds to {label}: fix it, or add a test that moves it" for label in self.untouched]
+        if bound := self.at_bound:
+            verbs = ("stands", "is") if len(bound) == 1 else ("stand", "are")
+            said.append(f"{listed(bound)} {verbs[0]} at a bound and {verbs[1]} taken as fixed there")
+        if idle := self.untouched:
+            it = "it" if len(idle) == 1 else "them"
+            said.append(f"no record responds to {listed(idle)}: fix {it}, or add tests that move {it}")
         known_of: set[str] = set()
         for weak, fix in list(zip(self.weak, self.fixes, strict=True))[:TOLD]:
             # one combination may be what is known of several directions

@@ -1,7 +1,10 @@
 """Numbers as people read them."""
 
 import math
+import re
+from collections.abc import Sequence
 
+LARGEST_PERCENT = 1e4  # beyond, a ratio says nothing but that it is large
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -50,6 +53,34 @@ def percent(ratio: float | None) -> str:
     if ratio is None or not abs(ratio) < 1e4:
         return "–"
     return f"{100 * ratio:.2g} %" if abs(ratio) < 0.995 else f"{100 * ratio:.0f} %"
+
+
+def percent_span(ratios: Sequence[float]) -> str:
+    """The smallest and the largest of some ratios in per cent: `0.4-1.7 %`, or `1.7 %` where they read alike.
+
+    The largest has two significant digits. The smallest has as many decimals, or one significant digit where that is none.
+    """
+    low, high = 100 * min(ratios), 100 * max(ratios)
+    if not high < LARGEST_PERCENT:
+        return f"more than {LARGEST_PERCENT:g} %"
+    decimals = _decimals(high, 2)
+    top, bottom = f"{high:.{decimals}f}", f"{low:.{max(decimals, _decimals(low, 1))}f}"
+    return f"{top} %" if float(top) == float(bottom) else f"{bottom}-{top} %"
+
+
+def _decimals(value: float, digits: int) -> int:
+    """Decimals that show so many significant digits, at most 4."""
+    return min(max(0, digits - 1 - math.floor(math.log10(value))), 4) if value > 0 else 0
+
+
+def readable_unit(unit: str) -> str:
+    """A unit with raised digits, `N s²/m²` for `N s2/m2`; nothing for "-", the unit of a plain number."""
+    return "" if unit == "-" else re.sub(r"(?<=[a-z])([2-6])\b", lambda found: "²³⁴⁵⁶"[int(found[1]) - 2], unit)
+
+
+def counted(count: int, noun: str) -> str:
+    """`1 test`, `9 tests`."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _raised(exponent: int) -> str:

@@ -1,6 +1,7 @@
 """What a calibration leaves behind: calibration.json, simulated.nc and figures, in one folder, whole or not at all."""
 
 import math
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 import jaxhydro
+from calibration.classical import classical
 from calibration.folder import RESULT, draw, or_null, outdated, write_json, write_motion
 from calibration.result import Calibration, Series, TestFit
 from jaxhydro.drag_laws import drag_laws_of
@@ -25,11 +27,14 @@ class NotFinite(ValueError):
     """A result that is not a number, which no file can hold: the simulation of a fitted test grew beyond all bounds."""
 
 
-def write_calibration(calibration: Calibration, folder: str | PathLike[str], figures: bool = True) -> Path:
+def write_calibration(
+    calibration: Calibration, folder: str | PathLike[str], figures: bool = True, truth: Mapping[str, float] | None = None
+) -> Path:
     """Write all results into `folder` (made where absent); gives the folder.
 
     The results of an earlier calibration there are replaced when the new ones are complete, its report page taken away;
-    other files stay. Angles are in degrees. Raises NotFinite, and InputError where the folder cannot be written.
+    other files stay. Angles are in degrees. `truth` are the coefficients that a synthetic campaign was made with: they are
+    written beside the result, for its report. Raises NotFinite, and InputError where the folder cannot be written.
     """
     folder = Path(folder)
     with staged(folder, lambda temporary: outdated(folder, temporary)) as temporary:
@@ -38,7 +43,8 @@ def write_calibration(calibration: Calibration, folder: str | PathLike[str], fig
             from calibration import plot
 
             drawn = draw(plot.figures(calibration), temporary)
-        write_json({**document(calibration), "figures": drawn}, temporary / RESULT)
+        known = {} if truth is None else {"truth": dict(truth)}
+        write_json({**document(calibration), **known, "figures": drawn}, temporary / RESULT)
         write_motion(dataset(calibration), temporary)
     return folder
 
@@ -134,7 +140,31 @@ def _about(test: TestFit) -> dict[str, Any]:
         "duration": float(test.time[-1] - test.time[0]),
         "samples": len(test.time),
         **_bands(test, "bands_before", "before"),  # the contract's `error` has no place for it
+        **_linear_quadratic(test),
     }
+
+
+def _linear_quadratic(test: TestFit) -> dict[str, Any]:
+    """The classical analysis of a decay, measured and simulated; nothing where it has too few cycles."""
+    if test.kind != "decay":
+        return {}
+    main = test.main
+    try:
+        measured, simulated = (classical(test.time, x, main.noise).fit for x in (main.measured, main.simulated))
+    except ValueError:
+        return {}
+    terms = {
+        name: {
+            "measured": float(getattr(measured, name).value),
+            "half_width": 0.5 * float(getattr(measured, name).upper - getattr(measured, name).lower),
+            "simulated": float(getattr(simulated, name).value),
+        }
+        for name in ("linear", "quadratic")
+    }
+    if not all(math.isfinite(x) for term in terms.values() for x in term.values()):
+        return {}
+    unit = "m" if unit_of(main.channel) == "m" else "rad"
+    return {"linear_quadratic": {"period": measured.period, "unit": unit, **terms}}
 
 
 def dataset(calibration: Calibration) -> xr.Dataset:

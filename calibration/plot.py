@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter
 
-from calibration.formatting import number
+from calibration.formatting import number, readable_unit
 from calibration.result import Calibration, Estimate, Series, TestFit
 from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS
@@ -222,6 +222,7 @@ def parameters_figure(parameters: list[Estimate]) -> Figure:
 
 def _scale(ax: Axes, unit: str, group: list[Estimate]) -> float:
     """Choose a linear or a logarithmic axis; gives what values are divided by."""
+    shown = readable_unit(unit)
     sizes = np.array([v for one in group for v in (one.start, one.value)])
     largest = float(np.abs(sizes).max(initial=0.0))
     sure = all(one.value > 2 * (one.standard_deviation or 0.0) for one in group)
@@ -229,19 +230,20 @@ def _scale(ax: Axes, unit: str, group: list[Estimate]) -> float:
         ax.set_xscale("log")
         ax.xaxis.set_minor_formatter(NullFormatter())
         ax.xaxis.set_major_formatter(LogFormatterSciNotation())
-        ax.set_xlabel(f"Value ({unit})")
+        ax.set_xlabel(f"Value ({shown})" if shown else "Value")
         return 1.0
     exponent = int(np.floor(np.log10(largest) / 3) * 3) if largest > 0 else 0
     exponent = exponent if abs(exponent) >= 3 else 0
     ax.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
-    ax.set_xlabel(f"Value ($10^{{{exponent}}}$ {unit})" if exponent else f"Value ({unit})")
+    size = " ".join(filter(None, (f"$10^{{{exponent}}}$" if exponent else "", shown)))
+    ax.set_xlabel(f"Value ({size})" if size else "Value")
     return 10.0**exponent
 
 
 def _parameter(ax: Axes, row: int, one: Estimate, power: float) -> dict[str, Artist]:
     start, value, sd = one.start / power, one.value / power, one.standard_deviation
     colour = SIMULATED if one.identifiable else GREY
-    label = "at its bound" if one.at_bound else "calibrated, ± 2 sd" if one.identifiable else "not identifiable"
+    label = "at its bound" if one.at_bound else "calibrated, ± 2 sd" if one.identifiable else "not determined"
     ax.plot([start, value], [row, row], color=BEFORE, lw=1.0, zorder=2)
     bar = ax.plot(start, row, "|", ms=8, color=BEFORE, mew=1.4, zorder=3)[0]
     if one.identifiable and sd is not None and np.isfinite(sd):

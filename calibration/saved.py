@@ -82,6 +82,23 @@ class Fitted(Open):
     drag_laws: dict[str, Law] = Field(default_factory=dict)
 
 
+class Term(Open):
+    """A damping term of a decay: measured with half the width of its 95 % interval, and simulated."""
+
+    measured: Number
+    half_width: Number
+    simulated: Number
+
+
+class LinearQuadraticDamping(Open):
+    """Classical analysis of a decay: period (s), p (1/s), q (1/`unit`). See `calibration.classical`."""
+
+    period: Number
+    unit: str
+    linear: Term
+    quadratic: Term
+
+
 class About(Open):
     """What a test was."""
 
@@ -92,6 +109,7 @@ class About(Open):
     duration: Number | None = None
     samples: int | None = None
     bands_before: dict[str, dict[str, Number]] = Field(default_factory=dict)
+    linear_quadratic: LinearQuadraticDamping | None = None
 
 
 class Drawn(Open):
@@ -126,7 +144,8 @@ class SeasTaken(Open):
 
 class Saved(Open):
     """calibration.json; of a diagnosis.json the models before and after, `augmented` the one with what was missing; `strips` is
-    how these are taken where a platform file does not say so, `seas` how waves are."""
+    how these are taken where a platform file does not say so, `seas` how waves are. `truth`
+    are the coefficients that a synthetic campaign was made with, by label."""
 
     campaign: str
     jaxhydro: str
@@ -136,6 +155,7 @@ class Saved(Open):
     strips: Strips | None = None
     seas: SeasTaken | None = None
     tests: dict[str, About] = Field(default_factory=dict)
+    truth: dict[str, Number] = Field(default_factory=dict)
     figures: list[Drawn] = Field(default_factory=list)
 
     @property

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
+from calibration.formatting import readable_unit
 from calibration.sea_laws import LawFit, SeaLaws
 from calibration.sea_laws_outputs import NAMES
 from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WAVE, header, stack
@@ -40,8 +41,8 @@ def coefficient(found: SeaLaws, label: str) -> Figure:
         artists[_name(law, found)] = ax.plot(grid, value, color=colour, lw=1.4)[0]
     ax.set_yscale("log")
     ax.set_xlabel("Significant height (m)")
-    unit = seas[0].calibration.parameters[label].unit
-    ax.set_ylabel(label if unit == "-" else f"{label} ({unit})")
+    unit = readable_unit(seas[0].calibration.parameters[label].unit)
+    ax.set_ylabel(f"{label} ({unit})" if unit else label)
     header(figure, f"{label} and the sea state", artists, 2)
     return figure
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from calibration.formatting import number
 from calibration.result import TestFit, error_of_energies
+from calibration.statements import listed
 from jaxhydro.drag_laws import drag_laws_of
 from jaxhydro.model import Model
 from jaxhydro.statics import natural_modes
@@ -30,6 +31,7 @@ def _laws(model: Model) -> Iterator[str]:
 
 def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
     modes = natural_modes(model)
+    alike: dict[str, list[str]] = {}
     for test in tests:
         if test.kind != "irregular" or test.use != "fit":
             continue
@@ -38,8 +40,10 @@ def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
         few = [f"{length / period:.1f} of {channel}" for channel, period in periods.items()
                if math.isfinite(period) and length < FEW * period]  # fmt: skip
         if few:
-            yield (f"{test.id}: {length:.0f} s are few natural periods ({', '.join(few)}): how much energy a slow motion has "
-                   "in them is to a good part chance, and stated deviations are too small")  # fmt: skip
+            alike.setdefault(f"{length:.0f} s are few natural periods ({', '.join(few)})", []).append(test.id)
+    for short, ids in alike.items():
+        yield (f"{listed(ids)}: {short}: how much energy a slow motion has in them is to a good part chance, and stated "
+               "deviations are too small")  # fmt: skip
 
 
 def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:

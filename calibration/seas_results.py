@@ -158,7 +158,7 @@ def seas_table(found: Compared) -> Rows:
         heights = [number(wave_height(x, irregular), 3) for x in (test.wave, test.simulated_wave)]
         stated = number(test.stated_height, 3)
         rows.append((test.fit.id, test.fit.kind, test.fit.use, stated, *heights, number(test.peak_period, 3)))
-    return ("Test", "Waves", "Use", "Height stated (m)", "measured", "simulated", "Period (s)"), rows
+    return ("Test", "Waves", "Use", "Height stated (m)", "Measured (m)", "Simulated (m)", "Period (s)"), rows
 
 
 def motions_table(found: Compared) -> Rows:
@@ -169,7 +169,7 @@ def motions_table(found: Compared) -> Rows:
         for name in moving(test):
             cells = [number(float(f(x)), 3) for f in (np.mean, np.std) for x in both[name]]
             rows.append((test.fit.id, f"{name} ({unit_of(name)})", *cells, percent(relative[name])))
-    heads = ("Test", "Motion", "Mean, measured", "simulated", "Standard deviation", "simulated", "RMSE over it")
+    heads = ("Test", "Motion", "Mean measured", "Mean simulated", "SD measured", "SD simulated", "RMSE / SD")
     return heads, rows
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calibration.formatting import number, percent, with_deviation
+from calibration.formatting import number, percent, readable_unit, with_deviation
 from calibration.identifiability import VAGUE
 
 SMALL = 0.005  # weight of a combination, the largest 1, that is not told
@@ -43,7 +43,7 @@ class Combination(NamedTuple):
             return f"the product {powers} is known to {percent(self.standard_deviation)}"
         terms = " ".join(f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}" for label, w in self.weights.items()
                          if abs(w) >= SMALL)  # fmt: skip
-        unit = "" if self.unit == "-" else f" {self.unit}"
+        unit = f" {readable_unit(self.unit)}".rstrip()
         value = with_deviation(self.value, self.standard_deviation)
         return f"their weighted sum {terms.removeprefix('+ ')} = {value}{unit} is known"
 

@@ -1,14 +1,17 @@
-"""A sweep as one self-contained HTML page: what was run, statistics over the life, what failed."""
+"""A sweep as one self-contained HTML page: the result in one sentence, statistics over the life, what was run, what failed."""
 
 from collections.abc import Iterator
 from html import escape
 from pathlib import Path
+from typing import NamedTuple
 
 from pydantic import Field
 
-from calibration.formatting import number, percent
-from calibration.report import cells, embedded, figures, framed, listed, table
+from calibration.formatting import counted, number, percent
 from calibration.saved import Open, Reference
+from calibration.statements import listed as joined
+from calibration.web_page import embedded, figures, framed, listed, result_box, table, warning_box
+from jaxhydro.environment import DOFS
 from jaxhydro.problems import Number
 from jaxhydro.sweep.cases import runs_named
 
@@ -112,6 +115,34 @@ class SavedSweep(Open):
     calibration: Used | None = None
 
 
+class SweepSummary(NamedTuple):
+    """What the sentence on a sweep says: runs in all and done, and the extremes of every motion with its unit."""
+
+    total: int
+    done: int
+    extremes: dict[str, tuple[float, float, str]]
+
+
+def summary_of(saved: SavedSweep) -> SweepSummary:
+    """The summary of a sweep.json."""
+    extremes = {
+        channel: (one.minimum, one.maximum, one.unit) for channel, one in saved.lifetime.items()
+        if channel in DOFS and one.minimum is not None and one.maximum is not None
+    }  # fmt: skip
+    return SweepSummary(saved.runs.total, saved.runs.done, extremes)
+
+
+def sweep_sentence(summary: SweepSummary) -> str:
+    """A sweep in one sentence.
+
+    "All 48 runs done; extremes over the life: surge -2.1 to 12.3 m and pitch -1.0 to 4.2 deg."
+    """
+    done, total = summary.done, summary.total
+    runs = f"{'All ' * (total > 1)}{counted(total, 'run')} done" if done == total else f"{done} of {total} runs done"
+    said = [f"{name} {number(low, 3)} to {number(high, 3)} {unit}" for name, (low, high, unit) in summary.extremes.items()]
+    return f"{runs}; extremes over the life: {joined(said)}." if said and done else f"{runs}."
+
+
 def page(saved: SavedSweep, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
     version = saved.source.removeprefix("jaxhydro ")
@@ -123,9 +154,13 @@ def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
     if runs.failed:
         share = percent(saved.probability_without_runs)
         lost = f"{share} of the life is without a run, and what follows is of the rest"
-        yield f'<p class="warning">{runs.failed} of {runs.total} runs failed; {lost}.</p>'
+        yield warning_box(f"{runs.failed} of {runs.total} runs failed; {lost}.")
+    yield result_box(sweep_sentence(summary_of(saved)))
+    if runs.done:
+        yield f"<h2>Over the life</h2>{_LIFE.format(frequency=f' at {number(saved.options.equivalent_frequency, 3)} Hz')}"
+        yield from _lifetimes(saved)
     yield "<h2>What was run</h2>"
-    yield table(["Property", "Value"], [f"<tr>{cells(row, 2)}</tr>" for row in _run(saved)], 2)
+    yield table(["Property", "Value"], list(_run(saved)), 2)
     if saved.calibration is not None:
         values = ", ".join(f"{label} = {number(value)}" for label, value in saved.calibration.values.items())
         counted = ""
@@ -135,10 +170,6 @@ def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
         yield f"<p>With the values of {escape(saved.calibration.file)}: {escape(values)}{counted}.</p>"
     if saved.notes:
         yield f"<h2>Notes</h2>{listed(saved.notes)}"
-    if runs.done:
-        yield "<h2>Over the life</h2>"
-        yield _LIFE.format(frequency=f" at {number(saved.options.equivalent_frequency, 3)} Hz")
-        yield _lifetimes(saved)
     if saved.failures:
         yield "<h2>Failed</h2>"
         yield listed(
@@ -164,14 +195,18 @@ def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
     yield "Records every, steps of at most", f"{how.time_step:g} s, {number(how.step, 3)} s"
 
 
-def _lifetimes(saved: SavedSweep) -> str:
-    exponents = list(dict.fromkeys(m for one in saved.lifetime.values() for m in one.damage_equivalent_range))
-    heads = ["Channel", "Mean", "Standard deviation", "its spread", "Maximum of a seed", "its spread", "Minimum of a seed",
-             "Maximum of all", "Minimum of all"]  # fmt: skip
-    heads += [f"Equivalent range, m = {escape(m)}" for m in exponents]
+def _lifetimes(saved: SavedSweep) -> Iterator[str]:
+    """Statistics of every channel, then its equivalent ranges: as two tables, since one would be wider than a page."""
+    heads = ["Channel", "Mean", "Standard deviation", "Spread of it", "Maximum of a seed", "Spread of that",
+             "Minimum of a seed", "Maximum of all", "Minimum of all"]  # fmt: skip
     rows = []
     for channel, one in saved.lifetime.items():
         values = [one.mean, one.standard_deviation, one.standard_deviation_spread, one.maximum_of_seed, one.maximum_spread]
-        values += [one.minimum_of_seed, one.maximum, one.minimum, *(one.damage_equivalent_range.get(m) for m in exponents)]
-        rows.append(f"<tr>{cells([f'{channel} ({one.unit})', *(number(value) for value in values)], 1)}</tr>")
-    return table(heads, rows, 1)
+        values += [one.minimum_of_seed, one.maximum, one.minimum]
+        rows.append([f"{channel} ({one.unit})", *map(number, values)])
+    yield table(heads, rows)
+    exponents = list(dict.fromkeys(m for one in saved.lifetime.values() for m in one.damage_equivalent_range))
+    if exponents:
+        heads = ["Channel", *(f"Equivalent range, m = {m}" for m in exponents)]
+        ranges = {f"{channel} ({one.unit})": one.damage_equivalent_range for channel, one in saved.lifetime.items()}
+        yield table(heads, [[channel, *(number(by.get(m)) for m in exponents)] for channel, by in ranges.items()])

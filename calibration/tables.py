@@ -1,4 +1,4 @@
-"""What the command line prints of a campaign and of a calibration: heads and rows of tables, and lines."""
+"""Tables of a campaign and of a calibration, for the terminal and the page: headings, and rows of text."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -6,17 +6,23 @@ from dataclasses import replace
 
 from calibration.campaign import Campaign
 from calibration.checks import Finding
-from calibration.classical import classical
-from calibration.formatting import number, percent, with_deviation
-from calibration.result import Calibration, Estimate
-from jaxhydro.plot import for_people, unit_of
+from calibration.formatting import LARGEST_PERCENT, counted, number, percent, readable_unit, with_deviation
+from calibration.grouped import grouped
+from calibration.manifest import IN_WAVES
+from calibration.result import Calibration
+from calibration.saved import Error, Parameter, Saved
 
 Rows = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
 USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
+KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
+UNDETERMINED = "not determined"
+CLASSICAL = "Classical analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
+BANDS = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
+SURE = 2.0  # standard deviations within which a value agrees with the true one
 
 
-def counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
-    """How many tests of each use there are, and of those of other kinds."""
+def tests_counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
+    """How many tests there are of each use, and how many of other kinds are left out."""
     tests = campaign.manifest.tests
     count = Counter(USE[t.use] if t.use == "ignore" or t.kind in kinds else f"left out ({t.kind})" for t in tests)
     order = {word: i for i, word in enumerate(USE.values())}
@@ -25,94 +31,136 @@ def counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
 
 
 def findings(found: Iterable[Finding]) -> Rows:
-    """The warnings about the records."""
-    return ("Test", "File", "Channel", "Warning"), [(one.test, one.file, one.channel, one.message) for one in found]
+    """The warnings about the records, each once."""
+    return ("Test", "File", "Channel", "Warning"), [(one.where, one.source, one.channel, one.message) for one in grouped(found)]
 
 
-def parameters(result: Calibration) -> Rows:
-    """Start, value and standard deviation of every parameter."""
-    found = result.parameters.items()
-    rows = [(label, number(one.start, 3), _value(one), one.unit, _flag(one)) for label, one in found]
-    return ("Parameter", "Start", "Calibrated ± 1 sd", "Unit", ""), rows
-
-
-def _value(one: Estimate) -> str:
-    return with_deviation(one.value, one.standard_deviation) if one.identifiable else "not identifiable"
-
-
-def _flag(one: Estimate) -> str:
-    return "at its bound" if one.at_bound else ""
-
-
-def errors(result: Calibration) -> Rows:
-    """Errors of the scored channel of every test."""
-    rows = []
-    for test in result.tests:
-        for series in test.series:
-            if not series.scored:
-                continue
-            start = test.start.get(series.channel)
-            before = None if start is None else replace(series, simulated=start).relative
-            rmse = f"{number(float(for_people(series.channel, series.rmse)), 2)} {unit_of(series.channel)}"
-            rows.append((test.id, USE[test.use], series.channel, percent(before), percent(series.relative), rmse))
-    return ("Test", "Use", "Channel", "Before", "After", "RMSE"), rows
-
-
-def linear_quadratic(result: Calibration) -> Rows:
-    """The classical P-Q fit of every decay, measured and simulated, where it has cycles enough: 95 % intervals."""
-    rows = []
-    for test in result.tests:
-        main = test.main
-        if test.kind != "decay":
-            continue
-        try:
-            found = [classical(test.time, x, main.noise).fit for x in (main.measured, main.simulated)]
-        except ValueError:
-            continue
-        measured, simulated = found
-        unit = "m" if unit_of(main.channel) == "m" else "rad"
-        cells = [
-            (with_deviation(float(a.value), 0.5 * float(a.upper - a.lower)), number(float(b.value), 3))
-            for a, b in ((measured.linear, simulated.linear), (measured.quadratic, simulated.quadratic))
-        ]
-        rows.append((test.id, number(measured.period, 4), *cells[0], *cells[1], f"1/{unit}"))
-    heads = ("Test", "Period (s)", "p ± 95 % (1/s)", "simulated", "q ± 95 %", "simulated", "Unit of q")
-    return heads, rows
-
-
-def bands(result: Calibration) -> Rows:
-    """Errors of energy in bands, of tests in irregular waves."""
-    names = {"low_frequency": "low", "wave_frequency": "wave"}
+def parameters(saved: Saved) -> Rows:
+    """Meaning, start, value and standard deviation of every coefficient."""
     rows = [
-        (test.id, USE[test.use], channel, names.get(band, band), percent(one.before), percent(one.after))
-        for test in result.tests for channel, row in test.bands.items() for band, one in row.items()
+        (label, one.meaning, number(one.start, 3), value_of(one), readable_unit(one.unit))
+        for label, one in saved.baseline.parameters.items()
+    ]
+    return ("Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit"), rows
+
+
+def value_of(one: Parameter) -> str:
+    """A calibrated value with its standard deviation, or what it is instead."""
+    text = with_deviation(one.value, one.standard_deviation) if one.identifiable else UNDETERMINED
+    return f"{text}, at its bound" if one.at_bound else text
+
+
+def errors(saved: Saved, source: str) -> Rows:
+    """Errors of the motions that count in the fit, of every test."""
+    rows = []
+    for id, channels in saved.errors(source).items():
+        scored = {name: one for name, one in channels.items() if one.in_objective}
+        rows += [(id, *_test(saved, id), name, *_error(one)) for name, one in scored.items()]
+        if not channels:
+            rows.append((id, *_test(saved, id), "", "–", "not finite", ""))
+    return ("Test", "Kind", "Length", "Use", "Motion", "Before", "After", "RMSE"), rows
+
+
+def other_motions(saved: Saved, source: str) -> Rows:
+    """Errors of the motions beside those that count in the fit."""
+    rows = []
+    for id, channels in saved.errors(source).items():
+        rows += [(id, _use(saved, id), name, *_error(one)) for name, one in channels.items() if not one.in_objective]
+    return ("Test", "Use", "Motion", "Before", "After", "RMSE"), rows
+
+
+def _test(saved: Saved, id: str) -> tuple[str, str, str]:
+    """Kind, length and use of a test."""
+    about = saved.tests.get(id)
+    kind = " in ".join(filter(None, (KINDS.get(about.kind, about.kind), about.degree_of_freedom))) if about else ""
+    length = f"{number(about.duration, 3)} s" if about and about.duration is not None else ""
+    return kind, length, _use(saved, id)
+
+
+def _use(saved: Saved, id: str) -> str:
+    use = str(saved.baseline.error[id].get("use", ""))
+    return USE.get(use, use)
+
+
+def _error(error: Error) -> tuple[str, str, str]:
+    """Before and after calibration, over the motion's standard deviation; RMSE after."""
+    before = percent(error.before.relative) if error.before is not None else "–"
+    return before, percent(error.relative), f"{number(error.rmse, 2)} {error.unit}"
+
+
+def linear_quadratic(saved: Saved) -> Rows:
+    """The classical linear and quadratic damping of every decay with enough cycles, measured and simulated."""
+    rows = []
+    for id, about in saved.tests.items():
+        if (one := about.linear_quadratic) is not None:
+            values = [
+                text for term in (one.linear, one.quadratic)
+                for text in (with_deviation(term.measured, term.half_width), number(term.simulated, 3))
+            ]  # fmt: skip
+            rows.append((id, number(one.period, 4), *values, f"1/{one.unit}"))
+    heads = ("Test", "Period (s)", "p measured ± 95 % (1/s)", "p simulated (1/s)", "q measured ± 95 %", "q simulated")
+    return (*heads, "Unit of q"), rows
+
+
+def bands(saved: Saved, source: str) -> Rows:
+    """Errors of energy in bands, of tests in irregular waves."""
+    rows = [
+        (id, _use(saved, id), channel, BANDS.get(band, band.replace("_", " ")), *map(_signed, both))
+        for id, channels in saved.bands(source).items() for channel, row in channels.items() for band, both in row.items()
     ]  # fmt: skip
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
-def outcome(result: Calibration) -> str:
-    """One line: J and how it was reached."""
-    parts = [f"J = {number(result.objective('fit'), 3)} over the fitted tests"]
-    if (holdout := result.objective("holdout")) is not None:
-        parts.append(f"{number(holdout, 3)} over those held out")
-    state = "converged" if result.converged else "stopped"
-    return f"{', '.join(parts)}; {state} after {result.iterations} iterations, {result.seconds:.0f} s"
+def _signed(ratio: float | None) -> str:
+    if ratio is None:
+        return "–"
+    return f"{100 * ratio:+.0f} %" if 100 * ratio < LARGEST_PERCENT else f"> {LARGEST_PERCENT:g} %"
 
 
-def against(result: Calibration, truth: dict[str, float]) -> Rows:
-    """Calibrated values beside known ones."""
+def outcome(saved: Saved) -> str:
+    """One line: the objective and how it was reached. Of tests in waves J is no objective: they are fitted by others."""
+    fitted = saved.baseline
+    in_waves = any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values())
+    name = "J, the sum" if in_waves else "Objective J, the sum"
+    parts = [f"{name} of RMSE over standard deviation: {number(fitted.objective.fit, 3)} over the fitted tests"]
+    if fitted.objective.holdout is not None:
+        parts.append(f"{number(fitted.objective.holdout, 3)} over those held out")
+    if fitted.iterations is not None and fitted.seconds is not None:
+        state = "converged" if fitted.converged else "stopped"
+        parts.append(f"{state} after {counted(fitted.iterations, 'iteration')} in {fitted.seconds:.0f} s")
+    return ", ".join(parts)
+
+
+def against(saved: Saved) -> Rows:
+    """Calibrated values beside the true ones."""
     rows = []
-    for label, true in truth.items():
-        one = result.parameters.get(label)
+    for label, true in saved.truth.items():
+        one = saved.baseline.parameters.get(label)
         if one is None:
-            rows.append((label, number(true, 3), "not calibrated", "–", "–"))
+            rows.append((label, number(true, 3), "not calibrated", "", "–", "–"))
             continue
-        sd = one.standard_deviation
-        off = one.value - true
-        sure = one.identifiable and sd is not None and sd > 0
-        sizes = (percent(off / true), f"{off / sd:+.1f} sd" if sure and sd else "–") if one.identifiable else ("–", "–")
-        rows.append((label, number(true, 3), _value(one), *sizes))
-    return ("Parameter", "True", "Calibrated ± 1 sd", "Off by", "in its sd"), rows
+        sizes = ("–", "–")
+        if one.identifiable:
+            away = deviations_away(one, true)
+            sizes = (percent((one.value - true) / true) if true else "–", "–" if away is None else f"{away:+.1f} sd")
+        rows.append((label, number(true, 3), value_of(one), readable_unit(one.unit), *sizes))
+    return ("Parameter", "True", "Calibrated ± 1 sd", "Unit", "Off by", "Off by, in sd"), rows
+
+
+def deviations_away(one: Parameter, true: float) -> float | None:
+    """Standard deviations from the true value; None where the records do not determine the coefficient."""
+    sd = one.standard_deviation
+    return (one.value - true) / sd if one.identifiable and sd is not None and sd > 0 else None
+
+
+def agreement_with_truth(saved: Saved) -> str:
+    """How many coefficients lie near the true values, in a sentence."""
+    known = {label: saved.baseline.parameters.get(label) for label in saved.truth}
+    away = [None if one is None else deviations_away(one, saved.truth[label]) for label, one in known.items()]
+    near = sum(one is not None and abs(one) <= SURE for one in away)
+    largest = max((abs(one) for one in away if one is not None), default=None)
+    farthest = "" if largest is None else f"; the farthest is {largest:.1f} away"
+    return f"{near} of {len(away)} coefficients lie within {SURE:g} standard deviations of the true values{farthest}."
 
 
 def unfinished(partial: Calibration) -> Calibration:

@@ -19,7 +19,7 @@ from calibration.profile import Profile, profile
 from calibration.sampling import Samples, sample
 from calibration.saved import Saved, read_as, read_saved
 from calibration.uncertainty_outputs import Uncertainty, write_uncertainty
-from calibration.uncertainty_saved import SavedUncertainty, intervals, other_ways
+from calibration.uncertainty_saved import SavedUncertainty, interval_sentence, intervals, other_ways, summary_of
 from jaxhydro.console import complain, counting, progress, say, table
 from jaxhydro.problems import InputError, Problem, suggest
 
@@ -57,7 +57,7 @@ def quantify(
     found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
     write_uncertainty(found, out, figures)
     written = read_as(SavedUncertainty, out / UNCERTAINTY)
-    table(f"Parameters, {written.percent} intervals: Laplace, coloured errors", *intervals(written))
+    table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals(written))
     if (rows := other_ways(written))[1]:
         table(f"{written.percent} intervals in other ways", *rows)
     for note in written.notes:
@@ -65,6 +65,7 @@ def quantify(
     say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
     if not written.converged:
         complain("not converged: the results are marked so")
+    say(interval_sentence(summary_of(written)), "bold")
     return written.converged
 
 

@@ -1,19 +1,19 @@
-"""Intervals of a calibration's parameters as one self-contained HTML page."""
+"""Intervals of a calibration's parameters as one self-contained HTML page: the result in one sentence first."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
-from calibration.report import UNCONVERGED, cells, figures, framed, images, listed, table
-from calibration.uncertainty_saved import WAYS, SavedUncertainty, intervals, other_ways
+from calibration.uncertainty_saved import WAYS, SavedUncertainty, interval_sentence, intervals, other_ways, summary_of
+from calibration.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
 
-_MEANING = """<p class="verdict">What a {percent} interval means: were the same tests made and fitted again and again, about
+_MEANING = """<p>What a {percent} interval means: were the same tests made and fitted again and again, about
 {share} in 100 of the intervals would hold the value with which this model follows such tests best.</p>
 <p>What it does not mean: that the model is right, that the value holds in what was not tested (waves, motions of another size),
 or that all parameters lie in their intervals at once: each stands by itself. What is wrong in all tests alike, a scale or a
 sensor, is in none of the intervals. Where the model's error rings at the natural period they are too narrow.</p>"""
-_INTERVALS = """<p>The intervals are Laplace's, of the fit's covariance, and allow for errors that last from sample to sample,
-as what is left of a fit mostly does. The last number says how many times too small an interval would be that takes errors as
-white, every sample as independent of the others (1: no difference).</p>"""
+_INTERVALS = """<p>The intervals are Laplace's, from the covariance of the fit. They allow for errors that last from sample to
+sample, as the residuals of a fit mostly do. The last column is their width over that of intervals for white errors, every
+sample independent of the others (1 time: no difference).</p>"""
 _FOUND = {
     "profile": "all other parameters are fitted again at each value; where it differs from Laplace's, believe the profile",
     "blocks": "what is left of the fit is drawn anew in blocks and fitted again, {}",
@@ -30,18 +30,18 @@ def page(saved: SavedUncertainty, folder: Path) -> str:
 
 def _parts(saved: SavedUncertainty, folder: Path) -> Iterator[str]:
     if not saved.converged:
-        yield UNCONVERGED.format("intervals of a calibration")
-    yield _MEANING.format(share=f"{100 * saved.level:.4g}", percent=saved.percent)
-    yield "<h2>What was calibrated</h2>"
-    yield listed(_calibrated(saved))
+        yield warning_box(UNCONVERGED.format("intervals of a calibration"))
+    yield result_box(interval_sentence(summary_of(saved)))
     yield "<h2>Parameters</h2>"
-    yield _INTERVALS
     yield _parameters(saved)
+    yield _INTERVALS
     heads, rows = other_ways(saved)
     if rows:
         yield f"<h2>{saved.percent} intervals in other ways</h2>"
         yield listed(f"{WAYS[way]}: {_how(saved, way)}." for way in saved.ways())
-        yield table(heads, [f"<tr>{cells(row, 1)}</tr>" for row in rows], 1)
+        yield table(heads, rows)
+    yield f"<h2>What the intervals mean</h2>{_MEANING.format(share=f'{100 * saved.level:.4g}', percent=saved.percent)}"
+    yield f"<h2>What was calibrated</h2>{listed(_calibrated(saved))}"
     if saved.notes:
         yield f"<h2>Notes</h2>{listed(saved.notes)}"
     if drawn := figures(images(saved.figures, folder).values()):
@@ -58,12 +58,12 @@ def _calibrated(saved: SavedUncertainty) -> Iterator[str]:
 
 def _parameters(saved: SavedUncertainty) -> str:
     (first, *heads, _), found = intervals(saved)
-    rows = []
-    for (label, *row, flag), one in zip(found, saved.parameters.values(), strict=True):
-        muted = "" if one.identifiable else " class=muted"
-        meaning = "; ".join(filter(None, (one.meaning, flag)))
-        rows.append(f"<tr{muted}>{cells([label, meaning, *row], 2, 4)}</tr>")
-    return table([first, "Meaning", *heads], rows, 2, 4)
+    several = list(saved.parameters.values())
+    rows = [
+        (label, "; ".join(filter(None, (one.meaning, flag))), *row)
+        for (label, *row, flag), one in zip(found, several, strict=True)
+    ]
+    return table([first, "Meaning", *heads], rows, 2, 4, [i for i, one in enumerate(several) if not one.identifiable])
 
 
 def _how(saved: SavedUncertainty, way: str) -> str:

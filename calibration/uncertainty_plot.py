@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 from scipy.stats import chi2
 
 from calibration.bootstrap import Bootstrap
+from calibration.formatting import readable_unit
 from calibration.profile import Profile
 from calibration.sampling import Samples
 from jaxhydro.plot import GREY, MEASURED, SIMULATED, WIDTH, header
@@ -60,4 +61,4 @@ def draws_figure(found: Bootstrap | Samples, first: str, second: str) -> Figure:
 
 
 def _named(label: str, unit: str) -> str:
-    return label if unit == "-" else f"{label} ({unit})"
+    return f"{label} ({shown})" if (shown := readable_unit(unit)) else label

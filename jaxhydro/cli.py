@@ -291,13 +291,7 @@ def _calibrate(
     from calibration import command
 
     loaded, kind = command.load_fitted(campaign, out, tests)
-    result = command.run(loaded, out, figures, tests=kind, **how)
-    if result is not None and truth is not None:
-        from calibration.report import write_report
-        from calibration.tables import against
-
-        table("Against the true coefficients", *against(result, truth))
-        say(f"Open {write_report(out)}")
+    result = command.run(loaded, out, figures, tests=kind, truth=truth, **how)
     if result is None or not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

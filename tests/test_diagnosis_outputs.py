@@ -14,12 +14,13 @@ from PIL import Image
 from test_outputs import SCHEMAS, Page, changed, contents
 
 import jaxhydro as jh
-from calibration.discovery import plots, words
+from calibration.discovery import plots, tables, words
 from calibration.discovery.outputs import document, paired, write_diagnosis
 from calibration.discovery.result import Diagnosis
 from calibration.discovery.saved import read_diagnosis
 from calibration.outputs import NotFinite
 from calibration.report import write_report
+from calibration.saved import Parameter
 from jaxhydro.problems import InputError
 
 DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"
@@ -123,6 +124,21 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
             assert words.alternatives(saved.missing.effects[0]).startswith("No other effect that was tried does as well.")
 
 
+def test_a_gain_is_called_after_what_it_was_found_on(result: Diagnosis, written: Path, tmp_path: Path) -> None:
+    """Held-out tests; where nothing was held out, blocks of the fitted tests."""
+    held = read_diagnosis(written)
+    assert tables.effects(held)[0][-1] == "Gain over held-out tests"
+    less = {
+        key: replace(getattr(result, key), tests=tuple(test for test in getattr(result, key).tests if test.use == "fit"))
+        for key in ("baseline", "augmented")
+    }
+    saved = read_diagnosis(write_diagnosis(replace(result, **less), tmp_path, figures=False))
+    assert tables.effects(saved)[0][-1] == "Gain over blocks of the fitted tests left out in turn"
+    text = " ".join(words.sureness(saved, saved.missing.effects[0]))
+    assert "squared error of blocks of the fitted tests left out in turn falls by 61 %" in text
+    assert "held" not in text.lower() and "not fitted" not in text
+
+
 def nothing(**changes: Any) -> Diagnosis:
     """Nothing was found."""
     less = {"verdict": "nothing_missing", "effects": (), "rejected": (), "scores": (), "anatomy_before": (),
@@ -206,14 +222,14 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
     assert not {"script", "link", "iframe", "object"} & set(page.tags)
     told = ("The declared model lacks Coulomb friction in surge", "falls by 69 %", "What was measured",
             "free decay: 4 fitted, 1 held out", "What the model missed", "in phase with velocity", "What was found",
-            "force (81.0 ± 2.1) kN", "Very strong evidence", "61 % of the squared error of tests that were not",
+            "force (81.0 ± 2.1) kN", "Very strong evidence", "squared error of held-out tests falls by 61 %",
             "cannot tell it from hysteresis in surge", "A test that would tell: a static pull-out",
             "left unexplained: white", "The test to run next", "Error before and after", "RMSE after", "low frequency", "-24 %",
             "Fitted coefficients", "91000 ± 3000", "44000 ± 1500", "-52 %", "What was rejected", "held-out error grew", "Notes",
             "surge-2 repeats surge-1", "321 s")  # fmt: skip
     places = [page.text.find(text) for text in told]
     assert -1 not in places and places == sorted(places), list(zip(told, places))
-    assert "did not converge" not in page.text and "not identifiable" in page.text
+    assert "did not converge" not in page.text and "not determined" in page.text
 
 
 def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Path) -> None:
@@ -259,6 +275,17 @@ def test_sizes_and_names_as_people_read_them() -> None:
     assert words.quantity(-3.1e5, 2e4, "kg") == "(-310 ± 20) t"
     assert words.quantity(0.33, 0.01, "-") == "0.330 ± 0.010"
     assert words.quantity(0.12, np.nan, "m/s") == "0.120 m/s"
+    known, small, lost = (
+        Parameter(value=value, standard_deviation=sd, unit="N m/rad3", start=start, identifiable=sd is not None)
+        for value, sd, start in ((29e3, 9.9e3, 0.0), (201.0, 286.0, 0.0), (201.0, None, 0.0))
+    )
+    assert words.size("quintic", known) == "quintic (29.0 ± 9.9) kN m/rad³"
+    assert words.size("cubic", small) == "cubic not determined: fitted (201 ± 286) N m/rad³"
+    assert words.size("cubic", lost) == "cubic not determined"
+    assert [name for name, _ in words.by_certainty({"a": small, "b": known, "c": lost})] == ["b", "a", "c"]
+    assert words.determined(small.model_copy(update={"start": 2000.0}))  # known to be small
+    near = known.model_copy(update={"standard_deviation": 20e3})
+    assert words.size("quintic", near).endswith("kN m/rad³, less than 2 standard deviations from zero")
     assert words.called("hysteresis (surge)") == "hysteresis in surge" and words.called("current") == "a current"
     assert words.several(["a"]) == "a" and words.several(["a", "b", "c"]) == "a, b and c" and words.several([]) == ""
     assert words.change(0.5, 0.6) == "grows by 20 % (J from 0.500 to 0.600)"

@@ -1,6 +1,7 @@
 """What records tell together: linear models whose answers are known by hand, and decays of a real platform."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import jax
@@ -128,7 +129,10 @@ def test_an_untouched_parameter_is_said_so() -> None:
     information = np.diag([400.0, 0.0, 900.0])
     found = judged(stated("column.Ca_t column.Cd_z pontoon.Cd_t"), information)
     assert found.untouched == ("column.Cd_z",) and not found.weak
-    assert any(x.startswith("no record responds to column.Cd_z") for x in found.sentences())
+    assert "no record responds to column.Cd_z: fix it, or add tests that move it" in found.sentences()
+    both = replace(found, untouched=("a", "b"), at_bound=("c", "d")).sentences()
+    assert "no record responds to a and b: fix them, or add tests that move them" in both
+    assert "c and d stand at a bound and are taken as fixed there" in both
     assert found.spectrum == pytest.approx([1 / 30, 1 / 20, np.inf])
 
 

@@ -489,6 +489,8 @@ def test_linear_damping_and_its_labels() -> None:
     model = model_of(build(), LinearDamping({"linear_damping.B15": 3.0, "linear_damping.B22": 2.0}))
     assert_allclose(force(model, [0, 4, 0, 0, 5, 0], [0, 0, 0, 0.1, 0.2, 0.3]), [-15, -8, 0, 0, 0, 0], rtol=1e-14)
     assert model.about("linear_damping.B15").unit == "N s"
+    assert model.about("linear_damping.B15").meaning == "linear damping: surge force from pitch velocity"
+    assert model.about("linear_damping.B22").meaning == "linear damping in sway"
 
 
 def test_quadratic_damping_and_its_labels() -> None:
@@ -496,6 +498,7 @@ def test_quadratic_damping_and_its_labels() -> None:
     model = model_of(build(), QuadraticDamping({"quadratic_damping.B33": 2.0, "quadratic_damping.B55": 7.0}))
     assert_allclose(force(model, [1, 0, -4, 0, 5, 0]), [0, 0, 32, 0, -175, 0], rtol=1e-12)
     assert model.about("quadratic_damping.B55").unit == "N m s2/rad2"
+    assert model.about("quadratic_damping.B55").meaning == "quadratic damping in pitch"
 
 
 def test_lumped_added_mass_and_its_labels() -> None:
@@ -506,6 +509,11 @@ def test_lumped_added_mass_and_its_labels() -> None:
     expected[5, 5] = 8.0
     assert_allclose(added_mass(model), expected)
     assert model.about("added_mass.A15").unit == "kg m"
+    meanings = [model.about(f"added_mass.{label}").meaning for label in ("A15", "A51", "A66")]
+    assert meanings == [
+        "added mass: surge force from pitch acceleration", "added mass: pitch moment from surge acceleration",
+        "added mass in yaw",
+    ]  # fmt: skip
 
 
 def test_lumped_stiffness_acts_along_earth_axes() -> None:
@@ -514,6 +522,13 @@ def test_lumped_stiffness_acts_along_earth_axes() -> None:
     model = model_of(build(), Stiffness({"mooring.C11": jnp.asarray(5.0), "mooring.C15": jnp.asarray(7.0)}, preload))
     position = jnp.array([2.0, 1.0, 0, 0.1, 0.2, 0.5])
     assert_allclose(at_rest(model, position), [1 - 10 - 1.4, 0, -2, 0, 0, 4], rtol=1e-13, atol=1e-14)
+    meanings = [Stiffness({}, preload, name).about(f"{name}.{label}").meaning for name in ("mooring", "stiffness")
+                for label in ("C11", "C15")]  # fmt: skip
+    assert meanings == [
+        "mooring stiffness in surge", "mooring stiffness: surge force from pitch displacement",
+        "stiffness in surge", "stiffness: surge force from pitch displacement",
+    ]  # fmt: skip
+    assert CoupledDamping.null().about("coupled_damping.B15").meaning == "linear damping that couples surge and pitch"
 
 
 def test_weight() -> None:

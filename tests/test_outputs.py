@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -15,6 +16,8 @@ from PIL import Image
 
 import calibration
 from calibration import outputs, plot
+from calibration.classical import classical
+from calibration.conclusion import strays
 from calibration.formatting import number, percent, with_deviation
 from calibration.outputs import NotFinite, dataset, document, write_calibration
 from calibration.report import write_report
@@ -280,7 +283,7 @@ def test_folders_that_cannot_be_are_told(tmp_path: Path) -> None:
 class Page(HTMLParser):
     """Tags in balance, what is linked, and the text."""
 
-    VOID = frozenset({"meta", "img", "br", "link"})
+    VOID = frozenset({"meta", "img", "br", "link", "wbr"})
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -313,10 +316,42 @@ def test_the_report_is_one_page_that_needs_nothing_else(written: Path) -> None:
     assert all(link.startswith("data:image/png;base64,") for link in page.links)
     assert not {"script", "link", "iframe", "object"} & set(page.tags)
     assert "http" not in page.text and "url(" not in path.read_text() and "@import" not in path.read_text()
-    for words in ("volturnus-s-decays", "surge-1", "held out", "1.480 ± 0.015", "not identifiable", "at its bound",
-                  "stays near its starting value", "decay in heave"):  # fmt: skip
-        assert words in page.text, words
-    assert "1.70·10⁵" not in page.text  # the value of what is not identifiable
+    told = ("volturnus-s-decays", "2 decays followed to", "1 held-out decay", "9 of 11 coefficients determined",
+            "not determined: linear_damping.B33; at a bound: column.Cd_z", "Parameters", "1.480 ± 0.015", "at its bound",
+            "linear damping in surge", "not determined", "Tests", "surge-1", "free decay in heave", "held out",
+            "Other motions, which do not count in the fit (6)", "Damping by classical analysis", "1/rad", "Notes",
+            "stays near its starting value", "Figures")  # fmt: skip
+    places, at = [], 0
+    for words in told:
+        at = page.text.find(words, at)
+        places.append(at)
+    assert -1 not in places, list(zip(told, places))
+    assert "1.70·10⁵" not in page.text  # the value of what is not determined
+    assert page.tags.count("details") == 1 and "true coefficients" not in page.text
+
+
+def test_the_page_has_the_classical_damping_and_the_truth_of_the_file(result: Calibration, tmp_path: Path) -> None:
+    """Measured and simulated, as the analysis of the motions has them; schema and older files are none the worse for it."""
+    folder = write_calibration(result, tmp_path / "out", figures=False, truth={"column.Ca_t": 1.5})
+    read = json.loads((folder / "calibration.json").read_text())
+    for schema in SCHEMAS:
+        if schema.exists():
+            jsonschema.Draft202012Validator(json.loads(schema.read_text())).validate(read)
+    test = result.tests[2]
+    fits = [classical(test.time, x, test.main.noise).fit for x in (test.main.measured, test.main.simulated)]
+    found = read["tests"]["pitch-1"]["linear_quadratic"]
+    assert found["unit"] == "rad" and found["period"] == pytest.approx(fits[0].period)
+    assert found["quadratic"]["measured"] == pytest.approx(fits[0].quadratic.value)
+    assert found["quadratic"]["simulated"] == pytest.approx(fits[1].quadratic.value)
+    assert found["linear"]["half_width"] == pytest.approx(fits[0].linear.upper - fits[0].linear.value)
+    page = Page(write_report(folder).read_text(encoding="utf-8")).text
+    assert with_deviation(found["quadratic"]["measured"], found["quadratic"]["half_width"]) in page
+    assert "Against the true coefficients" in page and "0 of 1 coefficients lie" not in page and "-1.4 sd" in page
+    read.pop("truth")
+    read["tests"]["pitch-1"].pop("linear_quadratic")
+    (folder / "calibration.json").write_text(json.dumps(read))
+    page = Page(write_report(folder).read_text(encoding="utf-8")).text
+    assert "true coefficients" not in page and "1/rad" not in page and "1/m" in page
 
 
 def test_a_page_of_a_fit_in_waves_has_its_bands(result: Calibration, tmp_path: Path) -> None:
@@ -360,6 +395,19 @@ def test_no_report_without_results(tmp_path: Path) -> None:
     (tmp_path / "results.zarr").mkdir()
     with pytest.raises(InputError, match="the same `jaxhydro sweep` goes on"):
         write_report(tmp_path)
+
+
+# --- notes
+
+
+def test_decays_of_one_motion_that_are_not_followed_make_one_note(result: Calibration) -> None:
+    first, heave = result.tests[:2]
+    still = tuple(replace(one, simulated=np.zeros_like(one.simulated)) for one in first.series)
+    lost = [replace(first, id=f"surge-{i}", series=still) for i in (1, 2)]
+    (note,) = strays([*lost, heave, replace(lost[0], use="holdout")], result.model)
+    assert note.startswith("the model does not follow surge-1 and surge-2: the RMSE is 100 % of the motion's standard")
+    assert re.search(r"Period in surge: measured 13\d s, declared model 1\d\d s\. Check scale", note)
+    assert strays([first, heave], result.model) == []
 
 
 # --- numbers

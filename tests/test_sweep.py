@@ -351,7 +351,7 @@ def test_a_sweep_makes_a_page(tmp_path: Path) -> None:
     }  # fmt: skip
     (tmp_path / "sweep.json").write_text(json.dumps(content))
     page = write_report(tmp_path).read_text()
-    assert "<td>pitch (deg)</td>" in page and ">1.250</td>" in page and "Equivalent range, m = 3" in page
+    assert ">pitch (deg)</td>" in page and ">1.250</td>" in page and "Equivalent range, m = 3" in page
     assert "0 deg (75 %), 30 deg (25 %)" in page and "3600 s, of which the first 500 s are left out" in page
     assert "<li>one &amp; all</li>" in page and "c.json: column.Cd_t = 1.250; exponents count from Hs 2.00 m" in page
     assert 'content="jaxhydro 0.1.0"' in page and "and what follows is of the rest" in page

@@ -11,6 +11,7 @@ from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Diagnosis
 from calibration.discovery.saved import SavedDiagnosis, read_diagnosis
 from calibration.folder import DIAGNOSIS
+from calibration.grouped import grouped
 from calibration.manifest import IN_WAVES
 from calibration.outputs import NotFinite
 from calibration.seas import Diverged
@@ -27,7 +28,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     from calibration.discovery.diagnose import diagnose
 
     stopped = False
-    campaign = load(path, out, lambda c: calibrations.counted(c, ("decay", *IN_WAVES)))
+    campaign = load(path, out, lambda c: calibrations.tests_counted(c, ("decay", *IN_WAVES)))
     try:
         with progress() as show:
             result = diagnose(campaign.model, campaign, progress=show, kept=out / FILE)
@@ -49,7 +50,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     if not stopped:
         (out / FILE).unlink(missing_ok=True)
     saved = read_diagnosis(out / DIAGNOSIS)
-    warned = {str(finding) for finding in campaign.findings}
+    warned = {str(finding) for finding in grouped(campaign.findings)}
     show_diagnosis(saved, [note for note in saved.notes if note not in warned])
     say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
     if stopped:

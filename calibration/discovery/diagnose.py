@@ -18,6 +18,7 @@ from calibration.discovery.result import Diagnosis
 from calibration.discovery.search import ROUNDS, Search
 from calibration.discovery.signs import in_words, reversed_channels, turned
 from calibration.fit import Progress
+from calibration.grouped import grouped
 from calibration.seas import NO_ZERO, Options
 from jaxhydro.model import Model
 
@@ -78,7 +79,7 @@ def diagnose(
     def concluded() -> Diagnosis:
         lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
         unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
-        warnings = [str(finding) for finding in campaign.findings]
+        warnings = [str(finding) for finding in grouped(campaign.findings)]
         every = (*notes, *search.notes, *lost, *unknown, *warnings)
         return conclude(search.campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 

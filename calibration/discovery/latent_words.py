@@ -11,8 +11,8 @@ from scipy import signal
 
 from calibration.discovery.latent_law import LAGGED, LAGS, columns_of, squared_envelope
 from calibration.discovery.result import Followed, LatentForce, Law, LawTerm, Shown
-from calibration.discovery.words import pretty, quantity, several
-from calibration.formatting import number, percent
+from calibration.discovery.words import quantity, several
+from calibration.formatting import number, percent, readable_unit
 from calibration.seas_results import bands_of
 from calibration.signals import SEGMENT, peak_frequency, wave_height
 from jaxhydro.environment import DOFS
@@ -207,7 +207,8 @@ def law_in_words(law: Law, unit: str) -> str:
     """The law of a force of this unit and what it explains, or that there is none."""
     if not law.terms:
         return f"no law of up to three terms explains it (the best {percent(law.share)} of it in {law.checked or 'the tests'})"
-    parts = [f"({number(one.coefficient, 3)} {pretty(one.unit)}) {_term(one, law)}".removesuffix(" 1") for one in law.terms]
+    sizes = [(one, f"{number(one.coefficient, 3)} {readable_unit(one.unit)}") for one in law.terms]
+    parts = [f"({size}) {_term(one, law)}".removesuffix(" 1") for one, size in sizes]
     text, speed = " + ".join(parts), "rad/s" if unit == "N m" else "m/s"
     v0 = f", v0 = {number(law.v0, 2)} {speed}" if any("v0" in term.name for term in law.terms) else ""
     return f"{text} explains {percent(law.share)} of it in {law.checked}{v0}"

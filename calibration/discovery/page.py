@@ -9,17 +9,17 @@ from calibration.discovery import tables, words
 from calibration.discovery.saved import Found, SavedDiagnosis
 from calibration.folder import DIAGNOSIS
 from calibration.formatting import number
-from calibration.report import UNCONVERGED, cells, figures, framed, images, listed, table
-from calibration.tables import USE, Rows
+from calibration.tables import KINDS, USE
+from calibration.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
 
-_ANATOMY = """<p>What the declared model leaves over once its coefficients are fitted, the largest first: its root mean
-square, as a share of the motion, and over the noise, before and after what was found is added (1:
-nothing but noise).</p>"""
+_ANATOMY = """<p>The residual of the declared model after its coefficients are fitted, the largest first: its root mean
+square, its share of the motion, and its ratio to the noise before and after the effects that were found are added. A ratio
+of 1 is noise alone.</p>"""
 _LATENT = """<p>The force that would have to act on the model beside all that it has, for it to follow the records:</p>"""
 _BANDS = """<p>Tests in irregular waves: error of the energy in the band of slow motion and of waves, (simulated - measured) /
 measured.</p>"""
-_COEFFICIENTS = """<p>The same coefficients fitted without what was missing (before) and with it (after), ± 1 standard
-deviation. What was missing had hidden in those that move.</p>"""
+_COEFFICIENTS = """<p>Coefficients fitted without the effects that were found (before) and with them (after), ± 1 standard
+deviation. Coefficients that move had stood in for these effects.</p>"""
 
 
 def page(saved: SavedDiagnosis, folder: Path) -> str:
@@ -35,17 +35,17 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
         return figures([drawn.pop(name) for name in list(drawn) if name.startswith(starts)])
 
     if words.STOPPED in saved.notes:
-        yield f'<p class="warning">{escape(words.capital(words.STOPPED))}.</p>'
+        yield warning_box(f"{words.capital(words.STOPPED)}.")
     elif not saved.converged:
-        yield UNCONVERGED.format("a diagnosis")
-    yield f'<p class="verdict">{escape(words.verdict(saved))}</p>'
+        yield warning_box(UNCONVERGED.format("a diagnosis"))
+    yield result_box(words.verdict(saved))
     yield "<h2>What was measured</h2>"
     yield f"<p>{escape(_measured(saved))}</p>"
-    yield _table(tables.tests(saved), 4)
+    yield table(*tables.tests(saved), 4)
     yield "<h2>What the model missed</h2>"
     if saved.anatomy.before:
         yield _ANATOMY
-        yield _table(tables.anatomy(saved), 4)
+        yield table(*tables.anatomy(saved), 4)
     yield taken("anatomy")
     yield "<h2>What was found</h2>"
     for one in saved.missing.effects:
@@ -62,19 +62,19 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
     yield taken("effect-")
     yield "<h2>Error before and after</h2>"
     yield f"<p>{escape(_objectives(saved))}</p>"
-    yield _table(tables.errors(saved, str(folder / DIAGNOSIS)), 3)
+    yield table(*tables.errors(saved, str(folder / DIAGNOSIS)), 3)
     if (rows := tables.bands(saved))[1]:
         yield _BANDS
-        yield _table(rows, 4)
+        yield table(*rows, 4)
     yield taken("before-after", "spectra-")
     yield "<h2>Fitted coefficients</h2>"
     yield _COEFFICIENTS
-    yield _table(tables.coefficients(saved), 1, 4)
+    yield table(*tables.coefficients(saved), 1, 4)
     if (rows := tables.nearly_known(saved))[1]:
         yield f"<p>{tables.VARIED}.</p>"
-        yield _table(rows, 1, 4)
+        yield table(*rows, 1, 4)
     yield "<h2>What was rejected, and why</h2>"
-    yield _table(rows, 9) if (rows := tables.rejected(saved))[1] else "<p>Nothing.</p>"
+    yield table(*rows, 9) if (rows := tables.rejected(saved))[1] else "<p>Nothing.</p>"
     yield taken("scores")
     if saved.notes or saved.seconds is not None:
         yield "<h2>Notes</h2>"
@@ -86,7 +86,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
 
 def _measured(saved: SavedDiagnosis) -> str:
     """How many tests of which kind, and how long together."""
-    each = Counter((tables.KINDS.get(one.kind, one.kind), one.use) for one in saved.tests.values())
+    each = Counter((KINDS.get(one.kind, one.kind), one.use) for one in saved.tests.values())
     kinds = {kind: [f"{n} {USE.get(use, use)}" for (other, use), n in each.items() if other == kind] for kind, _ in each}
     seconds = sum(one.duration or 0.0 for one in saved.tests.values())
     span, unit = next((s, u) for s, u in ((3600, "hours"), (60, "minutes"), (1, "s")) if seconds >= 2 * s or s == 1)
@@ -99,11 +99,11 @@ def _measured(saved: SavedDiagnosis) -> str:
 def _effect(saved: SavedDiagnosis, one: Found) -> Iterator[str]:
     name = words.called(one.effect, one.degree_of_freedom)
     yield f"<h3>{escape(words.capital(name))}</h3>"
-    sizes = "; ".join(words.size(key, value) for key, value in one.parameters.items())
+    sizes = "; ".join(words.size(key, value) for key, value in words.by_certainty(one.parameters))
     yield f'<p class="size"><b>Size:</b> {escape(sizes)}.</p>' if sizes else ""
     if one.meaning:
         source = f" ({one.source})" if one.source else ""
-        yield f"<p>{escape(one.meaning.rstrip('.') + source)}.</p>"
+        yield f"<p>{escape(words.capital(one.meaning.rstrip('.')) + source)}.</p>"
     yield f"<p><b>How sure:</b> {escape(' '.join(words.sureness(saved, one)))}</p>"
     yield f"<p><b>What else it could be:</b> {escape(words.alternatives(one))}</p>"
 
@@ -115,7 +115,3 @@ def _objectives(saved: SavedDiagnosis) -> str:
     if before.holdout is not None and after.holdout is not None:
         said += f", that of the held-out tests {words.change(before.holdout, after.holdout)}"
     return f"{said}. J is the sum of RMSE over the motion's standard deviation; the table has every part of it."
-
-
-def _table(rows: Rows, first: int, last: int = 99) -> str:
-    return table(rows[0], [f"<tr>{cells(row, first, last)}</tr>" for row in rows[1]], first, last)

@@ -2,19 +2,18 @@
 
 from calibration.discovery.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.discovery.saved import SavedDiagnosis
-from calibration.discovery.words import called, plain, pretty, quantity, strength
-from calibration.formatting import number, percent, with_deviation
+from calibration.discovery.words import by_certainty, called, checked_on, determined, plain, quantity, strength
+from calibration.formatting import number, percent, readable_unit, with_deviation
 from calibration.saved import Parameter
-from calibration.tables import USE, Rows
+from calibration.tables import BANDS, KINDS, UNDETERMINED, USE, Rows
 
-KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
 ORDER = list(USE)
 STILL = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
 VARIED = (
-    f"Let vary, as it is only nearly known (one standard deviation: mass {percent(MASS)}, inertia {percent(INERTIA)}, centre "
-    f"of mass {100 * CENTRE_UP:.2g} % up and {100 * CENTRE_ALONG:.1g} % along of the cube root of what the body displaces, "
-    f"moorings {percent(STIFFNESS)}; trim)"
+    f"Properties that are nearly known, fitted near their declared values (one standard deviation: mass {percent(MASS)}, "
+    f"inertia {percent(INERTIA)}, moorings {percent(STIFFNESS)}; centre of mass {100 * CENTRE_UP:.2g} % of the displaced "
+    f"volume's cube root upwards, {100 * CENTRE_ALONG:.1g} % lengthwise; trim)"
 )
 
 
@@ -33,10 +32,10 @@ def effects(saved: SavedDiagnosis) -> Rows:
     rows = []
     for one in saved.missing.effects:
         first = (called(one.effect, one.degree_of_freedom), strength(one.evidence), percent(one.evidence.holdout_gain))
-        for i, (name, value) in enumerate(one.parameters.items()):
-            said = quantity(value.value, value.standard_deviation, value.unit) if value.identifiable else "not identifiable"
+        for i, (name, value) in enumerate(by_certainty(one.parameters)):
+            said = quantity(value.value, value.standard_deviation, value.unit) if determined(value) else UNDETERMINED
             rows.append((first[0] if i == 0 else "", plain(name), said, *(first[1:] if i == 0 else ("", ""))))
-    return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", "Held-out gain"), rows
+    return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", f"Gain over {checked_on(saved)}"), rows
 
 
 def errors(saved: SavedDiagnosis, source: str = "diagnosis.json") -> Rows:
@@ -55,7 +54,6 @@ def errors(saved: SavedDiagnosis, source: str = "diagnosis.json") -> Rows:
 
 def bands(saved: SavedDiagnosis) -> Rows:
     """Errors of energy in the bands of tests in irregular waves."""
-    names = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
     rows = []
     for id in sorted(saved.augmented.error, key=lambda id: _order(saved, id)):
         there, was = (fitted.error.get(id, {}).get("bands") or {} for fitted in (saved.augmented, saved.baseline))
@@ -63,7 +61,7 @@ def bands(saved: SavedDiagnosis) -> Rows:
             for band, value in row.items():
                 then = was.get(channel, {}).get(band)
                 use = _use(saved, id)
-                rows.append((id, USE.get(use, use), channel, names.get(band, band), percent(then), percent(value)))
+                rows.append((id, USE.get(use, use), channel, BANDS.get(band, band), percent(then), percent(value)))
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
@@ -71,7 +69,7 @@ def coefficients(saved: SavedDiagnosis) -> Rows:
     """Every fitted parameter as declared, before and after, the effects' own among those after."""
     rows = []
     for label, was, now in _parameters(saved, nearly_known=False):
-        known = was is not None and now is not None and was.identifiable and now.identifiable and was.value != 0
+        known = was is not None and now is not None and determined(was) and determined(now) and was.value != 0
         moved = _moved(now.value / was.value - 1) if known and was and now else ""
         rows.append((*_of_parameter(label, was, now), moved))
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
@@ -91,12 +89,13 @@ def _parameters(saved: SavedDiagnosis, nearly_known: bool) -> list[tuple[str, Pa
     """Labels, and what is fitted of them before and after."""
     before, after = saved.baseline.parameters, saved.augmented.parameters
     labels = [label for label in dict.fromkeys([*before, *after]) if label.startswith(NEARLY_KNOWN) == nearly_known]
-    return [(label, before.get(label), after.get(label)) for label in labels]
+    rows = [(label, before.get(label), after.get(label)) for label in labels]
+    return sorted(rows, key=lambda row: row[0] not in before and row[2] is not None and not determined(row[2]))
 
 
 def _of_parameter(label: str, was: Parameter | None, now: Parameter | None) -> tuple[str, ...]:
     unit = next((one.unit for one in (now, was) if one is not None), "")
-    return label, number(was.start if was is not None else None, 3), _value(was), _value(now), pretty(unit)
+    return label, number(was.start if was is not None else None, 3), _value(was), _value(now), readable_unit(unit)
 
 
 def rejected(saved: SavedDiagnosis) -> Rows:
@@ -119,13 +118,13 @@ def anatomy(saved: SavedDiagnosis) -> Rows:
             f"{number(one.rms, 2)} {one.unit}", percent(one.relative if (one.relative or 0.0) < STILL else None),
             number(one.over_noise, 2), number(now.over_noise if now else None, 2),
         ))  # fmt: skip
-    return ("Test", "Use", "Motion", "What is left", "Residual", "Of motion", "Over noise", "After"), rows
+    return ("Test", "Use", "Motion", "What is left", "Residual", "Of motion", "Over noise", "Over noise, after"), rows
 
 
 def _value(one: Parameter | None) -> str:
     if one is None:
         return "–"
-    text = with_deviation(one.value, one.standard_deviation) if one.identifiable else "not identifiable"
+    text = with_deviation(one.value, one.standard_deviation) if determined(one) else UNDETERMINED
     return f"{text}, at its bound" if one.at_bound else text
 
 

@@ -2,11 +2,13 @@
 
 import math
 import re
+from collections.abc import Mapping
 
 from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER
 from calibration.discovery.saved import Found, Grounds, SavedDiagnosis
-from calibration.formatting import number, percent, with_deviation
+from calibration.formatting import number, percent, readable_unit, with_deviation
 from calibration.saved import Parameter
+from calibration.tables import UNDETERMINED
 
 NAMES = {
     "coulomb_friction": "Coulomb friction",
@@ -26,8 +28,9 @@ NAMES = {
     "potential_flow": "what the platform's tables of potential flow have",
 }
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
-WHERE = "In the motion and at the frequencies where the error falls most"
-CLEAR = 2.0  # standard deviations from none: below, one of several parameters says nothing alone
+WHERE = "in the motion and at the frequencies where the error falls most"
+CLEAR = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
+SMALL = 0.25  # of the value it began from: a deviation below is small, whatever the value
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 STRENGTHS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "positive"), (0.0, "weak"))  # Kass and Raftery 1995, table in 3.2
 
@@ -68,15 +71,10 @@ def _readable(largest: float, unit: str) -> tuple[float, str]:
         return math.radians(1.0), unit.replace("rad", "deg")
     if re.match(r"N\b", unit):
         size, prefix = next(((size, prefix) for size, prefix in PREFIXES if largest >= size), (1.0, ""))
-        return size, prefix + pretty(unit)
+        return size, prefix + readable_unit(unit)
     if re.match(r"kg\b", unit) and largest >= 1e3:
-        return 1e3, pretty("t" + unit[2:])
-    return 1.0, pretty(unit)
-
-
-def pretty(unit: str) -> str:
-    """m2 as m²; nothing for "-"."""
-    return "" if unit == "-" else re.sub(r"(?<=[a-z])([2-6])\b", lambda found: "²³⁴⁵⁶"[int(found[1]) - 2], unit)
+        return 1e3, readable_unit("t" + unit[2:])
+    return 1.0, readable_unit(unit)
 
 
 def plain(name: str) -> str:
@@ -84,13 +82,32 @@ def plain(name: str) -> str:
     return name.replace(".", " ").replace("_", " ")
 
 
+def determined(one: Parameter) -> bool:
+    """Whether the records determine a parameter: its deviation is below its value, or small against where it began."""
+    deviation = one.standard_deviation or 0.0
+    return one.identifiable and (deviation <= abs(one.value) or deviation < SMALL * abs(one.start or 0.0))
+
+
+def by_certainty(parameters: Mapping[str, Parameter]) -> list[tuple[str, Parameter]]:
+    """Parameters of an effect, those that the records determine first."""
+    return sorted(parameters.items(), key=lambda item: not determined(item[1]))
+
+
 def size(name: str, one: Parameter) -> str:
-    """A parameter of an effect: its name, value, deviation and unit."""
+    """A parameter of an effect: its name, value, deviation and unit; or that it is not determined, and what was fitted."""
     text = quantity(one.value, one.standard_deviation, one.unit)
-    more = ", which the records do not determine" if not one.identifiable else ", at its bound" if one.at_bound else ""
-    if one.identifiable and one.standard_deviation and abs(one.value) < CLEAR * one.standard_deviation:
-        more += ", which alone could be none"
+    if not determined(one):
+        return f"{plain(name)} {UNDETERMINED}" + (f": fitted {text}" if one.identifiable else "")
+    more = ", at its bound" if one.at_bound else ""
+    if one.standard_deviation and abs(one.value) < CLEAR * one.standard_deviation:
+        more += f", less than {CLEAR:g} standard deviations from zero"
     return f"{plain(name)} {text}{more}"
+
+
+def checked_on(saved: SavedDiagnosis) -> str:
+    """What the gain of an effect was found on: tests that were held out, or blocks of the fitted tests left out in turn."""
+    held = any(row.get("use") == "holdout" for row in saved.augmented.error.values())
+    return "held-out tests" if held else "blocks of the fitted tests left out in turn"
 
 
 def verdict(saved: SavedDiagnosis) -> str:
@@ -142,7 +159,6 @@ def strength(evidence: Grounds) -> str:
 def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     """How sure an effect is: sentences with their numbers."""
     evidence = one.evidence
-    held = any(row.get("use") == "holdout" for row in saved.augmented.error.values())
     said = []
     if evidence.delta_bic is not None:
         fell = f"BIC falls by {number(evidence.delta_bic, 3)} (above 10 is very strong)"
@@ -150,21 +166,19 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     gain = evidence.holdout_gain
     if gain is None:
         said.append("No test was held out to check it.")
-    elif not held:
-        said.append(f"{WHERE}, {percent(gain)} of the squared error of blocks of the tests, each left out in turn, go.")
     elif gain >= 0:
-        said.append(f"{WHERE}, {percent(gain)} of the squared error of tests that were not fitted go.")
+        said.append(f"The squared error of {checked_on(saved)} falls by {percent(gain)} {WHERE}.")
     else:
-        said.append(f"The squared error of tests that were not fitted grows by {percent(-gain)}.")
+        said.append(f"The squared error of {checked_on(saved)} grows by {percent(-gain)}.")
     share = one.share_of_residual_explained
     whole = share is not None and 0.99 < share < 1
     part = "more than 99 %" if whole else percent(share)
-    said.append(f"Of the squared error of all fitted tests, over the noise, it explains {part}.")
+    said.append(f"It explains {part} of the squared error of all fitted tests above the noise.")
     if evidence.clear is not None:
-        said.append(f"Its size is {number(evidence.clear, 2)} standard deviations away from none.")
+        said.append(f"Its size is {number(evidence.clear, 2)} standard deviations from no effect.")
     if evidence.score is not None:
         fell = f"−2 ln L fell by {number(evidence.score, 3)}"
-        said.append(f"At first order, with what the coefficients can do instead projected out, {fell}.")
+        said.append(f"Before any refit, by its first-order effect beyond what the coefficients can explain, {fell}.")
     return said
 
 

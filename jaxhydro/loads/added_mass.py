@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.matrix import assemble, place, unit
+from jaxhydro.loads.matrix import assemble, meaning, place, unit
 
 
 class AddedMass(AbstractLoad):
@@ -20,7 +20,7 @@ class AddedMass(AbstractLoad):
     def about(self, label: str) -> Parameter:
         i, j = place(label)
         lower = 0.0 if i == j else float("-inf")
-        return Parameter(unit("A", label), f"added mass {i + 1} from acceleration {j + 1}", lower)
+        return Parameter(unit("A", label), meaning("added mass", "acceleration", label), lower)
 
     def act(self, now: Instant, memory: Any) -> Action:
         return Action(added_mass=assemble(self.values))

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.matrix import assemble, place, unit
 
@@ -28,7 +29,7 @@ class CoupledDamping(AbstractLoad):
 
     def about(self, label: str) -> Parameter:
         i, j = place(label)
-        return Parameter(unit("B", label), f"linear damping that couples degrees of freedom {i + 1} and {j + 1}")
+        return Parameter(unit("B", label), f"linear damping that couples {DOFS[i]} and {DOFS[j]}")
 
     def act(self, now: Instant, memory: Any) -> Action:
         matrix = assemble(self.values)

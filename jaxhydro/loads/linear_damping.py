@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.matrix import assemble, place, unit
+from jaxhydro.loads.matrix import assemble, meaning, place, unit
 
 
 class LinearDamping(AbstractLoad):
@@ -20,7 +20,7 @@ class LinearDamping(AbstractLoad):
     def about(self, label: str) -> Parameter:
         i, j = place(label)
         lower = 0.0 if i == j else float("-inf")
-        return Parameter(unit("B", label), f"linear damping force {i + 1} from velocity {j + 1}", lower)
+        return Parameter(unit("B", label), meaning("linear damping", "velocity", label), lower)
 
     def act(self, now: Instant, memory: Any) -> Action:
         return Action(body_force=-assemble(self.values) @ now.velocity)

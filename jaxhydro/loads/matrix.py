@@ -6,6 +6,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.environment import DOFS
+
 UNITS = {
     "B": ("N s/m", "N s", "N m s/rad"),
     "Q": ("N s2/m2", "", "N m s2/rad2"),
@@ -23,6 +25,23 @@ def place(label: str) -> tuple[int, int]:
 def unit(symbol: str, label: str) -> str:
     i, j = place(label)
     return UNITS[symbol][(i > 2) + (j > 2)]
+
+
+def meaning(quantity: str, cause: str, label: str) -> str:
+    """Meaning of a term, by the names of its degrees of freedom.
+
+    Args:
+        quantity: What the matrix is, for example "linear damping".
+        cause: What the matrix multiplies, for example "velocity".
+        label: The term's label, for example "linear_damping.B15".
+
+    Returns:
+        "linear damping in surge" on the diagonal, "linear damping: surge force from pitch velocity" off it.
+    """
+    i, j = place(label)
+    if i == j:
+        return f"{quantity} in {DOFS[i]}"
+    return f"{quantity}: {DOFS[i]} {'force' if i < 3 else 'moment'} from {DOFS[j]} {cause}"
 
 
 def assemble(values: Mapping[str, Float[Array, ""]]) -> Float[Array, "6 6"]:

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import REST
-from jaxhydro.loads.matrix import assemble, place, unit
+from jaxhydro.loads.matrix import assemble, meaning, unit
 
 
 class QuadraticDamping(AbstractLoad):
@@ -21,7 +21,7 @@ class QuadraticDamping(AbstractLoad):
     source: ClassVar[str] = "Himeno 1981, Prediction of Ship Roll Damping"
 
     def about(self, label: str) -> Parameter:
-        return Parameter(unit("Q", label), f"quadratic damping in degree of freedom {place(label)[0] + 1}", 0.0)
+        return Parameter(unit("Q", label), meaning("quadratic damping", "velocity", label), 0.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
         velocity = now.velocity

@@ -6,7 +6,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.matrix import assemble, place, unit
+from jaxhydro.loads.matrix import assemble, meaning, unit
 
 
 class Stiffness(AbstractLoad):
@@ -22,8 +22,8 @@ class Stiffness(AbstractLoad):
     source: ClassVar[str] = "Jonkman 2007, NREL/TP-500-41958, the linearised mooring system"
 
     def about(self, label: str) -> Parameter:
-        i, j = place(label)
-        return Parameter(unit("C", label), f"{self.name} force {i + 1} from displacement {j + 1}")
+        quantity = self.name if self.name.endswith("stiffness") else f"{self.name} stiffness"
+        return Parameter(unit("C", label), meaning(quantity, "displacement", label))
 
     def act(self, now: Instant, memory: Any) -> Action:
         return Action(force=self.preload - assemble(self.values) @ now.position)

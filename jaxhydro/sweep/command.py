@@ -132,7 +132,7 @@ def _print_results(summary: Summary, exponents) -> None:
         numbers = (one.mean, one.standard_deviation, one.standard_deviation_spread, one.minimum, one.maximum)
         shown = ("-" if value != value else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in (*numbers, *one.ranges))
         rows.append((f"{channel} ({summary.units[channel]})", *shown))
-    heads = ("Channel", "Mean", "Standard deviation", "over seeds", "Minimum", "Maximum")
+    heads = ("Channel", "Mean", "Standard deviation", "Spread over seeds", "Minimum", "Maximum")
     if summary.done:
         ranges = (f"Equivalent range m = {m:g}" for m in exponents)
         table("Over the life", (*heads, *ranges), rows)

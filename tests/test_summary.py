@@ -1,0 +1,175 @@
+"""Results in one sentence, and what is said once: from values to words, without a fit."""
+
+from typing import Any
+
+import pytest
+
+from calibration import tables
+from calibration.checks import Finding
+from calibration.formatting import counted, percent_span, readable_unit
+from calibration.grouped import grouped
+from calibration.saved import Saved
+from calibration.summary import CalibrationSummary, calibration_sentence, summary_of
+from calibration.sweep_page import SweepSummary, sweep_sentence
+from calibration.uncertainty_saved import IntervalSummary, interval_sentence
+
+
+def error(relative: float, scored: bool = True) -> dict[str, Any]:
+    return {"rmse": relative, "unit": "m", "relative": relative, "in_objective": scored}
+
+
+def coefficient(value: float = 1.0, sd: float | None = 0.1, **more: Any) -> dict[str, Any]:
+    return {"value": value, "standard_deviation": sd, "unit": "-", "start": 1.0, "identifiable": sd is not None} | more
+
+
+def saved(
+    tests: dict[str, tuple[str, str, dict[str, Any]]],
+    parameters: dict[str, dict[str, Any]],
+    converged: bool = True,
+    **more: Any,
+) -> Saved:
+    """A calibration.json: tests by id as (kind, use, error)."""
+    return Saved.model_validate({
+        "campaign": "basin", "jaxhydro": "0", **more,
+        "baseline": {
+            "parameters": parameters, "error": {id: {"use": use, **row} for id, (_, use, row) in tests.items()},
+            "objective": {"fit": 1.0}, "converged": converged,
+        },
+        "tests": {id: {"use": use, "kind": kind} for id, (kind, use, _) in tests.items()},
+    })  # fmt: skip
+
+
+def said(one: Saved) -> str:
+    return calibration_sentence(summary_of(one, "calibration.json"))
+
+
+SURE = {"a": coefficient(), "b": coefficient()}
+LOW, HIGH = {"surge": error(0.004), "pitch": error(0.3, scored=False)}, {"heave": error(0.0171)}
+
+
+def test_decays_that_are_followed_and_coefficients_that_are_determined() -> None:
+    """Motions that do not count in the fit are left aside."""
+    fitted = {"s": ("decay", "fit", LOW), "h": ("decay", "fit", HIGH)}
+    assert said(saved(fitted, SURE)) == "2 decays followed to 0.4-1.7 %; all 2 coefficients determined."
+    held = fitted | {"p": ("decay", "holdout", {"pitch": error(0.021)}), "x": ("decay", "ignore", {"pitch": error(9.0)})}
+    assert said(saved(held, {"a": coefficient()})) == (
+        "2 decays followed to 0.4-1.7 %; 1 held-out decay followed to 2.1 %; a determined."
+    )
+
+
+def test_coefficients_that_are_not_determined_are_named_while_they_are_few() -> None:
+    tests = {"s": ("decay", "fit", LOW)}
+    some = SURE | {"c": coefficient(sd=None), "d": coefficient(sd=None, at_bound=True)}
+    expected = "1 decay followed to 0.40 %; 2 of 4 coefficients determined; not determined: c; at a bound: d."
+    assert said(saved(tests, some)) == expected
+    assert said(saved(tests, {"c": coefficient(sd=None)})) == "1 decay followed to 0.40 %; c not determined."
+    assert said(saved(tests, {"c": coefficient(at_bound=True)})).endswith("; c is at a bound.")
+    many = SURE | {name: coefficient(sd=None) for name in "cdef"}
+    assert said(saved(tests, many)).endswith("2 of 6 coefficients determined; not determined: 4 coefficients.")
+
+
+def test_what_went_wrong_comes_first() -> None:
+    """A fit that leaves a record behind is not called unconverged as well."""
+    bad = {"s": ("decay", "fit", LOW), "h": ("decay", "fit", {"heave": error(0.73)})}
+    start = "The model does not follow h: RMSE up to 73 % of the motion. 2 decays followed"
+    assert said(saved(bad, SURE, converged=False)).startswith(start)
+    assert said(saved(bad, SURE)).startswith(start)  # by a robust loss, which converges all the same
+    good = {"s": ("decay", "fit", LOW)}
+    assert said(saved(good, SURE, converged=False)).startswith("The fit did not converge. 1 decay followed")
+    lost = {f"s-{i}": ("decay", "fit", {"surge": error(0.6)}) for i in range(5)}
+    assert said(saved(lost, SURE)).startswith("The model does not follow 5 decays: RMSE up to 60 %")
+
+
+def test_waves_are_told_by_their_bands() -> None:
+    """Of both signs; of regular waves the motion."""
+    bands = {"surge": {"low_frequency": -0.12, "wave_frequency": 0.02}, "heave": {"wave_frequency": -0.05}}
+    tests = {"sea": ("irregular", "fit", {"surge": error(0.9), "bands": bands}), "wave": ("regular", "fit", HIGH)}
+    assert said(saved(tests, SURE)) == (
+        "1 test in irregular waves followed to 12 % of the low-frequency energy and 2.0-5.0 % of the wave-frequency "
+        "energy. 1 test in regular waves followed to 1.7 %. All 2 coefficients determined."
+    )
+    far = {"sea": ("irregular", "fit", {"bands": {"surge": {"low_frequency": 1.4}}})}
+    start = "The model does not follow sea: the low-frequency surge energy is off by 140 %. 1 test in irregular"
+    assert said(saved(far, SURE)).startswith(start)
+    farther = {"other": ("irregular", "fit", {"bands": {"heave": {"wave_frequency": 3.0}}})}
+    start = "The model does not follow sea and other: the wave-frequency heave energy of other is off by 300 %."
+    assert said(saved(far | farther, SURE)).startswith(start)
+
+
+def test_a_fit_to_offsets_alone_has_no_tests() -> None:
+    assert said(saved({}, SURE)) == "All 2 coefficients determined."
+    nothing = CalibrationSummary(True, {}, {}, (), (), (), ())
+    assert calibration_sentence(nothing) == "No coefficient fitted."
+
+
+def test_intervals_in_one_sentence() -> None:
+    all_known = IntervalSummary(True, "95 %", {"a": 0.1, "b": 0.0003}, ())
+    assert interval_sentence(all_known) == "All 2 coefficients known to 0.03-10 % (95 % intervals), the least well a."
+    some = IntervalSummary(False, "90 %", {"a": 0.1}, ("c", "d"))
+    assert interval_sentence(some) == (
+        "The fit did not converge. 1 of 3 coefficients known to 10 % (90 % intervals); not determined: c and d."
+    )
+    assert interval_sentence(IntervalSummary(True, "95 %", {}, ("a",))).startswith("None of 1 coefficient has a 95 % interval")
+
+
+def test_a_sweep_in_one_sentence() -> None:
+    extremes = {"surge": (-2.11, 12.34, "m"), "pitch": (-1.0, 4.2, "deg")}
+    expected = "All 48 runs done; extremes over the life: surge -2.11 to 12.3 m and pitch -1.00 to 4.20 deg."
+    assert sweep_sentence(SweepSummary(48, 48, extremes)) == expected
+    assert sweep_sentence(SweepSummary(48, 46, {})) == "46 of 48 runs done."
+    assert sweep_sentence(SweepSummary(1, 1, {})) == "1 run done."
+
+
+# --- findings
+
+
+def finding(test: str, message: str = "no zero", channel: str = "pitch") -> Finding:
+    return Finding("warning", f"{test}.csv", test, channel, None, message)
+
+
+def test_equal_warnings_are_said_once() -> None:
+    """Of one channel, over tests; others as before."""
+    several = [finding(f"t-{i}") for i in range(9)] + [finding("t-1", "a gap"), finding("t-1", channel="surge")]
+    many, gap, surge = grouped(several)
+    assert str(many) == f"9 tests ({', '.join(f't-{i}' for i in range(8))} and t-8), channel pitch: no zero"
+    assert str(gap) == str(several[9]) == "t-1.csv, test t-1, channel pitch: a gap" and str(surge) == str(several[10])
+    heads, rows = tables.findings(several)
+    assert heads == ("Test", "File", "Channel", "Warning")
+    assert rows == [("9 tests", "9 files", "pitch", "no zero"), ("t-1", "t-1.csv", "pitch", "a gap"),
+                    ("t-1", "t-1.csv", "surge", "no zero")]  # fmt: skip
+    (two,) = grouped([finding("a"), finding("b"), finding("b")])
+    assert str(two) == "tests a and b, channel pitch: no zero"
+
+
+# --- the truth
+
+
+def test_calibrated_values_beside_true_ones() -> None:
+    truth = {"a": 1.05, "b": 1.3, "c": 2.0, "d": 3.0, "e": 0.0}
+    parameters = SURE | {"c": coefficient(sd=None), "e": coefficient(0.01, 0.02)}
+    one = saved({}, parameters, truth=truth)
+    _, rows = tables.against(one)
+    assert [row[0] for row in rows] == list(truth) and rows[0][4:] == ("-4.8 %", "-0.5 sd")
+    assert rows[2][2:] == ("not determined", "", "–", "–") and rows[3][2] == "not calibrated" and rows[4][4] == "–"
+    assert tables.agreement_with_truth(one) == (
+        "2 of 5 coefficients lie within 2 standard deviations of the true values; the farthest is 3.0 away."
+    )
+
+
+# --- numbers and units
+
+
+@pytest.mark.parametrize(
+    ("ratios", "text"),
+    [([0.004, 0.017], "0.4-1.7 %"), ([0.0004, 0.017], "0.04-1.7 %"), ([0.017, 0.01701], "1.7 %"), ([0.0], "0 %"),
+     ([0.02, 1.4], "2-140 %"), ([5.0, 3e7], "more than 10000 %")],
+)  # fmt: skip
+def test_spans_of_ratios(ratios: list[float], text: str) -> None:
+    assert percent_span(ratios) == text
+
+
+def test_units_and_counts_as_people_read_them() -> None:
+    assert [readable_unit(u) for u in ("N s2/m2", "N m s2/rad2", "kg m2", "N/m5", "N s/m", "-", "m")] == [
+        "N s²/m²", "N m s²/rad²", "kg m²", "N/m⁵", "N s/m", "", "m"
+    ]  # fmt: skip
+    assert counted(1, "test") == "1 test" and counted(0, "test") == "0 tests" and counted(9, "test") == "9 tests"
