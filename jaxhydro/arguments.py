@@ -84,7 +84,7 @@ SWEEPING = "\n\n".join((
     "scatter: scatter.csv           # columns Hs,Tp,probability",
     "headings: [0, 30]              # deg",
     "seeds: 6",
-    "All keys, and what it writes: docs/sweeps.md.",
+    "All keys, and what it writes: docs/guide/sweeps.md.",
     "Exit status: 0 done; 2 the input is wrong; 3 runs failed, each with its reason in sweep.json; 130 stopped.",
 ))  # fmt: skip
 

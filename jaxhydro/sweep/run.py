@@ -161,7 +161,7 @@ def run_sweep(
     progress: Callable[[Progress], None] = lambda now: None,
 ) -> xr.Dataset:
     """Run a sweep, or what is left of it, and open its results, in the folder `out`, with all files of the command: see
-    docs/sweeps.md.
+    docs/guide/sweeps.md.
 
     `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart`
     forgets the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a
