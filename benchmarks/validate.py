@@ -48,7 +48,9 @@ INTRO = """\
 
 Made by `make validate` (`python -m benchmarks.validate`); do not edit. Every number is from a run. J is the sum over the
 records of RMSE over standard deviation, *z* an error in its own stated standard deviations.
+
 """
+SUMMARY = Path(__file__).parent / "evidence" / "summary.md"  # chosen by hand from the sections
 
 
 def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
@@ -129,7 +131,7 @@ def former() -> dict[str, str]:
 def write_page(parts: dict[str, str]) -> None:
     """The page: what falls short first, then the sections in order."""
     short = re.findall(r"^Falls short: (.*)\.$", "\n".join(parts.values()), re.MULTILINE)
-    head = INTRO + "\nWhat falls short:\n\n" + "".join(f"- {words}\n" for words in short or ["nothing that has a goal here"])
+    head = INTRO + SUMMARY.read_text() + "\nWhat falls short:\n\n" + "".join(f"- {words}\n" for words in short or ["nothing that has a goal here"])
     body = "".join(f"\n<!-- {name} -->\n{parts[name].strip()}\n" for name in SECTIONS if name in parts)
     PAGE.parent.mkdir(parents=True, exist_ok=True)
     PAGE.write_text(head + body)
