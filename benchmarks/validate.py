@@ -131,7 +131,8 @@ def former() -> dict[str, str]:
 def write_page(parts: dict[str, str]) -> None:
     """The page: what falls short first, then the sections in order."""
     short = re.findall(r"^Falls short: (.*)\.$", "\n".join(parts.values()), re.MULTILINE)
-    head = INTRO + SUMMARY.read_text() + "\nWhat falls short:\n\n" + "".join(f"- {words}\n" for words in short or ["nothing that has a goal here"])
+    points = "".join(f"- {words}\n" for words in short or ["nothing that has a goal here"])
+    head = f"{INTRO}{SUMMARY.read_text()}\nWhat falls short:\n\n{points}"
     body = "".join(f"\n<!-- {name} -->\n{parts[name].strip()}\n" for name in SECTIONS if name in parts)
     PAGE.parent.mkdir(parents=True, exist_ok=True)
     PAGE.write_text(head + body)
