@@ -67,7 +67,7 @@ def column_widths(columns: Sequence[Sequence[str]], room: int) -> list[int]:
     widths = [_longest(column) for column in columns]
     least = [min(_longest(word for cell in column for word in cell.split()), max(room // 2, 1)) for column in columns]
     while sum(widths) > room:
-        widest = max((i for i in range(len(widths)) if widths[i] > least[i]), key=lambda i: widths[i], default=None)
+        widest = max((i for i in range(len(widths)) if widths[i] > least[i]), key=lambda i: (widths[i], i), default=None)
         if widest is None:
             break
         widths[widest] -= 1
