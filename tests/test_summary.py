@@ -85,8 +85,8 @@ def test_waves_are_told_by_their_bands() -> None:
     bands = {"surge": {"low_frequency": -0.12, "wave_frequency": 0.02}, "heave": {"wave_frequency": -0.05}}
     tests = {"sea": ("irregular", "fit", {"surge": error(0.9), "bands": bands}), "wave": ("regular", "fit", HIGH)}
     assert said(saved(tests, SURE)) == (
-        "1 test in irregular waves followed to 12 % of the low-frequency energy and 2.0-5.0 % of the wave-frequency "
-        "energy. 1 test in regular waves followed to 1.7 %. All 2 coefficients determined."
+        "1 test in irregular waves: low-frequency energy off by 12 % and wave-frequency energy off by 2.0-5.0 %. "
+        "1 test in regular waves followed to 1.7 %. All 2 coefficients determined."
     )
     far = {"sea": ("irregular", "fit", {"bands": {"surge": {"low_frequency": 1.4}}})}
     start = "The model does not follow sea: the low-frequency surge energy is off by 140 %. 1 test in irregular"
