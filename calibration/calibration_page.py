@@ -30,11 +30,12 @@ def _parts(saved: Saved, folder: Path, source: str) -> Iterator[str]:
     sentence = calibration_sentence(summary)
     yield result_box(sentence) if summary.sound else warning_box(sentence)
     if not fitted.converged:
-        yield f"<p>{escape(UNCONVERGED.format('a calibration'))}</p>"
+        lost = "The values below are where the fit ended, not a calibration."
+        yield f"<p>{escape(lost if summary.not_followed else UNCONVERGED.format('a calibration'))}</p>"
     yield f"<p>{escape(_how(saved))}</p>"
     yield "<h2>Parameters</h2>"
-    lost = [i for i, one in enumerate(fitted.parameters.values()) if not one.identifiable]
-    yield table(*tables.parameters(saved), 2, 4, lost)
+    vague = [i for i, one in enumerate(fitted.parameters.values()) if not one.identifiable]
+    yield table(*tables.parameters(saved), 2, 4, vague)
     if saved.truth:
         yield f"<h2>Against the true coefficients</h2><p>{escape(tables.agreement_with_truth(saved))}</p>"
         heads, rows = tables.against(saved)

@@ -1,5 +1,9 @@
-"""Warnings about records, each said once: equal messages on the same channel are grouped over tests."""
+"""Warnings about records, each said once: equal messages on the same channel are grouped over tests.
 
+Messages on whole records are equal when they differ by their numbers alone: "its mean drifts by -0.149 to -0.0885 m".
+"""
+
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -7,6 +11,7 @@ from calibration.checks import Finding
 from calibration.formatting import counted
 from calibration.statements import listed
 
+NUMBER = re.compile(r"(?<![\w.-])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
 NAMED = 3  # tests that are named; of more the number is given
 
 
@@ -40,11 +45,19 @@ def grouped(findings: Iterable[Finding]) -> list[GroupedFinding]:
     """Findings in their order, equal messages of one channel together."""
     groups: dict[tuple[str, str], list[Finding]] = {}
     for one in findings:
-        groups.setdefault((one.channel, one.message), []).append(one)
-    return [
-        GroupedFinding(_unique(one.test for one in some), _unique(one.file for one in some), channel, message)
-        for (channel, message), some in groups.items()
-    ]
+        alike = NUMBER.sub("#", one.message) if one.time is None else one.message
+        groups.setdefault((one.channel, alike), []).append(one)
+    found = []
+    for (channel, _), some in groups.items():
+        tests, files = _unique(one.test for one in some), _unique(one.file for one in some)
+        found.append(GroupedFinding(tests, files, channel, _spanned([one.message for one in some])))
+    return found
+
+
+def _spanned(messages: list[str]) -> str:
+    """Messages that differ by their numbers alone as one, with the smallest and the largest of each number."""
+    columns = iter([sorted(set(column), key=float) for column in zip(*map(NUMBER.findall, messages), strict=True)])
+    return NUMBER.sub(lambda _: " to ".join(dict.fromkeys(((column := next(columns))[0], column[-1]))), messages[0])
 
 
 def _unique(names: Iterable[str]) -> tuple[str, ...]:

@@ -138,8 +138,8 @@ def _followed(one: Agreement) -> str:
     held = "held-out " if one.use == "holdout" else ""
     tests = counted(one.tests, f"{held}{KINDS.get(one.kind, 'test')}") + WATERS.get(one.kind, "")
     if one.bands:
-        parts = [f"{percent_span(values)} of the {BANDS.get(band, band)} energy" for band, values in one.bands.items()]
-        return f"{tests} followed to {listed(parts)}"
+        parts = [f"{BANDS.get(band, band)} energy off by {percent_span(values)}" for band, values in one.bands.items()]
+        return f"{tests}: {listed(parts)}"
     return f"{tests} followed to {percent_span(one.errors)}" if one.errors else f"{tests} not followed"
 
 

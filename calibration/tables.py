@@ -114,7 +114,9 @@ def bands(saved: Saved, source: str) -> Rows:
 def _signed(ratio: float | None) -> str:
     if ratio is None:
         return "–"
-    return f"{100 * ratio:+.0f} %" if 100 * ratio < LARGEST_PERCENT else f"> {LARGEST_PERCENT:g} %"
+    if 100 * ratio >= LARGEST_PERCENT:
+        return f"> {LARGEST_PERCENT:g} %"
+    return f"{whole:+d} %" if (whole := round(100 * ratio)) else "0 %"
 
 
 def outcome(saved: Saved) -> str:

@@ -28,12 +28,17 @@ def framed(title: str, by: str, body: Iterable[str], version: str) -> str:
 
 def result_box(text: str) -> str:
     """The result of a page in one sentence, in a box."""
-    return f'<p class="verdict">{escape(text)}</p>'
+    return f'<p class="verdict">{_spans(text)}</p>'
 
 
 def warning_box(text: str) -> str:
     """What a reader must know before anything else, in a red box."""
-    return f'<p class="warning">{escape(text)}</p>'
+    return f'<p class="warning">{_spans(text)}</p>'
+
+
+def _spans(text: str) -> str:
+    """Escaped text whose spans of numbers, such as 0.4-1.7 %, stay on one line."""
+    return re.sub(r"(?<![\w.-])[\d.]+(-[\d.]+)? %", r"<span class=short>\g<0></span>", escape(text))
 
 
 def listed(texts: Iterable[str]) -> str:
@@ -136,7 +141,7 @@ table { border-collapse: collapse; font-size: .92rem; overflow-wrap: break-word;
 th, td { text-align: left; padding: .2rem .9rem .2rem 0; border-bottom: 1px solid #e4e6ea; vertical-align: top; }
 th { border-bottom: 1px solid #9aa1ab; font-weight: 600; vertical-align: bottom; }
 th:last-child, td:last-child { padding-right: 0; }
-.number { text-align: right; font-variant-numeric: tabular-nums; } td.number, td.short { white-space: nowrap; }
+.number { text-align: right; font-variant-numeric: tabular-nums; } td.number, .short { white-space: nowrap; }
 details { margin: .6rem 0; } summary { cursor: pointer; color: #3c6591; }
 .figures { columns: 2; column-gap: 2rem; }
 figure { margin: 0 0 1.6rem; break-inside: avoid; } img { width: 100%; height: auto; }

@@ -1,5 +1,6 @@
 """Results in one sentence, and what is said once: from values to words, without a fit."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -85,8 +86,8 @@ def test_waves_are_told_by_their_bands() -> None:
     bands = {"surge": {"low_frequency": -0.12, "wave_frequency": 0.02}, "heave": {"wave_frequency": -0.05}}
     tests = {"sea": ("irregular", "fit", {"surge": error(0.9), "bands": bands}), "wave": ("regular", "fit", HIGH)}
     assert said(saved(tests, SURE)) == (
-        "1 test in irregular waves followed to 12 % of the low-frequency energy and 2.0-5.0 % of the wave-frequency "
-        "energy. 1 test in regular waves followed to 1.7 %. All 2 coefficients determined."
+        "1 test in irregular waves: low-frequency energy off by 12 % and wave-frequency energy off by 2.0-5.0 %. "
+        "1 test in regular waves followed to 1.7 %. All 2 coefficients determined."
     )
     far = {"sea": ("irregular", "fit", {"bands": {"surge": {"low_frequency": 1.4}}})}
     start = "The model does not follow sea: the low-frequency surge energy is off by 140 %. 1 test in irregular"
@@ -139,6 +140,22 @@ def test_equal_warnings_are_said_once() -> None:
                     ("t-1", "t-1.csv", "surge", "no zero")]  # fmt: skip
     (two,) = grouped([finding("a"), finding("b"), finding("b")])
     assert str(two) == "tests a and b, channel pitch: no zero"
+
+
+def test_warnings_that_differ_by_numbers_alone_are_one() -> None:
+    """With the spans of these; not where they are of an instant, nor where the digits are part of a name."""
+    each = (("a", -0.149), ("b", -0.0885), ("c", -0.108))
+    drifts = [finding(id, f"its mean drifts by {x:.3g} m over 100 s") for id, x in each]
+    (one,) = grouped(drifts)
+    assert one.message == "its mean drifts by -0.149 to -0.0885 m over 100 s" and one.tests == ("a", "b", "c")
+    spikes = [replace(finding(id, f"a spike at {t} s"), time=float(t)) for id, t in (("a", 10), ("b", 20), ("c", 20))]
+    assert [(one.message, one.tests) for one in grouped(spikes)] == [
+        ("a spike at 10 s", ("a",)), ("a spike at 20 s", ("b", "c"))
+    ]  # fmt: skip
+    shared = [finding(id, f"the fitted test surge-{n} has samples of it") for id, n in (("a", 1), ("b", 2))]
+    assert len(grouped(shared)) == 2
+    tiny = [finding(id, f"written to {x} s, 12.5 in all") for id, x in (("a", "1e-05"), ("b", "0.01"))]
+    assert grouped(tiny)[0].message == "written to 1e-05 to 0.01 s, 12.5 in all"
 
 
 # --- the truth

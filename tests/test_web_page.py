@@ -16,7 +16,7 @@ from test_uncertainty_page import CONTENT
 from calibration.discovery.outputs import write_diagnosis
 from calibration.outputs import write_calibration
 from calibration.report import write_report
-from calibration.web_page import SHORT, breakable, framed, table
+from calibration.web_page import SHORT, breakable, framed, result_box, table
 
 LONG = "a static offset (a force, or a sensor's zero) in roll; wrong mass properties; radiation memory in roll"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -37,7 +37,7 @@ def test_only_numbers_and_short_cells_stay_on_one_line() -> None:
         ' class=short data-label="Effect"', ' class=number data-label="Size"', ' class=short data-label="Why not"',
     ]  # fmt: skip
     rules = re.findall(r"([^{}]*)\{[^{}]*white-space: nowrap[^{}]*\}", framed("a", "b", [], "0"))
-    assert [selector.strip() for rule in rules for selector in rule.split(",")] == ["td.number", "td.short"]
+    assert [selector.strip() for rule in rules for selector in rule.split(",")] == ["td.number", ".short"]
 
 
 def test_a_table_of_many_columns_is_made_for_a_narrow_screen() -> None:
@@ -45,6 +45,12 @@ def test_a_table_of_many_columns_is_made_for_a_narrow_screen() -> None:
     two, three = table(["A", "B"], [["a", "b"]]), table(["A", "B", "C"], [["a", "b", "c"], ["d", "e", "f"]], muted=[1])
     assert "class=many" not in two and "<table class=many>" in three and three.count("<tr class=muted>") == 1
     assert '"A&quot;<"' not in table(['A"<'], [["a"]]) and 'data-label="A&quot;&lt;"' in table(['A"<'], [["a"]])
+
+
+def test_spans_of_numbers_stay_on_one_line() -> None:
+    assert result_box("2 to 0.4-1.7 %; a <b>") == (
+        '<p class="verdict">2 to <span class=short>0.4-1.7 %</span>; a &lt;b&gt;</p>'
+    )
 
 
 def test_long_labels_may_break_and_numbers_may_not() -> None:
