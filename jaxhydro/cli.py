@@ -113,6 +113,7 @@ def simulate(
     dt: arguments.Dt = sea_options.DEFAULTS["--dt"],
     calibration: arguments.Calibrated = None,
     step: arguments.Step = None,
+    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
 ) -> None:
     """Motions in irregular waves, regular waves and free decays: series, statistics and figures.
 
@@ -121,6 +122,8 @@ def simulate(
     """
     given = sea_options.by_option(ctx.params)
     if sea_options.is_campaign(platform):
+        if not figures:
+            raise options.wrong("--no-figures", "a campaign's comparison is drawn: leave it out, or name a platform")
         return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given))
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
     sea = sea_options.asked(given, options.finite(heading, "--heading"))
@@ -141,7 +144,7 @@ def simulate(
     from jaxhydro import command, sea_command
 
     model = _model(platform, calibration, diffraction, elements, heading if sea is not None or regular is not None else None)
-    job = command.Job(platform, out, duration, dt, offset, step)
+    job = command.Job(platform, out, duration, dt, offset, step, figures)
     stretch = sea_options.stretching(given)
     if not (command.run(model, job, regular, heading, stretch) if sea is None else sea_command.run(model, job, sea)):
         raise typer.Exit(NOT_CONVERGED)

@@ -13,7 +13,8 @@ from jaxhydro.loads import LOADS
 ROOT = Path(__file__).resolve().parents[1]
 
 LAYERS = (  # a module imports from layers below its own
-    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.transfer", "jaxhydro.waves.excitation"),
+    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.transfer", "jaxhydro.waves.excitation",
+     "jaxhydro.remarks"),
     ("jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta", "jaxhydro.waves.continuation"),
     ("jaxhydro.adams_bashforth", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
     ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
@@ -26,16 +27,18 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.loads.*",),
     ("jaxhydro.loads",),
     ("jaxhydro.model",),
-    ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response"),
+    ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response", "jaxhydro.table_ranges"),
     ("jaxhydro.simulate",),
     # files in, files out: the edge
     ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start", "jaxhydro.interrupts"),
     ("jaxhydro.problems",),
     ("jaxhydro.body_schema", "jaxhydro.files", "jaxhydro.interop.coefficients", "jaxhydro.interop.tables"),
     ("jaxhydro.interop.wamit", "jaxhydro.interop.capytaine", "jaxhydro.retardation"),
-    ("jaxhydro.interop.quadratic_transfer", "jaxhydro.interop.excitation"),
-    ("jaxhydro.interop", "jaxhydro.computed"),
-    ("jaxhydro.platform_schema", "jaxhydro.drag_laws"),
+    ("jaxhydro.interop.quadratic_transfer", "jaxhydro.interop.excitation", "jaxhydro.interop.hydrostatics"),
+    ("jaxhydro.interop.capytaine_waves",),
+    ("jaxhydro.interop",),
+    ("jaxhydro.platform_schema", "jaxhydro.drag_laws", "jaxhydro.table_checks"),
+    ("jaxhydro.computed",),
     ("jaxhydro.platform", "jaxhydro.plot"),
     ("jaxhydro.convergence",),
     ("jaxhydro",),
