@@ -19,6 +19,7 @@ from calibration.discovery.search import ROUNDS, Search
 from calibration.discovery.signs import in_words, reversed_channels, turned
 from calibration.fit import Progress
 from calibration.seas import NO_ZERO, Options
+from jaxhydro.interrupts import stopping
 from jaxhydro.model import Model
 
 ABSOLUTE = f"{NO_ZERO}, so that a sensor's zero elsewhere is taken for ballast, or for a force"
@@ -99,6 +100,7 @@ def diagnose(
         if not much(search, anatomy(search, states[-1])):  # what is unexplained may have bent them
             states.append(search.weighed(states[-1]))
     except KeyboardInterrupt as stopped:
+        stopping()
         stopped.partial = concluded()  # type: ignore[attr-defined]
         raise
     return concluded()
