@@ -32,18 +32,19 @@ def of_platform(model: Model, file: str) -> tuple[Finding, ...]:
 def check_tables(records: Sequence[Record], model: Model) -> tuple[Finding, ...]:
     """Findings on tests in waves that are outside a table of the model, one that a diagnosis may let in included.
 
-    An irregular sea with more than 1 % of its energy outside is warned of; a regular wave outside is an error.
+    An irregular sea with more than 1 % of its energy outside is warned of. A regular wave outside is an error, or a warning where
+    the table is a candidate's.
     """
-    ranges = table_ranges(model, candidates=True)
+    ranges, acting = table_ranges(model, candidates=True), table_ranges(model)
     return tuple(
         finding
         for record in records
         if ranges and record.kind in IN_WAVES and record.wave is not None and record.use != "ignore"
-        for finding in _of_record(record, ranges)
+        for finding in _of_record(record, ranges, acting)
     )
 
 
-def _of_record(record: Record, ranges: tuple[TableRange, ...]) -> Iterator[Finding]:
+def _of_record(record: Record, ranges: tuple[TableRange, ...], acting: tuple[TableRange, ...]) -> Iterator[Finding]:
     assert record.wave is not None
     kept = record.time >= record.time[0] + record.transient
     time = np.linspace(record.time[kept][0], record.time[-1], int(kept.sum()))
@@ -58,6 +59,10 @@ def _of_record(record: Record, ranges: tuple[TableRange, ...]) -> Iterator[Findi
             if one.outside(np.array([peak]))[0]:
                 expected = f"a wave within the {one.key} table, which has {one.words}"
                 message = f"a regular wave of {2 * math.pi / peak:.4g} s ({peak:.4g} rad/s, full scale)"
-                yield Finding("error", record.file, record.id, WAVE, None, message, expected)
+                if one in acting:
+                    yield Finding("error", record.file, record.id, WAVE, None, message, expected)
+                else:
+                    outside = f"{message} is outside the {one.key} table, a candidate, which has {one.words}"
+                    yield Finding("warning", record.file, record.id, WAVE, None, outside)
         elif (remark := one.remark(one.share_outside(omega, density))) is not None and remark.warning:
             yield Finding("warning", record.file, record.id, WAVE, None, remark.text)

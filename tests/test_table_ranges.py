@@ -144,6 +144,8 @@ def test_a_campaign_tells_waves_outside(tmp_path: Path) -> None:
     campaign(tmp_path, "irregular", 9.0)
     assert not [finding for finding in load_campaign(tmp_path).findings if "excitation table" in finding.message]
     campaign(tmp_path, "regular", 20.0)
+    assert any("is outside the excitation table, a candidate" in str(finding) for finding in load_campaign(tmp_path).findings)
+    platform(tmp_path, "excitation: {file: hull.3}")
     with pytest.raises(jh.InputError, match=r"expected a wave within the excitation table, .* found a regular wave of 20"):
         load_campaign(tmp_path)
     campaign(tmp_path, "regular", 9.0)

@@ -22,6 +22,7 @@ from jaxhydro.loads import Buoyancy
 from jaxhydro.problems import InputError
 from jaxhydro.retardation import realise
 from jaxhydro.statics import linearised
+from jaxhydro.sweep.run import _platform_text
 from jaxhydro.table_checks import LongWaves, asymmetry, excitation_column
 from jaxhydro.waves.dispersion import wavenumber
 
@@ -265,6 +266,14 @@ def test_an_out_file_has_the_volume_and_its_own_weight(tmp_path: Path) -> None:
     assert_allclose(restoring(model), [3.1 * RHO * G, 5.0 * RHO * G + weights, 6.0 * RHO * G + weights], rtol=1e-6)
 
 
+def test_a_sweeps_copy_finds_the_file_of_hydrostatics(tmp_path: Path) -> None:
+    hst(tmp_path, {(3, 3): 3.0, (4, 4): 15.0, (5, 5): 16.0})
+    own = model_of(tmp_path, "hydrostatics: {file: hull.hst}")
+    (store := tmp_path / "store").mkdir()
+    (store / "platform.yaml").write_text(_platform_text(str(tmp_path / "platform.yaml")), encoding="utf-8")
+    assert_allclose(restoring(jh.load_model(store / "platform.yaml")), restoring(own))
+
+
 def test_members_tell_whether_a_hst_file_has_the_weight(tmp_path: Path) -> None:
     members = ("members: [{name: column, shape: circ, d: 2.0, rA: [0, 0, -3], rB: [0, 0, 2]}]",
                "coefficients: {column: {Ca_t: 1.0}}")  # fmt: skip
@@ -468,3 +477,47 @@ def test_wrong_keys_are_told(tmp_path: Path, line: str, words: str) -> None:
     with pytest.raises(InputError) as caught:
         model_of(tmp_path, line)
     assert words in str(caught.value)
+
+
+# what else programs write
+
+
+def test_other_layouts_of_a_dataset_are_one(tmp_path: Path) -> None:
+    """Frequencies by period with omega beside them, radiating before influenced motion, a dimension of one density, infinite
+    depth: as other versions and other test matrices of Capytaine have it."""
+    def by_period(data: xr.Dataset) -> xr.Dataset:
+        data = data.assign_coords(period=("omega", 2 * np.pi / data.omega.values)).swap_dims(omega="period").reset_coords()
+        data = data.set_coords([name for name in ("omega", "rho", "g", "wave_direction") if name in data])
+        return data.transpose(..., "radiating_dof", "influenced_dof").assign(water_depth=np.inf)
+
+    path = changed(tmp_path, by_period)
+    assert_allclose(read_capytaine(path).damping, read_capytaine(CYLINDER).damping)
+    assert_allclose(read_capytaine_excitation(path, depth=50.0).force, read_capytaine_excitation(CYLINDER).force)
+    several = changed(tmp_path, lambda data: data.drop_vars("rho").expand_dims(rho=[1000.0]), "several.nc")
+    assert_allclose(read_capytaine(several).damping, read_capytaine(CYLINDER).damping)
+
+
+def test_another_depth_and_gravity_are_noted() -> None:
+    notes: list[str] = []
+    read_capytaine_excitation(CYLINDER, depth=20.0, gravity=1.62, notes=notes)
+    assert any("a depth of 50 m, the platform has 20 m" in note for note in notes)
+    assert any("a gravity of 9.81 m/s2, the platform has 1.62 m/s2" in note for note in notes)
+
+
+def test_fortrans_exponents_and_headers_are_read(tmp_path: Path) -> None:
+    """In all of WAMIT's files."""
+    wamit_files(tmp_path, "period")
+    rows = [f"{p} {q} 0 0 1 1.0E+00 0 1.0E+00 0" for p, q in ((8, 8), (8, 9), (9, 9))]
+    (tmp_path / "hull.12d").write_text("\n".join(rows), encoding="utf-8")
+    hst(tmp_path, {(3, 3): 3.0})
+    readers = {
+        "hull.1": lambda path: read_wamit(path, RHO).damping,
+        "hull.3": lambda path: read_excitation(path, RHO, G).force,
+        "hull.12d": lambda path: read_transfer(path, RHO, G).eigenvalue,
+        "hull.hst": lambda path: read_hydrostatics(path, RHO, G).stiffness,
+    }
+    for name, read in readers.items():
+        path = tmp_path / name
+        before, text = np.asarray(read(path)), path.read_text(encoding="utf-8")
+        path.write_text(f" WAMIT Numeric Output {name}\n{text.replace('E+', 'D+').replace('E-', 'D-')}", encoding="utf-8")
+        assert_allclose(np.asarray(read(path)), before)

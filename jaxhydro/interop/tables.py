@@ -55,9 +55,10 @@ def table_of(
 
     try:
         with open(path, encoding="utf-8", errors="replace") as lines:
-            head = next(lines, "").split()
-        header = bool(head) and not _is_number(head[0])
-        rows = np.loadtxt(path, ndmin=2, skiprows=int(header))
+            text = lines.read().splitlines()
+        header = bool(text) and bool(text[0].split()) and not _is_number(text[0].split()[0])
+        numbers = [line.replace("D", "E").replace("d", "e") for line in text[int(header) :]]  # Fortran's exponents
+        rows = np.loadtxt(numbers, ndmin=2) if any(line.strip() for line in numbers) else np.zeros((0, 0))
     except FileNotFoundError:
         raise wrong(f"a {ending} file", "no such file") from None
     except (OSError, UnicodeDecodeError) as error:
