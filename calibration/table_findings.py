@@ -32,7 +32,7 @@ def of_platform(model: Model, file: str) -> tuple[Finding, ...]:
 def check_tables(records: Sequence[Record], model: Model) -> tuple[Finding, ...]:
     """Findings on tests in waves that are outside a table of the model, one that a diagnosis may let in included.
 
-    An irregular sea with more than 1 % of its energy outside is warned of. A regular wave outside is an error, or a warning where
+    An irregular sea with more than 1 % of its energy outside is warned of. A regular wave outside is an error; a warning where
     the table is a candidate's.
     """
     ranges, acting = table_ranges(model, candidates=True), table_ranges(model)
