@@ -10,9 +10,9 @@ from jaxtyping import Float
 from jaxhydro.model import Model
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import Components
+from jaxhydro.waves.excitation import CLOSE
 from jaxhydro.waves.sea import AbstractSea, WaveSea
 
-CLOSE = 1e-6  # of a frequency: what is outside by less is inside
 WARNED = 0.01  # of a sea's energy outside a table, from which it is a warning
 SAID = 5e-5  # of a sea's energy outside a table, from which it is said at all
 WHAT = {
@@ -33,9 +33,9 @@ class TableRange(NamedTuple):
     def words(self) -> str:
         """The range in rad/s and in s."""
         if self.low <= 0:
-            return f"up to {self.high:.4g} rad/s (periods from {2 * math.pi / self.high:.4g} s)"
-        periods = f"{2 * math.pi / self.high:.4g} to {2 * math.pi / self.low:.4g} s"
-        return f"{self.low:.4g} to {self.high:.4g} rad/s (periods {periods})"
+            return f"up to {self.high:.5g} rad/s (periods from {2 * math.pi / self.high:.5g} s)"
+        periods = f"{2 * math.pi / self.high:.5g} to {2 * math.pi / self.low:.5g} s"
+        return f"{self.low:.5g} to {self.high:.5g} rad/s (periods {periods})"
 
     def outside(self, omega: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
         """Which frequencies (rad/s) the table has not."""

@@ -16,6 +16,7 @@ from jaxhydro.command import told_of_bed
 from jaxhydro.sweep import load_sweep
 from jaxhydro.sweep.run import prepared
 from jaxhydro.table_ranges import TableRange, outside_tables, table_ranges
+from jaxhydro.waves.excitation import Excitation
 
 PLATFORM = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")
 
@@ -44,9 +45,9 @@ def run(*words: object) -> tuple[int, str]:
 @pytest.mark.parametrize(
     ("line", "key", "band"),
     [
-        ("excitation: {file: hull.3}", "excitation", r"0.5 to 1.2 rad/s \(periods 5.236 to 12.57 s\)"),
-        ("drift: {file: hull.12d}", "drift", r"0.5 to 1.2 rad/s \(periods 5.236 to 12.57 s\)"),
-        ("radiation: {file: CYLINDER}", "radiation", r"up to 5 rad/s \(periods from 1.257 s\)"),
+        ("excitation: {file: hull.3}", "excitation", r"0.5 to 1.2 rad/s \(periods 5.236 to 12.566 s\)"),
+        ("drift: {file: hull.12d}", "drift", r"0.5 to 1.2 rad/s \(periods 5.236 to 12.566 s\)"),
+        ("radiation: {file: CYLINDER}", "radiation", r"up to 5 rad/s \(periods from 1.2566 s\)"),
     ],
 )
 def test_a_regular_wave_outside_a_table_is_refused(tmp_path: Path, line: str, key: str, band: str) -> None:
@@ -75,6 +76,10 @@ def test_a_table_that_does_not_act_refuses_nothing(tmp_path: Path) -> None:
 
 def test_the_ends_of_a_range_are_inside() -> None:
     one = TableRange("excitation", 0.5, 1.2)
+    table = Excitation.of(np.array([0.5, 1.2]), np.ones((6, 2)))
+    printed = 2 * math.pi / np.array([5.236, 12.566])  # as messages have them
+    assert not one.outside(printed).any() and (np.abs(np.asarray(table.at(printed))) > 0.99).all()
+    assert not np.asarray(table.at(np.array([0.49, 1.21]))).any()
     assert not one.outside(np.array([0.5, 0.5 - 1e-8, 0.9, 1.2, 1.2 + 1e-8])).any()
     assert one.outside(np.array([0.49, 1.21])).all()
     assert_allclose(one.share_outside(np.array([0.4, 0.6, 1.0, 1.3]), np.array([1.0, 2.0, 3.0, 4.0])), 0.5)
