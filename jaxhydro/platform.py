@@ -11,7 +11,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro import platform_schema as schema
-from jaxhydro.computed import tables_of, with_hydrostatics
+from jaxhydro.computed import tables_of
+from jaxhydro.computed_hydrostatics import with_hydrostatics
 from jaxhydro.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull

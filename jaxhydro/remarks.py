@@ -8,3 +8,8 @@ class Remark(NamedTuple):
 
     text: str
     warning: bool = False
+
+
+def as_warnings(texts: list[str]) -> tuple[Remark, ...]:
+    """Warnings of these texts."""
+    return tuple(Remark(text, warning=True) for text in texts)

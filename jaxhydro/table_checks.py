@@ -1,6 +1,8 @@
 """Whether tables of other programs fit together and to their platform, which tells a column that is another than declared."""
 
 import math
+from collections.abc import Sequence
+from itertools import combinations
 from typing import NamedTuple, get_args
 
 import numpy as np
@@ -17,7 +19,9 @@ LONG_SURGE = (0.5, 5.0)  # horizontal force of a long wave over mass times the w
 NO_SURGE = (0.25, 8.0)  # outside: no body in long waves
 VARIES = 0.05  # of added mass: what varies less says nothing about its damping
 UNRELATED, RELATED = 0.8, 0.4  # misfit of added mass and damping by Kramers and Kronig, over its variation
+DRIFTING, STILL = 0.3, 0.05  # of the largest drift: what the longest waves have, and the shortest not, in a wrong column
 WORDS = {"period": "a period (s)", "rad/s": "a frequency in rad/s", "Hz": "a frequency in Hz"}
+SAME = 1e-4  # of a number in the first column
 KINDS: tuple[str, ...] = get_args(By)
 
 
@@ -85,6 +89,24 @@ def _long_wave(
     return lift, push / (hull.mass * acceleration) if push > 0 else None, abs(force[2, shortest]) / hull.stiffness
 
 
+def drift_column(curve: Float[np.ndarray, " n"], by: str, source: str) -> list[str]:
+    """A warning where the drift of regular waves is that of another column than declared.
+
+    Long waves do not drift a body, short ones do, as they are sent back (Faltinsen 1990, Sea Loads on Ships and Offshore
+    Structures, chapter 5).
+
+    Args:
+        curve: Size of the horizontal force on the diagonal of the table, by ascending frequency as read.
+        by: What the columns were declared to be.
+        source: The file.
+    """
+    largest = float(curve.max(initial=0.0))
+    if not largest > 0 or curve[0] < DRIFTING * largest or curve[-1] > STILL * largest:
+        return []
+    way = "a frequency: `drift.by`: rad/s or Hz" if by == "period" else "a period: `drift.by`: period"
+    return [f"{source}: the first column is probably {way}. Read by {by}, the longest waves drift most and the shortest not"]
+
+
 def asymmetry(found: RadiationCoefficients, source: str) -> list[str]:
     """A warning where added mass or damping is far from symmetric, which both are without forward speed (Newman 1977, Marine
     Hydrodynamics, section 6.17)."""
@@ -148,9 +170,22 @@ def _misfit(found: RadiationCoefficients, space: Realisation) -> float | None:
     return float(np.median((theirs - ours).std(axis=0)[used] / varies[used]))
 
 
-def same_column(
-    radiation: Float[np.ndarray, " n"], radiation_by: str, excitation: Float[np.ndarray, " m"], excitation_by: str
-) -> bool:
-    """Whether two files of different columns, by declaration, have the same numbers in them."""
-    first, second = np.sort(as_column(radiation, radiation_by)), np.sort(as_column(excitation, excitation_by))
-    return radiation_by != excitation_by and len(first) == len(second) and bool(np.allclose(first, second, rtol=1e-4))
+class Column(NamedTuple):
+    """Frequencies (rad/s) of a file, and what its first column was declared to be."""
+
+    source: str
+    omega: Float[np.ndarray, " n"]
+    by: str
+
+
+def same_columns(columns: Sequence[Column]) -> list[str]:
+    """Warnings where two files have the same numbers in their first column, or one has some of the other's, and these were
+    declared to be different things."""
+    said = []
+    for one, other in combinations(columns, 2):
+        few, many = sorted((as_column(one.omega, one.by), as_column(other.omega, other.by)), key=len)
+        found = np.abs(many[:, None] / few - 1).min(axis=0) < SAME
+        if one.by != other.by and found.all():
+            files = f"{one.source} and {other.source} have the same first column"
+            said.append(f"{files}, and are read by {one.by} and by {other.by}: see `by`")
+    return said

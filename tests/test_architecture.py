@@ -37,6 +37,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.interop.capytaine_waves",),
     ("jaxhydro.interop",),
     ("jaxhydro.platform_schema", "jaxhydro.drag_laws", "jaxhydro.table_checks"),
+    ("jaxhydro.computed_hydrostatics",),
     ("jaxhydro.computed",),
     ("jaxhydro.platform", "jaxhydro.plot"),
     ("jaxhydro.convergence",),

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import jaxhydro as jh
 from jaxhydro import cli
-from jaxhydro.computed import hydrostatic_stiffness
+from jaxhydro.computed_hydrostatics import hydrostatic_stiffness
 from jaxhydro.interop.capytaine import read_capytaine
 from jaxhydro.interop.capytaine_waves import read_capytaine_excitation, read_capytaine_hydrostatics
 from jaxhydro.interop.excitation import read_excitation
@@ -378,7 +378,23 @@ def test_radiation_tells_a_period_from_a_frequency(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"the first column is probably a frequency: `radiation\.by`: rad/s or Hz"):
         model_of(tmp_path, "radiation: {file: hull.1}")
     mixed = model_of(tmp_path, "radiation: {file: hull.1, by: rad/s}", "excitation: {file: hull.3, by: Hz}")
-    assert any("have the same first column, and are read by Hz and by rad/s" in remark.text for remark in mixed.remarks)
+    assert any("have the same first column, and are read by rad/s and by Hz" in remark.text for remark in mixed.remarks)
+
+
+def test_drift_tells_a_period_from_a_frequency(tmp_path: Path) -> None:
+    """Short waves drift, long ones do not; a coarser table that has some of the other's numbers is of their column, too."""
+    omega = np.linspace(0.4, 3.2, 8)
+    curve = 0.5 * omega**4 / (1 + omega**4)
+    pairs = [(p, q, 0.5 * (a + b)) for p, a in zip(omega, curve) for q, b in zip(omega, curve) if p <= q]
+    rows = [[p, q, 0, 0, 1, t, 0, t, 0] for p, q, t in pairs]
+    np.savetxt(tmp_path / "hull.12d", rows, fmt="%.9e")
+    for by, said in (("period", "the first column is probably a frequency: `drift.by`: rad/s or Hz"), ("rad/s", "")):
+        model = model_of(tmp_path, f"drift: {{file: hull.12d, by: {by}}}")
+        assert [remark.text.partition(": ")[2].partition(". ")[0] for remark in model.remarks] == ([said] if said else [])
+    fine = np.linspace(0.4, 3.2, 15)
+    np.savetxt(tmp_path / "hull.3", [[w, 0, 3, 1.0, 0.0, 1.0, 0.0] for w in fine], fmt="%.9e")
+    model = model_of(tmp_path, "drift: {file: hull.12d, by: rad/s}", "excitation: {file: hull.3, by: Hz}")
+    assert any("have the same first column, and are read by Hz and by rad/s" in remark.text for remark in model.remarks)
 
 
 def test_coefficients_that_are_not_symmetric_are_told() -> None:
