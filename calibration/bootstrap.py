@@ -21,6 +21,7 @@ from calibration.identifiability import memory
 from calibration.information import inverse
 from calibration.likelihood import LEVEL, RCOND, Likelihood
 from calibration.residuals import Problem, Unknowns
+from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.problems import InputError
 from jaxhydro.problems import Problem as Wrong
 
@@ -234,6 +235,7 @@ def _drawn(
         weight = jnp.asarray(np.pad(weights, fill, mode="edge"))
         unknowns, change = _linear(likelihood, np.asarray(measured), np.asarray(weight)), np.full((CHUNK, 1), np.inf)
         for _ in range(STEPS):
+            stop_if_asked()
             before, unknowns = unknowns, _steps(fit.problem, unknowns, measured, weight, fit.ends, prior)
             change = np.abs(np.asarray(unknowns.shared - before.shared)) / scale
             if (change < SETTLED).all() or not np.isfinite(change).any():

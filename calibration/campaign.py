@@ -11,6 +11,7 @@ from calibration.checks import Finding, check_records
 from calibration.manifest import IN_WAVES, Manifest, platform_source, read_manifest
 from calibration.plausible import check_plausible
 from calibration.records import Record, read_series, records_of
+from calibration.table_findings import check_tables, of_platform
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
@@ -90,10 +91,12 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
                      for f in findings)
     records = tuple(record for record in records_of(manifest, series) if record.id not in faulty)
     campaign = Campaign(manifest, folder, platform, records, findings)
+    model = campaign.model
     try:
-        doubtful = check_plausible(records, campaign.model, manifest.zero is not None)
+        doubtful = check_plausible(records, model, manifest.zero is not None)
     except EquilibriumError as error:
         raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
+    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, grave)
     return replace(campaign, findings=(*findings, *doubtful))

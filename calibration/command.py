@@ -199,7 +199,12 @@ def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tup
 
 
 def simulate_campaign(
-    campaign: Path, out: Path, *, calibration: Path | None, asked: Mapping[str, Any] | None = None
+    campaign: Path,
+    out: Path,
+    *,
+    calibration: Path | None,
+    asked: Mapping[str, Any] | None = None,
+    figures: bool = True,
 ) -> bool:
     """Simulate a campaign's tests in their measured waves, compare, write and print; False where a motion grows without bound.
 
@@ -233,7 +238,7 @@ def simulate_campaign(
         return False
     source = None if calibration is None else str(calibration)
     about = {"campaign": loaded.manifest.name, "platform": loaded.platform.name, "calibration": source}
-    write_comparison(found, seas_results.document(found, options, about, used), out)
+    write_comparison(found, seas_results.document(found, options, about, used), out, figures)
     for note in found.notes:
         complain(f"warning: {note}")
     table("Waves", *seas_results.seas_table(found), left=3)

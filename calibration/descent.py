@@ -11,6 +11,8 @@ import lineax as lx
 import optimistix as optx
 from jaxtyping import PyTree
 
+from jaxhydro.interrupts import stop_if_asked
+
 
 class ClippedDescent(optx.AbstractDescent):
     """A descent whose step is shortened, not bent, to at most `longest` in its largest component.
@@ -106,6 +108,7 @@ def descend(
     state = eqx.tree_at(lambda s: s.search_state.step_size, state, jnp.asarray(trust))
     last, refused, accepted = math.inf, 0, 0
     for _ in range(PATIENCE):
+        stop_if_asked()
         unknowns, state, _ = _step(objective, unknowns, args, state)
         cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
         taken = int(state.num_accepted_steps) > accepted

@@ -17,6 +17,7 @@ from calibration.records import Record
 from calibration.residuals import Data, Problem, Unknowns, condensed, dominant_period, first_guess, gather
 from calibration.result import Calibration, TestFit
 from jaxhydro.environment import DOFS
+from jaxhydro.interrupts import stopping
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError
 from jaxhydro.problems import Problem as Wrong
@@ -195,6 +196,7 @@ def calibrate(
     try:
         run(fit)
     except KeyboardInterrupt:
+        stopping()
         fit.converged = False
         raise Interrupted(finish() if fit.iterations else None) from None
     return finish()

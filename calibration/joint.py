@@ -19,6 +19,7 @@ from calibration.seas import Options, Seas, moving_channels, sea_step, seas_of, 
 from calibration.statements import listed
 from calibration.still import pose_offsets, pose_periods
 from jaxhydro.environment import DOFS
+from jaxhydro.interrupts import stopping
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.statics import natural_modes
@@ -112,6 +113,7 @@ def calibrate_jointly(
     try:
         joint.run()
     except KeyboardInterrupt:
+        stopping()
         joint.converged = False
         raise Interrupted(finish() if joint.iterations else None) from None
     return finish()

@@ -13,6 +13,7 @@ from calibration.descent import descend
 from calibration.formatting import number
 from calibration.likelihood import LEVEL, Likelihood
 from calibration.residuals import Unknowns, condensed
+from jaxhydro.interrupts import stop_if_asked
 
 ROOT_STEP = 0.7  # of the signed root from one point of the grid to the next: three points to the 95 % level's 1.96
 LONGEST_ROOT = 1.5  # what is farther away is gone to in smaller steps
@@ -138,6 +139,7 @@ def _outward(
     root, x = 0.0, at
     step = ROOT_STEP * float(likelihood.deviation()[refit.index])
     while len(points) < FARTHEST and not (points and transform.at_bound(x)):
+        stop_if_asked()
         cost, there = refit(refit.moved(unknowns, sign * step), x + sign * step)
         before, root = root, float(np.sqrt(max(cost - lowest, 0.0) / refit.nu))
         if not root - before < LONGEST_ROOT:  # a long step that the others do not follow in a straight line

@@ -17,6 +17,7 @@ from scipy.linalg import cholesky, eigh
 from calibration.cores import cores
 from calibration.likelihood import LEVEL, Likelihood, coordinates
 from calibration.residuals import Problem, Unknowns
+from jaxhydro.interrupts import stop_if_asked, stopping
 
 DEEPEST = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
 LEAST = 50  # draws of every chain that are worth keeping where it is stopped
@@ -163,11 +164,13 @@ def _walked(
         try:
             while under_way:
                 over, under_way = wait(under_way, timeout=EVERY)
+                stop_if_asked()
                 for one in over:
                     one.result()
                 progress(sum(done), "finding the step" if min(done) < warmup else "drawing")
         except BaseException as stopped:
             stop.set()
+            stopping()
             pool.shutdown(cancel_futures=True)
             if not isinstance(stopped, KeyboardInterrupt) or min(map(len, rows)) < LEAST:
                 raise

@@ -21,6 +21,7 @@ from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, s
 from calibration.seas_results import in_bands
 from calibration.shooting_fit import ShootingFit
 from jaxhydro.environment import DOFS
+from jaxhydro.interrupts import stopping
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.loads.sea_state_law import reference_of as law_reference
 from jaxhydro.model import Model
@@ -102,6 +103,7 @@ def calibrate_in_waves(
     try:
         fit.run()
     except KeyboardInterrupt:
+        stopping()
         fit.converged = False
         if not fit.iterations:
             raise Interrupted(None) from None

@@ -17,6 +17,7 @@ from calibration.seas import Options, Seas, seas_of
 from calibration.stretches import sea_state
 from jaxhydro.body_schema import KeuleganCarpenter
 from jaxhydro.drag_laws import drag_laws_of, parameter_label, surface_number
+from jaxhydro.interrupts import stopping
 from jaxhydro.loads.keulegan_carpenter_drag import log_ratio
 from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference_of
 from jaxhydro.problems import InputError, Problem
@@ -167,6 +168,7 @@ def choose_law(
             seas.append(OneSea(id, record.use, state, one(f"{id} alone", alone, values)))
         finished = True
     except KeyboardInterrupt:
+        stopping()
         if not found:
             raise
     return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held, finished)

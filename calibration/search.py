@@ -17,6 +17,7 @@ from calibration.residuals import Problem
 from calibration.searches import METHODS, AbstractSearch, Budget, History, Stop, Task
 from calibration.searches.descents import releases
 from calibration.searches.objective import ranges
+from jaxhydro.interrupts import stopping
 from jaxhydro.problems import suggest
 
 FACTOR = 10.0  # a coefficient without bounds is searched from a tenth to ten times of what the platform declares
@@ -95,6 +96,7 @@ def run(task: Task, method: AbstractSearch, seed: int) -> Found:
     except Stop:
         ended = "reached" if task.best <= task.budget.objective else "budget"
     except KeyboardInterrupt:
+        stopping()
         ended = "interrupted"
     history, space = task.history(), task.problem.space
     found = None

@@ -17,14 +17,18 @@ from jaxhydro.files import staged
 from jaxhydro.plot import unit_of
 
 
-def write_comparison(found: Compared, content: dict[str, Any], folder: str | PathLike[str]) -> Path:
+def write_comparison(
+    found: Compared, content: dict[str, Any], folder: str | PathLike[str], figures: bool = True
+) -> Path:
     """Write all results into `folder` (made where absent); gives the folder. Those of an earlier comparison there are replaced
     when the new ones are complete. Raises InputError where the folder cannot be written."""
     folder = Path(folder)
     with staged(folder, lambda temporary: outdated(folder, temporary, COMPARISON)) as temporary:
-        from calibration import seas_plot
+        drawn = []
+        if figures:
+            from calibration import seas_plot
 
-        drawn = draw(seas_plot.figures(found.tests), temporary)
+            drawn = draw(seas_plot.figures(found.tests), temporary)
         write_json({**content, "figures": drawn}, temporary / COMPARISON)
         write_motion(dataset(found.tests, str(content["campaign"])), temporary)
     return folder

@@ -21,6 +21,7 @@ from calibration.saved import Saved, read_as, read_saved
 from calibration.uncertainty_outputs import Uncertainty, write_uncertainty
 from calibration.uncertainty_saved import SavedUncertainty, interval_sentence, intervals, other_ways, summary_of
 from jaxhydro.console import complain, counting, progress, say, table
+from jaxhydro.interrupts import stopping
 from jaxhydro.problems import InputError, Problem, suggest
 
 MOVED = 0.1  # standard deviations by which a refit may miss the file's values; of the same fit it is some 1e-8
@@ -185,4 +186,5 @@ def _sampled(likely: Likelihood, seed: int) -> Samples | None:
         try:
             return sample(likely, draws=DRAWS, warmup=WARMUP, chains=CHAINS, seed=seed, progress=count)
         except KeyboardInterrupt:
+            stopping()
             return None

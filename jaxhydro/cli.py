@@ -120,16 +120,17 @@ def simulate(
     dt: arguments.Dt = sea_options.DEFAULTS["--dt"],
     calibration: arguments.Calibrated = None,
     step: arguments.Step = None,
+    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
 ) -> None:
     """Motions in irregular waves, regular waves and free decays: series, statistics and figures.
 
     With a campaign, its tests in regular and irregular waves, in the waves that were measured; only --order, --stretching,
-    --diffraction, --cutoff and --calibration go with one.
+    --diffraction, --cutoff, --calibration and --no-figures go with one.
     """
     given = sea_options.by_option(ctx.params)
     if sea_options.is_campaign(platform):
         campaign_file(platform)
-        return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given))
+        return _simulate_campaign(Path(platform), out, calibration, sea_options.of_campaign(given), figures)
     options.check_platform(platform)
     offset, regular = options.releases(release or []), options.regular(wave_height, wave_period)
     sea = sea_options.asked(given, options.finite(heading, "--heading"))
@@ -149,7 +150,7 @@ def simulate(
     from jaxhydro import command, sea_command
 
     model = _model(platform, calibration, diffraction, elements, heading if sea is not None or regular is not None else None)
-    job = command.Job(platform, out, duration, dt, offset, step)
+    job = command.Job(platform, out, duration, dt, offset, step, figures)
     stretch = sea_options.stretching(given)
     if not (command.run(model, job, regular, heading, stretch) if sea is None else sea_command.run(model, job, sea)):
         raise typer.Exit(NOT_CONVERGED)
@@ -296,11 +297,13 @@ def _calibrate(
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any]) -> None:
+def _simulate_campaign(
+    campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any], figures: bool
+) -> None:
     out = options.results_folder(out, "comparison.json")
     from calibration.command import simulate_campaign
 
-    if not simulate_campaign(campaign, out, calibration=calibration, asked=asked):
+    if not simulate_campaign(campaign, out, calibration=calibration, asked=asked, figures=figures):
         raise typer.Exit(NOT_CONVERGED)
 
 

@@ -2,13 +2,14 @@
 
 import dataclasses
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
 import jaxhydro
 from jaxhydro.console import complain, say, table
@@ -20,19 +21,23 @@ from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
 from jaxhydro.plot import for_people, unit_of
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.remarks import Remark
+from jaxhydro.rotations import rotation
 from jaxhydro.simulate import default_step, free_decay
 from jaxhydro.statics import equilibrium, natural_modes, stable_modes
 from jaxhydro.strips import COLUMN_SLOPE
+from jaxhydro.table_ranges import regular_fault
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
 from jaxhydro.waves.sea_state import SeaState
 
 GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
+CLOSE = 1e-6  # of the depth: what is below the bed by less touches it
 
 
 class Job(NamedTuple):
     """What every simulation is told: the platform's name, where results go, duration and sampling (s), offset from rest (m,
-    rad) and largest step (s; None: chosen)."""
+    rad), largest step (s; None: chosen), and whether figures are drawn."""
 
     platform: str
     out: Path
@@ -40,6 +45,7 @@ class Job(NamedTuple):
     dt: float
     offset: dict[str, float]
     step: float | None
+    figures: bool = True
 
     @property
     def times(self) -> np.ndarray:
@@ -127,13 +133,34 @@ def finite(times: np.ndarray, position: np.ndarray) -> bool:
     return False
 
 
+def told_of_bed(model: Model, times: np.ndarray, position: np.ndarray) -> None:
+    """Print a warning where a motion takes the hull through the sea bed, which does not hold it and where there is no water."""
+    points = jnp.asarray(model.hull.extremities())
+    if not points.size:
+        return
+    lowest = position[:, 2] + np.asarray(_lowest(jnp.asarray(position), points))
+    below = -float(model.environment.depth) - lowest
+    if (below > CLOSE * float(model.environment.depth)).any():
+        first, most = times[np.argmax(below > 0)], below.max()
+        where = f"the hull goes {most:.3g} m through the sea bed, first at {first:.4g} s"
+        complain(f"warning: {where}: nothing holds it there, and the water's motion is that at the bed")
+
+
+@jax.jit
+def _lowest(position: Float[Array, "t 6"], points: Float[Array, "3 p"]) -> Float[Array, " t"]:
+    return jax.lax.map(lambda q: (rotation(q[3:])[2] @ points).min(), position)
+
+
 def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float, stretching: Stretching = "vertical") -> bool:
     """Simulate, write and print; False where the motion grows beyond all bounds. `heading` in deg.
 
     Raises InputError for a wave that cannot be, EquilibriumError where the platform does not rest.
     """
     sea, ramp, step = None, 0.0, job.step
+    print_remarks(model.remarks)
     if wave is not None:
+        if (fault := regular_fault(model, wave[1])) is not None:
+            raise InputError("--wave-period", [Problem("", *fault)])
         ramp = min(GROWTH * wave[1], 0.25 * job.duration)
         sea = _sea(model, wave, heading, ramp, stretching)
         step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
@@ -142,12 +169,13 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     position = np.asarray(free_decay(model, job.offset, times, sea=sea, step=step).position)
     if not finite(times, position):
         return False
+    told_of_bed(model, times, position)
     elevation = None
     if sea is not None:
         here = jnp.zeros((2, 1))
         elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, here)[0])(jnp.asarray(times)))
     motion = Motion.of(times, position, elevation)
-    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}")
+    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}", figures=job.figures)
     _print_motion(motion, wave, ramp)
     say(f"Results are in {job.out}")
     return True
@@ -159,6 +187,17 @@ def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, s
     except ValueError as error:
         expected = "a wave that does not break"
         raise InputError("--wave-height", [Problem("", expected, f"one too steep ({error})")]) from None
+
+
+def print_remarks(remarks: Iterable[Remark]) -> None:
+    """Print what is to be known of what was read, warnings first."""
+    remarks = list(remarks)
+    for one in remarks:
+        if one.warning:
+            complain(f"warning: {one.text}")
+    for one in remarks:
+        if not one.warning:
+            say(f"Note: {one.text}")
 
 
 def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> None:

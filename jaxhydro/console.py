@@ -14,6 +14,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from rich.table import Table
 from rich.text import Text
 
+from jaxhydro.interrupts import stop_if_asked
+
 EVERY = 10.0  # s between lines of progress that go to a file
 WIDTH = 120  # where there is no terminal to ask
 WIDE_GAP, NARROW_GAP = 3, 2  # characters between the columns of a table
@@ -94,6 +96,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
         stages: list[str] = []
 
         def note(now: Any) -> None:
+            stop_if_asked()
             if now.stage not in stages:
                 stages.append(now.stage)
                 shown.print(Text(": ".join(filter(None, (now.stage, _reached(now))))), soft_wrap=True)
@@ -110,6 +113,7 @@ def progress() -> Iterator[Callable[[Any], None]]:
 
         def update(now: Any) -> None:
             nonlocal furthest
+            stop_if_asked()
             furthest = max(furthest, now.fraction)
             bar.update(task, description=str(now.stage), completed=furthest, state=_reached(now))
 

@@ -15,7 +15,7 @@ from jaxhydro.plot import for_people, motion_figure, save, style, unit_of
 from jaxhydro.sea_results import in_order
 
 STATISTICS = "statistics.json"
-OF_SEAS = (STATISTICS, "figures/window.png", "figures/spectra.png")
+OF_SEAS = (STATISTICS, "figures/motion.png", "figures/window.png", "figures/spectra.png")
 HIGHEST = 0.2  # Hz, that spectra are drawn to
 
 
@@ -53,8 +53,10 @@ class SeaState(NamedTuple):
     results: Mapping[str, Any]
 
 
-def write_motion(motion: Motion, folder: Path, title: str, source: str, sea: SeaState | None = None) -> None:
-    """Write a motion's files into a folder."""
+def write_motion(
+    motion: Motion, folder: Path, title: str, source: str, sea: SeaState | None = None, figures: bool = True
+) -> None:
+    """Write a motion's files into a folder; without `figures` those of an earlier simulation there are taken away."""
     names = ["time_s", *(f"{dof}_{unit_of(dof)}" for dof in DOFS)]
     columns = [motion.time, *motion.values.T]
     about = {"units": "m; deg for roll, pitch and yaw", "long_name": "motion of the reference point"}
@@ -78,18 +80,28 @@ def write_motion(motion: Motion, folder: Path, title: str, source: str, sea: Sea
         np.savetxt(temporary / "motion.csv", rows, fmt="%.9g", delimiter=",", header=header, comments="")
         packed = {name: {"zlib": True, "complevel": 4} for name in data}
         dataset.to_netcdf(temporary / "simulated.nc", engine="h5netcdf", encoding=packed)
-        with style():
-            if sea is not None and motion.wave is not None:
-                _of_sea(motion, motion.wave, sea, temporary, title, source)
-            else:
-                figure = motion_figure(motion.time, dict(zip(DOFS, motion.values.T, strict=True)), motion.wave, title)
-                save(figure, temporary / "figures" / "motion.png")
+        if sea is not None:
+            _statistics(sea, temporary, title, source)
+        if figures:
+            _draw(motion, sea, temporary, title)
 
 
-def _of_sea(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, title: str, source: str) -> None:
-    """Statistics and figures."""
+def _draw(motion: Motion, sea: SeaState | None, folder: Path, title: str) -> None:
+    with style():
+        if sea is not None and motion.wave is not None:
+            _sea_figures(motion, motion.wave, sea, folder, title)
+        else:
+            figure = motion_figure(motion.time, dict(zip(DOFS, motion.values.T, strict=True)), motion.wave, title)
+            save(figure, folder / "figures" / "motion.png")
+
+
+def _statistics(sea: SeaState, folder: Path, title: str, source: str) -> None:
+    """Write statistics.json."""
     text = {"platform": title, "source": source, "sea": dict(sea.about), **sea.results}
     (folder / STATISTICS).write_text(json.dumps(text, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _sea_figures(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, title: str) -> None:
     time, channels, start = motion.time, in_order(motion.values, wave), sea.results["window"][0]
     second = sea.first_order if sea.about["order"] == 2 else None
     kept = {name: values[time >= start] for name, values in channels.items()}

@@ -3,6 +3,7 @@
 import signal
 import threading
 from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from types import FrameType
 
@@ -10,6 +11,7 @@ BOTH = (signal.SIGINT, signal.SIGTERM)
 SWALLOWING = "_xla_gc_callback"  # of JAX, called wherever memory is collected: what is raised in it is printed and lost
 LATER = 0.05  # s
 _asked = threading.Event()
+_pending = threading.Event()  # asked, and nobody has dealt with it yet
 
 
 @contextmanager
@@ -22,12 +24,14 @@ def ended_by_signals() -> Iterator[None]:
 
     def stop(number: int, frame: FrameType | None) -> None:
         _asked.set()
+        _pending.set()
         if frame is not None and frame.f_code.co_name == SWALLOWING:
             threading.Timer(LATER, signal.raise_signal, [number]).start()
             return
         raise KeyboardInterrupt
 
     _asked.clear()
+    _pending.clear()
     before = {one: signal.signal(one, stop) for one in BOTH}
     try:
         yield
@@ -49,6 +53,23 @@ def asked_to_stop() -> bool:
 
 
 def stop_if_asked() -> None:
-    """Raises KeyboardInterrupt where a signal has come and did not stop what was running."""
-    if asked_to_stop():
+    """Raise KeyboardInterrupt where a signal has come and did not stop what was running: for every iteration of a long loop."""
+    if _pending.is_set():
         raise KeyboardInterrupt
+
+
+def stopping() -> None:
+    """Say that a stop is being dealt with: the loops that finish up are not stopped again, unless by another signal."""
+    _pending.clear()
+
+
+@contextmanager
+def stoppable_threads(count: int) -> Iterator[Executor]:
+    """Threads whose jobs that have not begun are dropped where a stop or an error ends the block."""
+    pool = ThreadPoolExecutor(count)
+    try:
+        yield pool
+    except BaseException:
+        pool.shutdown(wait=True, cancel_futures=True)
+        raise
+    pool.shutdown()

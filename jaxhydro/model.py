@@ -12,6 +12,7 @@ from jaxtyping import Array, Float
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripShape
+from jaxhydro.remarks import Remark
 from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew, turned
 from jaxhydro.solve6 import accelerate
 from jaxhydro.strips import end_wetted
@@ -79,7 +80,8 @@ class Model(eqx.Module):
     "earth", those of the undisplaced one, as in OpenFAST. `waves_at`: "displaced", where the platform is, or "mean", at its
     reference position horizontally, as in OpenFAST with WaveDisp = 0 and ExctnDisp = 0: waves then do not tell where it has
     gone. `centripetal`: whether strips and ends feel that part of their acceleration, as water has it, or none, as in programs
-    whose added mass takes accelerations alone. `lag` and `bound` are those of `Cylinders`.
+    whose added mass takes accelerations alone. `lag` and `bound` are those of `Cylinders`. `remarks` are what is to be known of
+    the files that the platform was read from.
 
     The default replaces Ca in the excitation altogether: that is the theory, for a Ca that was tuned to the added mass, and
     the step from 1 + Ca to 2 which it makes is part of what a calibration in still water cannot know.
@@ -96,6 +98,7 @@ class Model(eqx.Module):
     centripetal: bool = eqx.field(static=True, default=True)
     lag: bool = eqx.field(static=True, default=True)
     bound: bool = eqx.field(static=True, default=True)
+    remarks: tuple[Remark, ...] = eqx.field(static=True, default=())
 
     @property
     def cylinders(self) -> Cylinders | None:

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 from os import PathLike
-from pathlib import Path
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -11,18 +10,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro import platform_schema as schema
-from jaxhydro.computed import computed_radiation
+from jaxhydro.computed import tables_of
+from jaxhydro.computed_hydrostatics import with_hydrostatics
 from jaxhydro.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
-from jaxhydro.interop.excitation import read_excitation
-from jaxhydro.interop.quadratic_transfer import read_transfer
 from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
-    ComputedExcitation,
-    DriftTransfer,
     EndDrag,
     EndInertia,
     LinearDamping,
@@ -56,10 +52,10 @@ def build(platform: schema.Platform) -> Model:
     body = RigidBody(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
     members = members_of(platform)
     hull = Hull.of(members)
-    loads: list[AbstractLoad] = [
-        Weight(mass=body.mass, centre=body.centre, values={}),
-        _declared_hydrostatics(buoyancy(members), platform, mass, float(centre[2])),
-    ]
+    geometry = buoyancy(members)
+    platform, coupling, remarks = with_hydrostatics(platform, geometry)
+    declared = _declared_hydrostatics(geometry, platform, mass, float(centre[2]))
+    loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre, values={}), declared, *coupling]
     loads += _mooring(platform)
     for name, matrix, load in (
         ("linear_damping", platform.linear_damping.matrix(), LinearDamping),
@@ -69,16 +65,8 @@ def build(platform: schema.Platform) -> Model:
         letter = "A" if name == "added_mass" else "B"
         if values := _entries(f"{name}.{letter}", matrix):
             loads.append(load(values))
-    if (declared := platform.radiation) is not None:
-        how = (str(declared.kind), water.density, declared.length or 1.0, declared.order, declared.tolerance)
-        loads.append(computed_radiation(Path(declared.file), *how, share=float(declared.use == "load")))
-    if (excited := platform.excitation) is not None:
-        table = read_excitation(excited.file, water.density, water.gravity, length=excited.length, heading=excited.heading)
-        loads.append(ComputedExcitation.of(table, share=float(excited.use == "load")))
-    if (drift := platform.drift) is not None:
-        file, newman = Path(drift.file), drift.approximation == "newman"
-        transfer = read_transfer(file, water.density, water.gravity, length=drift.length, heading=drift.heading, newman=newman)
-        loads.append(DriftTransfer.of(transfer, share=float(drift.use == "load")))
+    computed, said = tables_of(platform, declared)
+    loads += computed
     if values := _entries("stiffness.C", platform.stiffness.matrix()):
         loads.append(Stiffness(values, jnp.zeros(6), "stiffness"))
     if members:
@@ -101,7 +89,7 @@ def build(platform: schema.Platform) -> Model:
             EndDrag(pick(of_ends["Cd"])),
         ]
     forms = (platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal)
-    model = Model(environment, body, hull, tuple(loads), *forms)
+    model = Model(environment, body, hull, tuple(loads), *forms, remarks=(*remarks, *said))
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
 

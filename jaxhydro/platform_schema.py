@@ -12,9 +12,10 @@ from pydantic import AfterValidator, Discriminator, Field, RootModel, Tag, model
 
 from jaxhydro.body_schema import Coefficients, Inertia, Member, Part, RigidBody
 from jaxhydro.environment import STANDARD_GRAVITY
-from jaxhydro.interop.tables import same_heading
+from jaxhydro.interop.tables import By, same_heading
 from jaxhydro.problems import (
     Consistent,
+    Count,
     Faults,
     InputError,
     NonNegative,
@@ -165,74 +166,113 @@ class StiffnessMatrix(Schema):
         return self.stiffness.matrix() if isinstance(self.stiffness, Entries) else np.array(self.stiffness)
 
 
-class Hydrostatics(Schema):
-    """What replaces the values worked out from members and mass: m3, N/m, N m/rad (`_buoyancy`: without the weight)."""
+Body = Annotated[Count | Text, Field(description="a body's name, or in WAMIT's files its number from 1")]
 
+
+class OfFile(Schema):
+    """What another program computed, in a `file` beside the platform file: WAMIT's or Capytaine's `format`, and which `body`
+    of several it is. WAMIT's files are of ULEN `length` (m), and `by` says what their first column is."""
+
+    endings: ClassVar[dict[str, str]]  # of files, and the format that each means
+    wamit_only: ClassVar[tuple[str, ...]] = ("length", "by")
+
+    file: Text
+    format: Literal["wamit", "capytaine"] | None = None
+    length: Positive | None = None
+    body: Body | None = None
+
+    @property
+    def kind(self) -> str | None:
+        """The format, or that of the file's ending."""
+        return self.format or self.endings.get(Path(self.file).suffix.lower())
+
+    @model_validator(mode="after")
+    def _of_a_kind(self) -> Self:
+        if not self.file:
+            return self
+        if self.kind is None:
+            endings = list(self.endings)
+            said = f"neither {endings[0]} nor {endings[1]}" if len(endings) == 2 else f"none of {', '.join(endings)}"
+            raise Faults(Problem("format", f"wamit or capytaine, as the file's ending is {said}", "nothing"))
+        if self.kind == "capytaine":
+            for key in self.wamit_only:
+                if key in self.model_fields_set and (value := getattr(self, key)) is not None:
+                    what = "coefficients have dimensions" if key == "length" else "files say it"
+                    raise Faults(Problem(key, f"no {key}, as Capytaine's {what}", shown(value)))
+        if self.body is not None and isinstance(self.body, int) != (self.kind == "wamit"):
+            expected = "a number, as WAMIT's files have no names" if self.kind == "wamit" else "a body's name in quotes"
+            raise Faults(Problem("body", expected, shown(self.body)))
+        return self
+
+
+class Hydrostatics(OfFile):
+    """What replaces the values worked out from members and mass: m3, N/m, N m/rad (`_buoyancy`: without the weight). What is
+    not given is taken from the `file`, where there is one. `weight`: whether a .hst file's C44 and C55 include it."""
+
+    endings = {".hst": "wamit", ".out": "wamit", ".nc": "capytaine"}
+    wamit_only = ("length", "weight")
+
+    file: Literal[""] | Text = ""
     displaced_volume: Positive | None = None
     C33: NonNegative | None = None
     C44: Number | None = None
     C55: Number | None = None
     C44_buoyancy: Number | None = None
     C55_buoyancy: Number | None = None
+    weight: Literal["included", "excluded"] | None = None
 
     @model_validator(mode="after")
     def _said_once(self) -> Self:
         twice = [key for key in ("C44", "C55") if None not in (getattr(self, key), getattr(self, f"{key}_buoyancy"))]
         if twice:
             raise Faults(*(Problem(key, f"either {key} or {key}_buoyancy", "both") for key in twice))
+        alone = [key for key in ("format", "length", "body", "weight") if getattr(self, key) is not None and not self.file]
+        if alone:
+            raise Faults(*(Problem(key, "a `file` with it", "none") for key in alone))
+        if self.weight is not None and Path(self.file).suffix.lower() == ".out":
+            raise Faults(Problem("weight", "no weight, as an .out file says where its centre of mass is", shown(self.weight)))
         return self
 
 
-class Radiation(Schema):
-    """Radiation damping computed by another program: `file`, beside the platform file, as WAMIT's `.1` of ULEN `length` (m) or
-    Capytaine's `.nc`, followed to `tolerance` by a state space of at most `order` states. `use`: part of the model, or a
-    candidate that `diagnose` may find to be missing."""
+class Radiation(OfFile):
+    """Radiation damping computed by another program: WAMIT's `.1` or Capytaine's `.nc`, followed to `tolerance` by a state
+    space of at most `order` states. `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
 
-    file: Text
-    format: Literal["wamit", "capytaine"] | None = None
-    length: Positive | None = None
+    endings = {".1": "wamit", ".nc": "capytaine"}
+
+    by: By = "period"
     tolerance: Annotated[float, Field(strict=True, gt=0, lt=1)] = 0.01
     order: Annotated[int, Field(strict=True, ge=2, le=200)] = 40
     use: Literal["load", "candidate"] = "load"
-
-    @property
-    def kind(self) -> str | None:
-        """The format, or that of the file's ending."""
-        return self.format or {".1": "wamit", ".nc": "capytaine"}.get(Path(self.file).suffix.lower())
-
-    @model_validator(mode="after")
-    def _of_a_kind(self) -> Self:
-        if self.kind is None:
-            raise Faults(Problem("format", "wamit or capytaine, as the file's ending is neither .1 nor .nc", "nothing"))
-        if self.kind == "capytaine" and self.length is not None:
-            raise Faults(Problem("length", "no length, as Capytaine's coefficients have dimensions", shown(self.length)))
-        return self
 
 
 class Drift(Schema):
     """Difference-frequency second-order forces computed by another program: `file`, beside the platform file, as WAMIT's
     `.12d` of ULEN `length` (m), for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation.
-    `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+    `by` says what its first two columns are. `use`: part of the model, or a candidate that `diagnose` may find to be
+    missing."""
 
     file: Text
     length: Positive = 1.0
+    by: By = "period"
+    body: Count | None = None
     heading: Number = 0.0
     approximation: Literal["full", "newman"] = "full"
     use: Literal["load", "candidate"] = "load"
 
 
-class Excitation(Schema):
-    """First-order wave forces computed by another program, in place of the strips': `file`, beside the platform file, as
-    WAMIT's `.3` of ULEN `length` (m), for waves of a `heading` (deg). `use`: part of the model, or a candidate that `diagnose`
-    may find to be missing."""
+class Excitation(OfFile):
+    """First-order wave forces computed by another program, in place of the strips': WAMIT's `.3` or Capytaine's `.nc`, for
+    waves of a `heading` (deg). `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
 
-    file: Text
-    length: Positive = 1.0
+    endings = {".3": "wamit", ".nc": "capytaine"}
+
+    by: By = "period"
     heading: Number = 0.0
     use: Literal["load", "candidate"] = "load"
 
 
-BESIDE = ("radiation", "excitation", "drift")  # keys that name a file
+BESIDE = ("hydrostatics", "radiation", "excitation", "drift")  # keys that may name a file
 OF_WAVES = ("excitation", "drift")  # ... that is of waves of one heading
 
 
@@ -287,6 +327,10 @@ class Platform(Consistent):
     drag_speed: Literal["vector", "component"] = "vector"
     sea_state_laws: SeaStateLaws | None = None
 
+    def files(self) -> dict[str, str]:
+        """Files that the platform file names, by their key."""
+        return {key: one.file for key in BESIDE if (one := getattr(self, key)) is not None and one.file}
+
     def of_other_waves(self, heading: float) -> tuple[str, float] | None:
         """Key and heading (deg) of forces that were computed for waves of another heading than this."""
         tables = {f"{key}.heading": one.heading for key in OF_WAVES if (one := getattr(self, key)) is not None}
@@ -330,7 +374,7 @@ def load_platform(path_or_name: str | PathLike[str]) -> Platform:
     platform = validate(Platform, read_yaml(path_or_name, "platform"), name)
     folder = Path(path_or_name).absolute().parent
     beside = {
-        key: one.model_copy(update={"file": str(folder / one.file)})
-        for key in BESIDE if (one := getattr(platform, key)) is not None
+        key: getattr(platform, key).model_copy(update={"file": str(folder / getattr(platform, key).file)})
+        for key in platform.files()
     }  # fmt: skip
     return platform.model_copy(update=beside) if beside else platform

@@ -10,14 +10,16 @@ import numpy as np
 
 import jaxhydro
 from jaxhydro.analysis import power_spectrum
-from jaxhydro.command import Job, finite, print_rest
+from jaxhydro.command import Job, finite, print_remarks, print_rest, told_of_bed
 from jaxhydro.console import complain, say, table
 from jaxhydro.export import Motion, SeaState, write_motion
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.remarks import Remark
 from jaxhydro.sea_options import LEAST, Asked, Record
 from jaxhydro.sea_results import in_order, summary, tables
 from jaxhydro.simulate import free_decay, largest_step
+from jaxhydro.table_ranges import outside_tables
 from jaxhydro.waves.components import Components
 from jaxhydro.waves.irregular import separated_record, spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
@@ -49,9 +51,10 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
     if kept.sum() < LEAST:
         expected = f"{LEAST} samples or more after the transient of {transient:g} s"
         raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
-    print_rest(model, job.platform)
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)
+    print_remarks([*model.remarks, *outside(model, sea, about)])
+    print_rest(model, job.platform)
     step = largest_step(model, asked.cutoff) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}
     table("Sea", ("Property", "Value"), _about(about), left=2)
@@ -68,13 +71,14 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
         raise _impossible("--cutoff" if "cut the sea off" in str(error) else "--step", error) from None
     if not finite(times, position):
         return False
+    told_of_bed(model, times, position)
     say(f"Simulated in {clock.perf_counter() - since:.1f} s", stderr=True)
     motion = Motion.of(times, position, sea.gauge(times))
     first_order = motion.wave if asked.order == 1 else sea.gauge(times, order=1)
     channels = in_order(motion.values, np.asarray(motion.wave))
     results = summary(times[kept], {name: values[kept] for name, values in channels.items()}, about["peak_period"])
     state = SeaState(np.asarray(first_order), target, about, results)
-    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}", state)
+    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}", state, job.figures)
     of_statistics, of_bands = tables(results)
     span = f"from {times[kept][0]:g} to {times[-1]:g} s"
     table(f"Statistics, {span}", *of_statistics)
@@ -121,6 +125,13 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         if about["share_of_record"] < CUT:
             notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
     return Built(sea, about, target, notes)
+
+
+def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
+    """What is to be said of energy outside the model's tables, which goes into `about` as well."""
+    found = outside_tables(model, sea.components)
+    about |= {f"share_outside_{one.key}": share for one, share in found.items()}
+    return [remark for one, share in found.items() if (remark := one.remark(share)) is not None]
 
 
 def usual_cutoff(height: float, gravity: float) -> float:
@@ -202,7 +213,7 @@ def _about(about: dict[str, Any]) -> list[tuple[str, str]]:
     rows = []
     for name, value in about.items():
         shown = f"{value:.4g}" if isinstance(value, float) else str(value)
-        if name in ("share_of_record", "mismatch"):
+        if name in ("share_of_record", "mismatch") or name.startswith("share_outside"):
             shown = f"{value:.2%}"
         if isinstance(value, list):
             shown = ", ".join(f"{x:g}" for x in value)

@@ -17,6 +17,7 @@ from jaxhydro.model import Model, State
 from jaxhydro.response import Response
 from jaxhydro.rotations import rotation
 from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.table_ranges import check_waves
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
 from jaxhydro.waves.sea import AbstractSea, StillWater
@@ -96,13 +97,15 @@ def simulate(
     nothing; diffrax's reverse gradient is the cheaper one (`make bench` prints the ratios).
     `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
 
-    Raises ValueError for times that do not increase, EquilibriumError where the platform does not rest.
+    Raises ValueError for times that do not increase and for regular waves outside a table of the model, EquilibriumError where
+    the platform does not rest.
     """
     times = jnp.asarray(times, float)
     if times.ndim != 1 or times.shape[0] < 2 or not (np.diff(np.asarray(times)) > 0).all():
         raise ValueError("times must be at least two increasing numbers")
     sea = StillWater() if sea is None else sea
     irregular = isinstance(sea, IrregularSea)
+    check_waves(model, sea)
     method = ("ab4" if irregular else "tsit5") if method is None else method
     if step is None:
         step = min(SEA_STEP, memory_step(model, method)) if irregular else default_step(model, method)

@@ -18,6 +18,7 @@ import jaxhydro as jh
 from calibration.applied import applied
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Diagnosis
+from calibration.discovery.saved import read_diagnosis
 from calibration.fit import Interrupted, Progress
 from calibration.outputs import write_calibration
 from calibration.report import write_report
@@ -109,9 +110,27 @@ def test_what_does_not_converge(searching, outcome, status, said, written, tmp_p
     assert said in run("diagnose", DEMO, "--no-figures", "--out", tmp_path / "o", status=status)
     assert (tmp_path / "o").exists() == written and not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
     if written:
-        assert json.loads((tmp_path / "o" / "diagnosis.json").read_text())["augmented"]["converged"] is False
+        content = json.loads((tmp_path / "o" / "diagnosis.json").read_text())
+        assert content["augmented"]["converged"] is False and content["complete"] is (outcome != "stopped")
         marked = "Stopped by the user before it was done" if outcome == "stopped" else "did not converge"
         assert marked in Page(write_report(tmp_path / "o").read_text()).text
+
+
+def test_a_stopped_search_does_not_say_that_nothing_is_missing(searching, result: Diagnosis, tmp_path: Path) -> None:
+    """Only a whole one does; what a stopped one had found stays found."""
+    run_with = {"nothing_missing": replace(result, verdict="nothing_missing", effects=()), "found": result}
+    for verdict, partial in run_with.items():
+        stopped = Interrupted(None)
+        stopped.partial = partial  # type: ignore[assignment]
+        searching["it"] = stopped
+        text = run("diagnose", DEMO, "--no-figures", "--out", tmp_path / verdict, status=3)
+        saved = read_diagnosis(tmp_path / verdict)
+        assert not saved.complete and saved.missing.verdict == ("found" if verdict == "found" else "unexplained")
+        ended = "found until the search was stopped" if verdict == "found" else "The search did not come to its end"
+        assert ended in text and "nothing that the declared model lacks" not in text
+    searching["it"] = result
+    run("diagnose", DEMO, "--no-figures", "--out", tmp_path / "whole")
+    assert read_diagnosis(tmp_path / "whole").complete
 
 
 def test_results_do_not_replace_those_of_other_commands(searching, result: Diagnosis, tmp_path: Path) -> None:

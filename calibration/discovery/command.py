@@ -61,8 +61,13 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
 
 
 def unfinished(partial: Diagnosis) -> Diagnosis:
-    """What was reached when the user stopped the search, marked as not converged."""
-    return replace(partial, augmented=replace(partial.augmented, converged=False), notes=(words.STOPPED, *partial.notes))
+    """What was reached when the user stopped the search, marked as not complete and not converged.
+
+    That nothing is missing is for a whole search to say: the verdict of a stopped one is then "unexplained".
+    """
+    verdict = "unexplained" if partial.verdict == "nothing_missing" else partial.verdict
+    fitted, notes = replace(partial.augmented, converged=False), (words.STOPPED, *partial.notes)
+    return replace(partial, augmented=fitted, notes=notes, verdict=verdict, complete=False)
 
 
 def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:

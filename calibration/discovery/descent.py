@@ -13,6 +13,7 @@ import numpy as np
 from calibration.discovery.linear import cost_of, linearly, solve, weights
 from calibration.discovery.looks import Look, Place, Prior
 from calibration.discovery.study import LOST, Study
+from jaxhydro.interrupts import stop_if_asked
 
 LONGEST = 0.7  # largest step of a coordinate that is a logarithm
 LEAST = 1e-4  # of what is minimised: a step that gains less is one too many, however many samples there are
@@ -85,6 +86,7 @@ def fit(
         return Reached(look, 0, False)
     damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
     while taken < iterations and not settled:
+        stop_if_asked()
         taken += 1
         step, own = bounded(study, look, used, prior, damping)
         scale = min(1.0, LONGEST / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))

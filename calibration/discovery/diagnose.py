@@ -20,6 +20,7 @@ from calibration.discovery.signs import in_words, reversed_channels, turned
 from calibration.fit import Progress
 from calibration.grouped import grouped
 from calibration.seas import NO_ZERO, Options
+from jaxhydro.interrupts import stopping
 from jaxhydro.model import Model
 
 ABSOLUTE = f"{NO_ZERO}, so that a sensor's zero elsewhere is taken for ballast, or for a force"
@@ -100,6 +101,7 @@ def diagnose(
         if not much(search, anatomy(search, states[-1])):  # what is unexplained may have bent them
             states.append(search.weighed(states[-1]))
     except KeyboardInterrupt as stopped:
+        stopping()
         stopped.partial = concluded()  # type: ignore[attr-defined]
         raise
     return concluded()

@@ -50,6 +50,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
         **({} if diagnosis.strips is None else {"strips": diagnosis.strips.model_dump()}),
         **({} if diagnosis.seas is None else {"seas": asdict(diagnosis.seas)}),
         "jaxhydro": before["jaxhydro"],
+        "complete": diagnosis.complete,
         "baseline": before["baseline"],
         "missing": {
             "verdict": diagnosis.verdict,

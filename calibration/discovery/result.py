@@ -161,7 +161,8 @@ class Diagnosis:
     `anatomy_after` are the residuals of both, motion by motion; `unexplained_share`, of the error's energy above the floor
     that is left at the end, `signature` what is known of it in words; `next_test` what to measure next. `latent`, where the
     verdict is "unexplained", are the forces that would make the model follow the records. `strips` is how strips are taken,
-    where the platform file does not say so, and `seas` how waves are made and act: both are part of what was found.
+    where the platform file does not say so, and `seas` how waves are made and act: both are part of what was found. `complete`
+    is False where the search was stopped before its end.
     """
 
     campaign: str
@@ -181,3 +182,4 @@ class Diagnosis:
     latent: tuple[LatentForce, ...] = ()
     strips: Strips | None = None
     seas: Options | None = None
+    complete: bool = True

@@ -95,6 +95,7 @@ class SavedDiagnosis(Saved):
 
     augmented: Fitted
     missing: Missing
+    complete: bool = True
     anatomy: Anatomy = Field(default_factory=Anatomy)
     next_test: str = ""
     notes: list[str] = Field(default_factory=list)

@@ -1,7 +1,7 @@
 """A campaign's records and a model with every candidate at its null: looked at from any place along any few parameters."""
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -26,6 +26,7 @@ from calibration.records import Record
 from calibration.residuals import Problem
 from calibration.seas import Options, moving
 from calibration.transforms import LogInterval, Scaled
+from jaxhydro.interrupts import stoppable_threads
 from jaxhydro.model import Model
 
 LOST = 1e100  # motions and slopes that are as large are of a simulation that overflows: nothing is known there
@@ -216,7 +217,7 @@ class Study:
             found = np.asarray(sea_residuals(record, x, self._steps(record, seas)))
             return found.reshape(-1, record.measured.shape[-1])
 
-        with ThreadPoolExecutor(cores()) as pool:
+        with stoppable_threads(cores()) as pool:
             return [None if job is None else job.result() for job in self._parts(pool, of_decays, of_sea, seas)]
 
     def _parts(self, pool: Executor, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: Seen) -> list[Any]:
@@ -233,7 +234,7 @@ class Study:
     def look(self, place: Place, active: Sequence[int]) -> Look:
         """Residual and slopes at a place, of the decays and the seas with a fitted test."""
         some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
-        with ThreadPoolExecutor(cores()) as pool:
+        with stoppable_threads(cores()) as pool:
             jobs = [self._slopes(pool, place, mine) for mine in some]
             looks = [self._look(place, mine, [None if job is None else job.result() for job in one])
                      for mine, one in zip(some, jobs)]  # fmt: skip

@@ -28,6 +28,7 @@ NAMES = {
     "potential_flow": "what the platform's tables of potential flow have",
 }
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
+UNFINISHED = "The search did not come to its end: until then nothing was found that the declared model lacks."
 WHERE = "in the motion and at the frequencies where the error falls most"
 CLEAR = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
 SMALL = 0.25  # of the value it began from: a deviation below is small, whatever the value
@@ -115,11 +116,14 @@ def verdict(saved: SavedDiagnosis) -> str:
     missing = saved.missing
     named = [(called(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
     names, doubted = (several([name for name, sure in named if sure is kind]) for kind in (True, False))
+    if not saved.complete and not named:
+        return UNFINISHED
     if missing.verdict == "found":
         more = f" {capital(doubted)} may stand for something else (see below)." if doubted else ""
-        return f"The declared model lacks {names}: {fall(saved)}.{more}"
+        until = "" if saved.complete else " This is what was found until the search was stopped."
+        return f"The declared model lacks {names}: {fall(saved)}.{more}{until}"
     if not saved.converged and not named:
-        return "The search did not come to its end: until then nothing was found that the declared model lacks."
+        return UNFINISHED
     if missing.verdict == "nothing_missing":
         return "These records show nothing that the declared model lacks: no effect that was tried survives."
     lacks = "The declared model lacks something, and no effect that was tried explains it"

@@ -14,6 +14,7 @@ from calibration.fit import Progress, scored
 from calibration.records import Record
 from calibration.residuals import Problem
 from calibration.searches.objective import coordinates, objectives
+from jaxhydro.interrupts import stop_if_asked
 
 BAD = 1e6  # J of a simulation that is no number
 TOGETHER = 36  # points simulated at once at most: beyond, a point costs no less, and the arrays leave the cache
@@ -107,6 +108,7 @@ class Task:
             self._compiled.add(batch)
         found = np.full(len(x), BAD)
         for at in range(0, len(x), batch):
+            stop_if_asked()
             points = x[at : at + batch]
             values = run(points)
             found[at : at + batch] = np.where(np.isfinite(values), np.minimum(np.nan_to_num(values), BAD), BAD)

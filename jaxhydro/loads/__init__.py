@@ -15,6 +15,7 @@ from jaxhydro.loads.end_drag import EndDrag
 from jaxhydro.loads.end_inertia import EndInertia
 from jaxhydro.loads.hidden_oscillator import HiddenOscillator
 from jaxhydro.loads.high_pass_drag import HighPassDrag
+from jaxhydro.loads.hydrostatic_coupling import HydrostaticCoupling
 from jaxhydro.loads.hydrostatics import Buoyancy
 from jaxhydro.loads.hysteresis import Hysteresis
 from jaxhydro.loads.keulegan_carpenter_drag import KeuleganCarpenterDrag
@@ -45,6 +46,7 @@ from jaxhydro.loads.weight import Weight
 LOADS: dict[str, type[AbstractLoad]] = {
     "weight": Weight,
     "buoyancy": Buoyancy,
+    "hydrostatic_coupling": HydrostaticCoupling,
     "mooring_lines": MooringLines,
     "stiffness": Stiffness,
     "linear_damping": LinearDamping,

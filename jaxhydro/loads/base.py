@@ -142,6 +142,10 @@ class AbstractLoad(eqx.Module):
         """What of first order an irregular sea has to be prepared with for it; None: nothing."""
         return None
 
+    def covers(self) -> tuple[str, float, float] | None:
+        """Key in the platform file, lowest and highest frequency (rad/s) of what was computed for it; None: it has no table."""
+        return None
+
     def replaces(self) -> Float[Array, ""] | None:
         """Share of what accelerations and pressures of the water do to strips and ends that it stands for; None: none."""
         return None

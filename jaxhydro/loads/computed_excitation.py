@@ -41,6 +41,9 @@ class ComputedExcitation(AbstractLoad):
     def excites(self) -> Excitation:
         return self.excitation
 
+    def covers(self) -> tuple[str, float, float]:
+        return "excitation", float(self.excitation.omega[0]), float(self.excitation.omega[-1])
+
     def replaces(self) -> Float[Array, ""]:
         return self.values[LABEL]
 

@@ -1,7 +1,9 @@
 """Fluid memory of computed radiation damping, all motions coupled."""
 
+import math
 from typing import Any, ClassVar
 
+import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -25,26 +27,33 @@ class ComputedRadiation(AbstractLoad):
     tuned to slow motion counts part of it twice. Linear: memory of the mean wetted hull, moving with the body. Before t = 0 the
     platform was at rest.
 
-    Its label is `computed_radiation.share`. A, B and C are constants: another hull has others.
+    Its label is `computed_radiation.share`. A, B and C are constants: another hull has others. `highest` (rad/s) is the last
+    frequency that the coefficients were computed at.
     """
 
     values: dict[str, Float[Array, ""]]
     rates: Float[Array, "n n"]
     drive: Float[Array, "n 6"]
     output: Float[Array, "6 n"]
+    highest: float = eqx.field(static=True, default=math.inf)
     source: ClassVar[str] = "Cummins 1962, Schiffstechnik 9, 101-109"
 
     @classmethod
-    def of(cls, rates: np.ndarray, drive: np.ndarray, output: np.ndarray, share: float = 0.0) -> "ComputedRadiation":
+    def of(
+        cls, rates: np.ndarray, drive: np.ndarray, output: np.ndarray, share: float = 0.0, highest: float = math.inf
+    ) -> "ComputedRadiation":
         """With a state space, and a share of it: none is the null."""
-        space = (jnp.asarray(matrix, float) for matrix in (rates, drive, output))
-        return cls({"computed_radiation.share": jnp.asarray(share, float)}, *space)
+        a, b, c = (jnp.asarray(matrix, float) for matrix in (rates, drive, output))
+        return cls({"computed_radiation.share": jnp.asarray(share, float)}, a, b, c, highest)
 
     def rest(self) -> Float[Array, " n"]:
         return jnp.zeros(self.rates.shape[-1])
 
     def fastest(self) -> float:
         return float(np.abs(np.linalg.eigvals(np.asarray(self.rates))).max())
+
+    def covers(self) -> tuple[str, float, float] | None:
+        return None if math.isinf(self.highest) else ("radiation", 0.0, self.highest)  # B(0) = 0 is known
 
     def about(self, label: str) -> Parameter:
         return SHARE

@@ -37,6 +37,9 @@ class DriftTransfer(AbstractLoad):
     def drifts(self) -> Transfer:
         return self.transfer
 
+    def covers(self) -> tuple[str, float, float]:
+        return "drift", float(self.transfer.omega[0]), float(self.transfer.omega[-1])
+
     def through(self, sea: AbstractSea) -> AbstractSea:
         sea = sea.direct() if isinstance(sea, IrregularSea) else sea
         return replace(sea, transfer=self.transfer) if isinstance(sea, WaveSea) else sea

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from jaxhydro.command import print_rest, print_used
+from jaxhydro.command import print_remarks, print_rest, print_used
 from jaxhydro.console import complain, counting, say, table
 from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
 from jaxhydro.problems import InputError, Problem
@@ -62,6 +62,7 @@ def _sweep(
     made: Prepared, out: Path, workers: int | None, batch: int | None, restart: bool, retry_failed: bool, scheduler: str | None,
     workers_there: int,
 ) -> bool:  # fmt: skip
+    print_remarks(made.remarks)
     resumed = opened(out, made, restart)
     numbers = to_do(out, retry_failed)
     _print_plan(made)

@@ -8,9 +8,11 @@ from jaxtyping import Float
 
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.model import Model
+from jaxhydro.remarks import Remark
 from jaxhydro.sea_command import CUT, usual_cutoff
 from jaxhydro.sweep.batch import Setup, reason_of, sea_of
 from jaxhydro.sweep.cases import Plan, Run, State, named
+from jaxhydro.table_ranges import TableRange, table_ranges
 from jaxhydro.waves.irregular import harmonics, repeat_period
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
 
@@ -19,10 +21,16 @@ AT_ONCE = 256  # sea states whose spectra are in memory
 
 def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
     """Of every case: share of its spectrum's variance, Hs^2/16, from `low` to `cutoff`, on the frequencies of its seas."""
+    step = 2 * np.pi / repeat_period(plan.duration)
+    found = {state: float(density.sum()) * step / (state[0] ** 2 / 16) for state, _, density in _spectra(plan)}
+    return np.array([found[case.state] for case in plan.cases])
+
+
+def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float[np.ndarray, " w"]]]:
+    """Every sea state, the frequencies (rad/s) of its seeds in the band and its spectrum there (m2 s/rad)."""
     period = repeat_period(plan.duration)
     first, last = harmonics(plan.low, plan.cutoff, period)
     omega = jnp.asarray(2 * np.pi / period * np.arange(first, last + 1))
-    found: dict[State, float] = {}
     states = list(dict.fromkeys(case.state for case in plan.cases))
     for i in range(0, len(states), AT_ONCE):
         some = states[i : i + AT_ONCE]
@@ -32,9 +40,25 @@ def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
             density = jonswap(omega, hs, tp, jnp.where(jnp.isnan(asked), peak_enhancement(hs, tp), asked))
         else:
             density = pierson_moskowitz(omega, hs, tp)
-        share = density.sum(axis=1) * 2 * np.pi / period / (hs[:, 0] ** 2 / 16)
-        found |= dict(zip(some, share.tolist()))
-    return np.array([found[case.state] for case in plan.cases])
+        yield from zip(some, [np.asarray(omega)] * len(some), np.asarray(density))
+
+
+def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Remark]:
+    """What is to be said of waves outside the model's tables, of the sea state in which most of the energy is."""
+    ranges = table_ranges(model)
+    if not ranges:
+        return
+    shares: dict[TableRange, dict[State, float]] = {one: {} for one in ranges}
+    for state, omega, density in _spectra(plan):
+        if state not in failing:
+            for one in ranges:
+                shares[one][state] = one.share_outside(omega, density)
+    for one, found in shares.items():
+        said = {state: remark for state, share in found.items() if (remark := one.remark(share, named(state))) is not None}
+        if said:
+            state = max(said, key=found.__getitem__)
+            others = f" (so or less {_in(len(said), len(found))})" if len(found) > 1 else ""
+            yield said[state]._replace(text=said[state].text + others)
 
 
 def impossible(setup: Setup) -> dict[State, str]:

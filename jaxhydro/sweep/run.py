@@ -16,14 +16,15 @@ from jaxtyping import Float
 
 from jaxhydro.command import calibration_file
 from jaxhydro.files import check_folder
-from jaxhydro.platform_schema import BESIDE, builtin_platforms, load_platform
+from jaxhydro.platform_schema import builtin_platforms, load_platform
 from jaxhydro.problems import InputError, Problem, read_yaml
+from jaxhydro.remarks import Remark
 from jaxhydro.statics import stable_modes
 from jaxhydro.sweep.batch import Setup, setup_of
 from jaxhydro.sweep.cases import named, plan_of
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.local import simulated
-from jaxhydro.sweep.notes import impossible, notes, shares_in_band
+from jaxhydro.sweep.notes import impossible, notes, outside, shares_in_band
 from jaxhydro.sweep.outputs import summary_of, write_outputs
 from jaxhydro.sweep.resources import Chosen, chosen, supports_of
 from jaxhydro.sweep.schema import Sweep
@@ -33,7 +34,7 @@ from jaxhydro.sweep.worker import Found
 
 class Prepared(NamedTuple):
     """A sweep that can be stored and run: its file, the platform and the calibration as they were asked for, the share of every
-    case's spectrum in the band, and what is to be known."""
+    case's spectrum in the band, what is to be known of the sweep (`notes`) and of its tables (`remarks`)."""
 
     inputs: Inputs
     setup: Setup
@@ -42,17 +43,19 @@ class Prepared(NamedTuple):
     calibration: str | None
     shares: Float[np.ndarray, " c"]
     notes: list[str]
+    remarks: tuple[Remark, ...] = ()
 
     @property
     def about(self) -> dict[str, Any]:
         """What sweep.json says first."""
         about: dict[str, Any] = {"sweep": self.source, "platform": Path(self.platform).stem}
+        notes = [one.text for one in sorted(self.remarks, key=lambda one: not one.warning)] + self.notes
         if (used := self.setup.calibrated) is None:
-            return about | {"notes": self.notes}
+            return about | {"notes": notes}
         reference = {} if used.reference is None else {"sea_state_reference": used.reference._asdict()}
         strips = {} if used.strips is None else {"strips": used.strips.model_dump()}
         about["calibration"] = {"file": self.calibration, "values": used.values} | reference | strips
-        return about | {"notes": self.notes + used.warnings}
+        return about | {"notes": notes + used.warnings}
 
 
 class Progress(NamedTuple):
@@ -96,9 +99,10 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     supports_of(setup, source)
     shares = shares_in_band(plan)
     known += notes(plan, setup.model, shares, failing)
+    remarks = (*setup.model.remarks, *outside(plan, setup.model, failing))
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     inputs = Inputs(plan, _platform_text(sweep.platform), text)
-    return Prepared(inputs, setup, source, sweep.platform, sweep.calibration, shares, known)
+    return Prepared(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)
 
 
 def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
@@ -185,7 +189,7 @@ def _platform_text(asked: str) -> str:
         return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
     platform, data = load_platform(asked), read_yaml(asked)
     # a store is elsewhere, and has to find the files; JSON is YAML
-    beside = {key: data[key] | {"file": one.file} for key in BESIDE if (one := getattr(platform, key)) is not None}
+    beside = {key: data[key] | {"file": file} for key, file in platform.files().items()}
     if not beside:
         return Path(asked).read_text(encoding="utf-8-sig")
     # a comment for each file, so that another file of the same name is another platform

@@ -5,7 +5,9 @@ from typing import Self
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Complex, Float
+from jaxtyping import Array, Bool, Complex, Float, Int
+
+CLOSE = 1e-4  # of a table's first and last frequency, by which waves may be outside it
 
 
 class Excitation(eqx.Module):
@@ -31,7 +33,18 @@ class Excitation(eqx.Module):
 
     def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 w"]:
         """X at other frequencies (rad/s)."""
-        place = jnp.clip(jnp.searchsorted(self.omega, omega, side="right") - 1, 0, len(self.omega) - 2)
-        share = (omega - self.omega[place]) / (self.omega[place + 1] - self.omega[place])
-        inside = (share >= -1e-9) & (share <= 1 + 1e-9)
+        place, share, inside = within(self.omega, omega)
         return jnp.where(inside, (1 - share) * self.force[:, place] + share * self.force[:, place + 1], 0.0)
+
+
+def within(
+    table: Float[Array, " n"], omega: Float[Array, " w"]
+) -> tuple[Int[Array, " w"], Float[Array, " w"], Bool[Array, " w"]]:
+    """Place of frequencies in a table (rad/s): number of the entry before, share of the way to the next, and whether inside.
+
+    What is outside by less than `CLOSE` is at the end: periods are written with few digits.
+    """
+    inside = (omega >= table[0] * (1 - CLOSE)) & (omega <= table[-1] * (1 + CLOSE))
+    place = jnp.clip(jnp.searchsorted(table, omega, side="right") - 1, 0, len(table) - 2)
+    share = (omega - table[place]) / (table[place + 1] - table[place])
+    return place, jnp.clip(share, 0.0, 1.0), inside

@@ -7,6 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
+from jaxhydro.waves.excitation import within
+
 KEPT = 1e-6  # of the largest eigenvalue: what is less adds nothing
 
 
@@ -48,9 +50,7 @@ class Transfer(eqx.Module):
 
     def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 m w"]:
         """The filters at other frequencies (rad/s)."""
-        place = jnp.clip(jnp.searchsorted(self.omega, omega, side="right") - 1, 0, len(self.omega) - 2)
-        share = (omega - self.omega[place]) / (self.omega[place + 1] - self.omega[place])
-        inside = (share >= -1e-9) & (share <= 1 + 1e-9)
+        place, share, inside = within(self.omega, omega)
         found = (1 - share) * self.filters[..., place] + share * self.filters[..., place + 1]
         return jnp.where(inside, found, 0.0)
 

@@ -1,0 +1,169 @@
+"""First-order wave forces and hydrostatics from Capytaine's datasets."""
+
+from os import PathLike
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Complex, Float
+
+from jaxhydro.environment import STANDARD_GRAVITY
+from jaxhydro.interop.capytaine import PAIR, Dataset, along_omega, computed, motions, open_capytaine, single
+from jaxhydro.interop.hydrostatics import FileHydrostatics
+from jaxhydro.interop.tables import same_heading
+from jaxhydro.problems import shown
+from jaxhydro.waves.dispersion import wavenumber
+from jaxhydro.waves.excitation import Excitation
+
+WHOLE = "excitation_force"
+PARTS = ("Froude_Krylov_force", "diffraction_force")
+REAL, IMAGINARY = "re", "im"  # along the dimension `complex` of files, which NetCDF has no numbers for
+VOLUME = ("disp_volume", "displaced_volume")
+DEEP = np.pi  # k h from which on the bed does not matter
+BOTTOMLESS = 1e5  # m, where the dataset's depth is infinite
+
+
+def read_capytaine_excitation(
+    path: str | PathLike[str],
+    *,
+    heading: float = 0.0,
+    body: str | None = None,
+    density: float | None = None,
+    gravity: float | None = None,
+    depth: float | None = None,
+    notes: list[str] | None = None,
+) -> Excitation:
+    """Read the excitation of a dataset: `excitation_force`, or the sum of `Froude_Krylov_force` and `diffraction_force`.
+
+    Capytaine's quantities go with exp(-i omega t) and its incident wave is exp(i (k x - omega t)) (Capytaine's documentation,
+    "Conventions"; `airy_waves`). X is therefore the complex conjugate, for waves Re A exp(i (omega t - k x)) as in
+    `Excitation`. Directions are in rad, where waves run to. Phases are those of waves at the origin.
+
+    Args:
+        path: The file.
+        heading: Where waves run to, deg.
+        body: Name of the body, where the dataset has several.
+        density: Of the platform's water, kg/m3, to which forces are scaled.
+        gravity: Of the platform, m/s2, to compare.
+        depth: Of the platform's water, m, to compare.
+        notes: What is left out, moved, scaled or different is appended here.
+
+    Raises:
+        InputError: With the variable or frequencies that are wrong, or the headings that the dataset has.
+    """
+    one = open_capytaine(path, (), body)
+    names = (WHOLE,) if WHOLE in one.data else PARTS
+    if missing := [name for name in names if name not in one.data]:
+        known = ", ".join(str(name) for name in one.data.variables) or "none"
+        raise one.wrong(WHOLE, f"this variable, or {' and '.join(PARTS)}", f"no {missing[0]} among {known}")
+    tables = [_of_heading(one, name, heading) for name in names]
+    omega = np.asarray(one.data[names[0]].coords["omega"].values, float)
+    order = np.argsort(omega)
+    inner = order[(omega[order] > 0) & np.isfinite(omega[order])]
+    omega = omega[inner]
+    force = np.sum([table[inner] for table in tables], axis=0)
+    kept = np.isin(omega, computed(one, {" + ".join(names): (omega, force)}))
+    if kept.sum() < 2 or (np.diff(omega[kept]) == 0).any():
+        raise one.wrong("omega", "two finite frequencies above 0 or more, each once", shown(omega[kept].tolist()))
+    _compare(one, omega[kept], gravity, depth)
+    about = one.scale(density) * one.shift.T @ np.conj(force[kept]).T * _phase(one, omega[kept], heading)
+    if notes is not None:
+        notes += one.notes
+    return Excitation.of(omega[kept], about)
+
+
+def _phase(one: Dataset, omega: Float[np.ndarray, " w"], heading: float) -> Complex[np.ndarray, " w"]:
+    """exp(i k r): from waves at the dataset's origin to those at a reference point r from it."""
+    if not one.origin.any():
+        return np.ones(len(omega), complex)
+    gravity, depth = one.number("g") or STANDARD_GRAVITY, one.number("water_depth") or BOTTOMLESS
+    k = np.asarray(wavenumber(jnp.asarray(omega), depth, gravity))
+    return np.exp(1j * k * (one.origin @ [np.cos(np.radians(heading)), np.sin(np.radians(heading))]))
+
+
+def _of_heading(one: Dataset, name: str, heading: float) -> Complex[np.ndarray, "w 6"]:
+    """A variable by frequency and motion, of waves of one heading (deg)."""
+    along, rows = along_omega(one, name), motions(one, name, "influenced_dof")
+    values = single(one, name, (along, "influenced_dof", "wave_direction", "complex"))
+    if "wave_direction" not in values.coords:
+        raise one.wrong(f"{name}.wave_direction", "this dimension, in rad", f"{', '.join(map(str, values.dims))}")
+    known = np.degrees(np.atleast_1d(values.coords["wave_direction"].values).astype(float))
+    mine = np.flatnonzero(same_heading(known, heading))
+    if not mine.size:
+        there = ", ".join(f"{beta:.6g}" for beta in known)
+        raise one.wrong("wave_direction", f"waves of heading {heading:g} deg", f"{there} deg (in the file in rad)")
+    if "wave_direction" in values.dims:
+        values = values.isel(wave_direction=int(mine[0]))
+    if "complex" in values.dims:
+        labels = [str(x) for x in np.atleast_1d(values.coords["complex"].values)] if "complex" in values.coords else []
+        if labels and not {REAL, IMAGINARY} <= set(labels):
+            raise one.wrong(f"{name}.complex", f"{REAL} and {IMAGINARY}", ", ".join(labels))
+        if not labels and values.sizes["complex"] != 2:
+            raise one.wrong(f"{name}.complex", f"{REAL} and {IMAGINARY}", f"{values.sizes['complex']} entries")
+        at = [labels.index(part) for part in (REAL, IMAGINARY)] if labels else [0, 1]
+        values = values.isel(complex=at[0]) + 1j * values.isel(complex=at[1])
+    elif not np.iscomplexobj(values.values):
+        raise one.wrong(name, "complex numbers, or a dimension complex with re and im", "real numbers")
+    table = np.zeros((values.sizes[along], 6), complex)
+    table[:, rows] = np.asarray(values.transpose(along, "influenced_dof").values)
+    return table
+
+
+def _compare(one: Dataset, omega: Float[np.ndarray, " w"], gravity: float | None, depth: float | None) -> None:
+    """Notes where the dataset's gravity and depth are not the platform's, and matter."""
+    own = one.number("g")
+    if gravity is not None and own is not None and abs(own / gravity - 1) > 0.005:
+        one.notes.append(f"{one.source}: computed for a gravity of {own:g} m/s2, the platform has {gravity:g} m/s2")
+    if depth is None or "water_depth" not in one.data.variables or one.data["water_depth"].size != 1:
+        return
+    there = float(one.data["water_depth"].values.reshape(()))
+    shallow = omega[0] ** 2 / (own or 9.81) * min(there, depth) < DEEP
+    if abs(min(there, 1e9) / depth - 1) > 0.02 and shallow:
+        depths = f"computed for a depth of {there:g} m, the platform has {depth:g} m"
+        one.notes.append(f"{one.source}: {depths}, and its longest waves feel the bed")
+
+
+def read_capytaine_hydrostatics(
+    path: str | PathLike[str],
+    *,
+    body: str | None = None,
+    density: float | None = None,
+    gravity: float | None = None,
+    notes: list[str] | None = None,
+) -> FileHydrostatics:
+    """Read `hydrostatic_stiffness` (N/m, N, N m) and the displaced volume (`disp_volume`, or `disp_mass` over the density).
+
+    Capytaine's stiffness includes the weight, of the displaced mass at `center_of_mass` (its documentation, "Hydrostatics").
+
+    Args:
+        path: The file.
+        body: Name of the body, where the dataset has several.
+        density: Of the platform's water, kg/m3, to which the stiffness is scaled.
+        gravity: Of the platform, m/s2, to which the stiffness is scaled.
+        notes: What is moved or scaled is appended here.
+
+    Raises:
+        InputError: With the variable that is wrong.
+    """
+    one = open_capytaine(path, ("hydrostatic_stiffness",), body)
+    name = "hydrostatic_stiffness"
+    rows = [motions(one, name, dim) for dim in reversed(PAIR)]
+    values = np.asarray(single(one, name, PAIR).transpose(*reversed(PAIR)).values, float)
+    if not np.isfinite(values).all():
+        raise one.wrong(name, "finite numbers", f"{values.size - np.isfinite(values).sum()} that are not")
+    matrix = np.zeros((6, 6))
+    matrix[np.ix_(*rows)] = values
+    own = one.number("g")
+    scale = one.scale(density) * (gravity / own if gravity is not None and own is not None else 1.0)
+    volume = next((v for key in VOLUME if (v := one.number(key)) is not None), None)
+    if volume is None and (mass := one.number("disp_mass")) is not None and (rho := one.number("rho")) is not None:
+        volume = mass / rho
+    centre: Any = None
+    if "center_of_mass" in one.data.variables and one.data["center_of_mass"].size == 3:
+        centre = np.asarray(one.data["center_of_mass"].values, float).reshape(3)
+        centre = centre if np.isfinite(centre).all() else None
+    if notes is not None:
+        notes += one.notes
+    return FileHydrostatics(scale * one.shift.T @ matrix @ one.shift, volume, None if centre is None else float(centre[2]))
+
+
