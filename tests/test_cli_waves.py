@@ -253,11 +253,11 @@ def test_a_campaign_is_handed_on(tmp_path, monkeypatch) -> None:
 
     monkeypatch.setattr(of_campaigns, "simulate_campaign", simulate_campaign, raising=False)
     run("simulate", DEMO, "--out", tmp_path)
-    options = ["--order", 1, "--stretching", "wheeler", "--diffraction", "none", "--cutoff", 0.2]
+    options = ["--order", 1, "--stretching", "wheeler", "--diffraction", "none", "--cutoff", 0.2, "--no-figures"]
     run("simulate", DEMO / "campaign.yaml", *options, "--calibration", "c.json", "--out", tmp_path, status=cli.NOT_CONVERGED)
-    usual = {"asked": {}, "calibration": None}
+    usual = {"asked": {}, "calibration": None, "figures": True}
     how = {"order": 1, "stretching": "wheeler", "diffraction": "none", "cutoff": 0.2}
-    asked = {"asked": how, "calibration": Path("c.json")}
+    asked = {"asked": how, "calibration": Path("c.json"), "figures": False}
     assert calls == [(DEMO, tmp_path, usual), (DEMO / "campaign.yaml", tmp_path, asked)]
     for option in ("--hs", "--wave-height", "--duration", "--transient", "--wave", "--elements", "--heading", "--dt"):
         text = run("simulate", DEMO, option, 3, "--out", tmp_path, status=2)
