@@ -8,6 +8,8 @@ from test_cli import RUNNER, run, small_campaign
 
 import jaxhydro as jh
 from calibration import tables
+from calibration.outputs import write_calibration
+from calibration.saved import read_saved
 from jaxhydro import cli, console
 from jaxhydro.cli import TRUTH
 from jaxhydro.console import column_widths, table
@@ -38,12 +40,12 @@ def test_platforms_keep_their_names_at_80_columns(monkeypatch: pytest.MonkeyPatc
     assert all(name in rows for name in NAMES)
 
 
-def test_labels_are_whole_in_a_table_that_does_not_fit(monkeypatch, capsys) -> None:
-    result = small()
-    for what in (tables.parameters(result), tables.against(result, TRUTH)):
+def test_labels_are_whole_in_a_table_that_does_not_fit(tmp_path: Path, monkeypatch, capsys) -> None:
+    saved = read_saved(write_calibration(small(), tmp_path, figures=False, truth=TRUTH))
+    for what in (tables.parameters(saved), tables.against(saved)):
         text = printed(80, monkeypatch, capsys, *what)
         assert max(map(len, text.splitlines())) <= 80
-        assert set(result.parameters) <= {line.split()[0] for line in text.splitlines() if line.split()}
+        assert set(saved.baseline.parameters) <= {line.split()[0] for line in text.splitlines() if line.split()}
     heads, rows = ("Label", *(f"Column{i}" for i in range(8))), [("linear_damping.B33", *["-1.2345e+06"] * 8)]
     text = printed(60, monkeypatch, capsys, heads, rows)
     assert text.splitlines()[-2].split() == list(rows[0])  # wider than the terminal, which wraps it
