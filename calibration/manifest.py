@@ -285,11 +285,11 @@ def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
         if not _there(folder / test.file):
             near = [item.name for item in folder.iterdir()]
             hint = suggest(test.file, near)
-            problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", repr(test.file), hint))
+            problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", f"no such file: {test.file!r}", hint))
     if _is_path(manifest.platform) and not _there(folder / manifest.platform):
         near = [item.name for item in folder.iterdir() if item.suffix in (".yaml", ".yml")]
         problems.append(Problem("platform", f"a file in {folder}, or a built-in platform's name",
-                                repr(manifest.platform), suggest(manifest.platform, near)))
+                                f"no such file: {manifest.platform!r}", suggest(manifest.platform, near)))
     if problems:
         raise InputError(str(path), problems)
     return manifest, folder

@@ -79,10 +79,15 @@ def summary_of(saved: Saved, source: str) -> CalibrationSummary:
         for (use, kind), ids in sorted(groups.items(), key=lambda item: item[0][0])  # "fit" before "holdout"
     )
     parameters = saved.baseline.parameters
-    determined = tuple(label for label, one in parameters.items() if one.identifiable and not one.at_bound)
+    determined = tuple(label for label, one in parameters.items() if _is_determined(one))
     return CalibrationSummary(
         saved.baseline.converged, lost, far, agreements, determined, *_others(parameters, determined)
     )
+
+
+def _is_determined(one: Parameter) -> bool:
+    """Whether the records determine a coefficient: identifiable, off its bounds, and larger than its standard deviation."""
+    return one.identifiable and not one.at_bound and (one.standard_deviation or 0.0) <= abs(one.value)
 
 
 def _kind(saved: Saved, id: str) -> str:
@@ -113,7 +118,9 @@ def calibration_sentence(summary: CalibrationSummary) -> str:
 
     "9 decays followed to 0.4-1.7 %; all 11 coefficients determined."
     """
-    parts = [*map(_followed, summary.agreements), _determined(summary)]
+    # of a model that does not follow a decay, values mean little
+    known = [] if summary.not_followed else [_determined(summary)]
+    parts = [*map(_followed, summary.agreements), *known]
     # bands make clauses long: they are sentences of their own
     said = [f"{part}." for part in parts] if any(one.bands for one in summary.agreements) else [f"{'; '.join(parts)}."]
     return " ".join([*_failures(summary), *(re.sub("^(all|no) ", lambda word: word[0].capitalize(), one) for one in said)])

@@ -1,6 +1,7 @@
 """What the command line prints: tables, messages, progress. Text that comes from files is never read as markup."""
 
 import math
+import os
 import sys
 import time as clock
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -22,8 +23,8 @@ WIDE_GAP, NARROW_GAP = 3, 2  # characters between the columns of a table
 
 
 def console(stderr: bool = False) -> Console:
-    """The console of standard output or standard error."""
-    terminal = (sys.stderr if stderr else sys.stdout).isatty()
+    """The console of standard output or standard error, as wide as the terminal, or as COLUMNS says."""
+    terminal = (sys.stderr if stderr else sys.stdout).isatty() or os.environ.get("COLUMNS", "").isdigit()
     return Console(stderr=stderr, width=None if terminal else WIDTH, highlight=False)
 
 

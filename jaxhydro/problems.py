@@ -179,7 +179,9 @@ def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
     except Exception as error:  # the YAML reader lets errors of the values it makes through (dates, tags)
         raise wrong("", "valid YAML", f"a value that cannot be read ({shown(str(error))})") from None
     if not isinstance(data, dict):
-        raise wrong("", "a mapping of keys to values", "an empty file" if data is None else shown(data))
+        data_file = kind and isinstance(data, str) and "," in data
+        hint = f"Name the {kind} file, not a file of data." if data_file else ""
+        raise wrong("", "a mapping of keys to values", "an empty file" if data is None else shown(data), hint)
     others = [name for name, keys in KEYS.items() if keys & data.keys()]
     if kind and others and kind not in others:
         raise wrong("", f"a {kind} file ({', '.join(sorted(KEYS[kind]))})", f"a {others[0]} file")

@@ -83,7 +83,7 @@ def of_campaign(given: Mapping[str, Any]) -> dict[str, Any]:
     unused = [name for name in OF_SEA + OF_RECORD + NOT_OF_CAMPAIGNS if name not in ("--order", "--cutoff")]
     for name in given:
         if name in unused or given[name] != DEFAULTS.get(name, given[name]):
-            raise wrong(name, "a campaign's tests and platform file say this: leave it out, or name a platform")
+            raise wrong(name, "it goes with a platform, not with a campaign, whose files say it: name its platform file")
     if "--cutoff" in given:
         positive(given["--cutoff"], "--cutoff")
     how = {name: given.get(f"--{name}") for name in ("order", "stretching", "diffraction", "cutoff")}

@@ -19,7 +19,8 @@ _LATENT = """<p>The force that would have to act on the model beside all that it
 _BANDS = """<p>Tests in irregular waves: error of the energy in the band of slow motion and of waves, (simulated - measured) /
 measured.</p>"""
 _COEFFICIENTS = """<p>Coefficients fitted without the effects that were found (before) and with them (after), ± 1 standard
-deviation. Coefficients that move had stood in for these effects.</p>"""
+deviation. Coefficients that move had stood in for these effects. Mass properties and moorings move a little here, so added mass
+is known less well than by <code>jaxhydro calibrate</code>.</p>"""
 
 
 def page(saved: SavedDiagnosis, folder: Path) -> str:

@@ -179,7 +179,8 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     part = "more than 99 %" if whole else percent(share)
     said.append(f"It explains {part} of the squared error of all fitted tests above the noise.")
     if evidence.clear is not None:
-        said.append(f"Its size is {number(evidence.clear, 2)} standard deviations from no effect.")
+        away = f"{number(evidence.clear, 2)} standard deviations from zero"
+        said.append(f"All its parameters together are {away}." if len(one.parameters) > 1 else f"Its size is {away}.")
     if evidence.score is not None:
         fell = f"−2 ln L fell by {number(evidence.score, 3)}"
         said.append(f"Before any refit, by its first-order effect beyond what the coefficients can explain, {fell}.")
