@@ -34,6 +34,7 @@ from jaxhydro.loads import (
     EndInertia,
     HiddenOscillator,
     HighPassDrag,
+    HydrostaticCoupling,
     Hysteresis,
     KeuleganCarpenterDrag,
     LinearDamping,
@@ -186,6 +187,9 @@ def in_water(model: jh.Model) -> jh.Model:
 def everything() -> jh.Model:
     """One of every load."""
     model = build(**EVERYTHING)
+    coupled = np.zeros((6, 6))
+    coupled[2, 4] = coupled[4, 2] = 3e6  # N
+    model = model.with_load(HydrostaticCoupling(stiffness=jnp.asarray(coupled), values={}))
     for load in effects(model):
         model = model.with_load(load)
     model = in_water(model)
