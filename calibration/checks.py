@@ -14,6 +14,7 @@ from typing import Literal
 
 import numpy as np
 
+from calibration.digits import local_resolution, straight_piece
 from calibration.manifest import DOFS, IN_WAVES, WAVE, Manifest
 from calibration.records import Series, factors, frozen, read_series, there
 from calibration.signals import constant_stretches, dominant_period, flanks, line, missing_code, resolution, spikes, wave_height
@@ -220,20 +221,22 @@ class _Check:
                 left_out = ": left out" if channel in frozen(self.series) else ""
                 yield self.found("warning", channel, None, f"{said}{left_out}")
             return
+        step = local_resolution(values)
         starts, lengths = constant_stretches(values, grain)
         long = max(LEAST_SAMPLES, int((self.period or 0) / 3 / self.step))
         for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:SHOWN]:
             beside = (values[max(0, i - long): i + 1], values[i + n - 1: i + n + long])
-            if max(map(np.ptp, beside)) > 6 * grain:             # else it has come to rest
+            if max(map(np.ptp, beside)) > 6 * step[i]:           # else it has come to rest
                 yield self.found("warning", channel, float(time[i]), f"frozen from {self.at(time[i])} to "
                                  f"{self.at(time[i + n - 1])}, {n} samples at {values[i]:.5g}")
+        piece = straight_piece(values, step)
         for name, extreme in (("highest", values.max()), ("lowest", values.min())):
-            flat = (np.abs(values[starts] - extreme) < grain / 2) & (lengths >= 3) & (starts > 0)
-            flat &= flanks(values, starts, lengths) > 16 * grain
+            flat = (np.abs(values[starts] - extreme) < grain / 2) & (lengths >= 3 * piece) & (starts > 0)
+            flat &= flanks(values, starts, lengths) > 16 * step[starts]
             if (count := int(lengths[flat].sum())) >= 6:
                 yield self.found("warning", channel, float(time[starts[flat][0]]), f"clipped: {count} samples at its "
                                  f"{name} value, {extreme:.5g}, up to {lengths[flat].max()} in a row")
-        off = spikes(values, grain)
+        off = spikes(values, step)
         if len(off := off[time[off + 2] - time[off - 2] < 4.5 * self.step]):  # none beside a gap
             i, more = int(off[0]), f", and {len(off) - 1} more" if len(off) > 1 else ""
             yield self.found("warning", channel, float(time[i]), f"a spike at {self.at(time[i])}, {values[i]:.5g} "
