@@ -122,10 +122,14 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
             cells, other = table.iloc[:, number], taken.setdefault(number, channel)
             if other != channel:
                 problems.append(Problem(where, "a column of its own", f"that of channel {other}, {column!r}"))
+            elif names[number] in table.attrs.get("times", ()) and (channel != "time" or stated.unit != "s"):
+                expected = "unit: s, since such times are read as seconds" if channel == "time" else "numbers"
+                problems.append(Problem(where, expected, f"times in column {column!r}, stated in {stated.unit}"))
             elif cells.dtype.kind == "f":
                 columns[channel] = cells.to_numpy()
             else:
-                problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}"))
+                row = f" in row {table.attrs['row']}" if "row" in table.attrs else ""
+                problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}{row}"))
     if problems:
         raise InputError(test.file, problems)
     time = columns.pop("time")
