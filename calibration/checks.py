@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from calibration.digits import local_resolution, straight_piece
+from calibration.extent_checks import extent_warnings
 from calibration.manifest import DOFS, IN_WAVES, WAVE, Manifest
 from calibration.records import Series, factors, frozen, read_series, there
 from calibration.signals import constant_stretches, dominant_period, flanks, line, missing_code, resolution, spikes, wave_height
@@ -87,7 +88,9 @@ class _Check:
         if self.driven in self.values:
             self.period = dominant_period(self.time, self.values[self.driven])
         signals = (f for name in self.values for f in self.signal(name))
-        return [*found, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
+        told = extent_warnings(self.series, self.time, self.values, self.compared, self.period)
+        extent = [self.found("warning", *one) for one in told]
+        return [*found, *extent, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
 
     def found(self, severity: Severity, channel: str, time: float | None, message: str, expected: str = "") -> Finding:
         return Finding(severity, self.test.file, self.test.id, channel, time, message, expected)
