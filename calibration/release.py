@@ -20,6 +20,7 @@ NOISE = 3.0                     # deviations of the averaged noise, by which sti
 PROMINENT = 0.1                 # of the largest amplitude: what counts as a turn
 LEAST_TURNS = 3                 # of a free motion
 SHORT_HOLD = 0.05               # period: a hold that is shorter is not told from a release
+SLOW = 0.3                      # of the range: turns of a slow motion that is the main one
 UNLIKE = 0.012                  # of the amplitude, by which a short hold and its release may miss a level and a cosine
 AT_REST = 0.15                  # of the amplitude: a hold closer to rest is none
 OFF_REST, ABRUPT = 0.3, 0.8     # of the amplitude: where a caught model stands, and its speed just before over omega
@@ -61,6 +62,10 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     x = np.interp(even, time, values)
     noise = noise_level(even, x)
     period = _period(x, step, noise)
+    slow = ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
+    apart = np.diff(_turns(slow, 0, len(x), SLOW * float(np.ptp(x))))
+    if len(apart) and float(np.median(apart)) < 4 * period / step:      # the fast motion is not what was released
+        period = _period(slow, step, 0.0)
     gap = float(np.diff(time).max())
     if not COARSEST * step < period < 0.7 * (time[-1] - time[0]) or gap > max(STILL * period, 1.5 * step):
         return whole
