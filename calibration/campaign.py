@@ -91,7 +91,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     records = tuple(record for record in records_of(manifest, series) if record.id not in faulty)
     campaign = Campaign(manifest, folder, platform, records, findings)
     try:
-        doubtful = check_plausible(records, campaign.model, manifest.zero is not None)
+        doubtful = check_plausible(records, campaign.model, manifest.zero is not None, manifest.scale)
     except EquilibriumError as error:
         raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:

@@ -81,8 +81,9 @@ class _Check:
 
     def all(self) -> list[Finding]:
         found = [*self.window(), *self.zero()]
-        if not found:
-            found = [*self.clock(), *self.missing()]
+        found += self.units()
+        if not any(finding.severity == "error" for finding in found):
+            found += [*self.clock(), *self.missing()]
         if any(finding.severity == "error" for finding in found):
             return found
         if self.driven in self.values:
@@ -122,6 +123,14 @@ class _Check:
             if missing := int((~self.series.good).sum()):
                 left = f"{left}, as {missing} of its {count} rows lack a value"
             yield self.found("error", "", None, left, f"a transient that leaves {LEAST_SAMPLES} samples or more")
+
+    def units(self) -> Iterator[Finding]:
+        """Does the file state the unit that the manifest does?"""
+        for channel, unit in self.series.units.items():
+            stated = self.series.channels[channel]
+            if unit != stated.unit:
+                yield self.found("warning", channel, None, f"the file states {unit} for column {stated.column!r}, and the "
+                                 f"manifest {stated.unit}")
 
     def zero(self) -> Iterator[Finding]:
         """Is there still water to take off?"""

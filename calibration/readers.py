@@ -22,13 +22,14 @@ import pandas as pd
 from calibration.delimited import decoded, parse, reason, wrong
 from calibration.matlab import mat73, matlab, side_by_side
 from calibration.spreadsheet import workbook
+from calibration.stated_units import stated_unit
 from jaxhydro.problems import InputError
 
 
 def read_table(path: str | Path) -> pd.DataFrame:
     """The table in a data file, one row per sample.
 
-    The table's `attrs` may have `units`, those that the file itself states, by column; `times`, the columns that were
+    The table's `attrs` may have `stated`, the units that the file itself states, by column; `times`, the columns that were
     written as times of day or time stamps and are seconds; `row`, the number of the first row of a text file.
 
     Raises InputError, and nothing else, for a file that is absent, unreadable or not a table of numbers; it names the
@@ -45,6 +46,8 @@ def read_table(path: str | Path) -> pd.DataFrame:
         raise wrong(path, "file", "rows of numbers", "no rows")
     if not any(kind.kind == "f" for kind in table.dtypes):
         raise wrong(path, "file", "a numeric column", "only text, in " + ", ".join(map(str, table.columns[:10])))
+    stated = {str(name): stated_unit(str(name), table.attrs.get("units", {})) for name in table.columns}
+    table.attrs["stated"] = {name: unit for name, unit in stated.items() if unit is not None}
     return table
 
 

@@ -37,6 +37,7 @@ class Series:
     span: tuple[float, float]                    # first and last time of the whole file
     rows: np.ndarray                             # (n,) index in the file, 0 for the first sample
     still: dict[str, np.ndarray] = field(default_factory=dict)      # in the manifest's zero window of this file
+    units: dict[str, str] = field(default_factory=dict)             # channel -> the unit that the file states, if any
     free: FreeMotion | None = None               # of a decay: what of its window moves freely, which alone is here
 
     @property
@@ -109,6 +110,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     problems: list[Problem] = []
     columns: dict[str, np.ndarray] = {}
     taken: dict[int, str] = {}
+    units: dict[str, str] = {}
     names = [str(name) for name in table.columns]
     for channel, stated in list(channels.items()):
         column, where = stated.column, f"{test.file}, channel {channel} of test {test.id}"
@@ -130,6 +132,8 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
                 problems.append(Problem(where, expected, f"times in column {column!r}, stated in {stated.unit}"))
             elif cells.dtype.kind == "f":
                 columns[channel] = cells.to_numpy()
+                if (unit := table.attrs.get("stated", {}).get(names[number])) is not None:
+                    units[channel] = unit
             else:
                 row = f" in row {table.attrs['row']}" if "row" in table.attrs else ""
                 problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}{row}"))
@@ -142,7 +146,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     still = _rows(time, zero) if zero is not None else np.arange(0)
     series = Series(test, time[rows], {name: values[rows] for name, values in columns.items()}, channels,
                     (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan), rows,
-                    {name: values[still][there(values[still])] for name, values in columns.items()})
+                    {name: values[still][there(values[still])] for name, values in columns.items()}, units)
     return _free(series) if test.kind == "decay" else series
 
 
