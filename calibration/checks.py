@@ -238,7 +238,8 @@ class _Check:
         long = max(LEAST_SAMPLES, int((self.period or 0) / 3 / self.step))
         for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:SHOWN]:
             beside = (values[max(0, i - long): i + 1], values[i + n - 1: i + n + long])
-            if max(map(np.ptp, beside)) > 6 * step[i]:           # else it has come to rest
+            still = self.still_until() > time[i + n - 1] or self.in_zero(time[i], time[i + n - 1])
+            if max(map(np.ptp, beside)) > 6 * step[i] and not still:           # else it has come to rest
                 yield self.found("warning", channel, float(time[i]), f"frozen from {self.at(time[i])} to "
                                  f"{self.at(time[i + n - 1])}, {n} samples at {values[i]:.5g}")
         piece = straight_piece(values, step)
@@ -254,6 +255,20 @@ class _Check:
             yield self.found("warning", channel, float(time[i]), f"a spike at {self.at(time[i])}, {values[i]:.5g} "
                              f"between {values[i - 1]:.5g} and {values[i + 1]:.5g}{more}")
         yield from self.drift(channel, values, grain)
+
+    def still_until(self) -> float:
+        """When the waves arrive, where the record begins before; until then nothing has to move."""
+        if self.driven != WAVE or WAVE not in self.values:
+            return -np.inf
+        wave = np.abs(self.values[WAVE] - np.median(self.values[WAVE]))
+        return float(self.time[np.argmax(wave > 0.5 * wave.max())])
+
+    def in_zero(self, first: float, last: float) -> bool:
+        """Whether a stretch of time is in still water by the manifest, give or take what is next to it."""
+        zero = self.manifest.zero
+        if zero is None or zero.window is None:
+            return zero is not None and zero.test == self.test.id
+        return bool(first < zero.window[1] and last > zero.window[0])
 
     def drift(self, channel: str, values: np.ndarray, grain: float) -> Iterator[Finding]:
         """In a decay the mean over one cycle, first third against last; otherwise a line, against what is left."""

@@ -164,6 +164,15 @@ def test_seas_that_begin_late_or_die_down(tmp_path, bounds, transient, words):
     assert len(found) == len(words) and all(message.startswith(word) for message, word in zip(found, words))
 
 
+@pytest.mark.parametrize(("first", "last", "frozen"), [(0, 18, False), (100, 130, True), (0, 130, True)])
+def test_what_is_still_before_the_waves_is_not_frozen(tmp_path, first, last, frozen):
+    t, wave = sea(20, 500)
+    x = 0.5 * wave + 0.01 * RNG.normal(size=len(t))
+    x[(t >= first) & (t <= last)] = 0.0
+    found, _ = campaign(tmp_path, t, x, wave, kind="regular", transient=60.0)
+    assert any("frozen" in message for message in found) == frozen
+
+
 @pytest.mark.skipif(not (SHARED / "cases").is_dir(), reason=f"{SHARED / 'cases'} is not on this machine")
 @pytest.mark.parametrize(("name", "until"), [("campaign.yaml", 1.0), ("campaign-30s.yaml", 30.0)])
 def test_the_case_of_a_hold_before_the_release(name, until):
