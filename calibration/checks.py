@@ -264,11 +264,11 @@ class _Check:
         return float(self.time[np.argmax(wave > 0.5 * wave.max())])
 
     def in_zero(self, first: float, last: float) -> bool:
-        """Whether a stretch of time is in still water by the manifest, give or take what is next to it."""
+        """Whether a stretch of time is in still water by the manifest, or goes on for less than a period after it."""
         zero = self.manifest.zero
         if zero is None or zero.window is None:
             return zero is not None and zero.test == self.test.id
-        return bool(first < zero.window[1] and last > zero.window[0])
+        return bool(first >= zero.window[0] and last < zero.window[1] + (self.period or 0.0))
 
     def drift(self, channel: str, values: np.ndarray, grain: float) -> Iterator[Finding]:
         """In a decay the mean over one cycle, first third against last; otherwise a line, against what is left."""
