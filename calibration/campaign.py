@@ -93,7 +93,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     campaign = Campaign(manifest, folder, platform, records, findings)
     model = campaign.model
     try:
-        doubtful = check_plausible(records, model, manifest.zero is not None)
+        doubtful = check_plausible(records, model, manifest.zero is not None, manifest.scale)
     except EquilibriumError as error:
         raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
     doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model), *doubtful)

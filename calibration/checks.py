@@ -14,6 +14,8 @@ from typing import Literal
 
 import numpy as np
 
+from calibration.digits import local_resolution, straight_piece
+from calibration.extent_checks import extent_warnings
 from calibration.manifest import DOFS, IN_WAVES, WAVE, Manifest
 from calibration.records import Series, factors, frozen, read_series, there
 from calibration.signals import constant_stretches, dominant_period, flanks, line, missing_code, resolution, spikes, wave_height
@@ -79,14 +81,17 @@ class _Check:
 
     def all(self) -> list[Finding]:
         found = [*self.window(), *self.zero()]
-        if not found:
-            found = [*self.clock(), *self.missing()]
+        found += self.units()
+        if not any(finding.severity == "error" for finding in found):
+            found += [*self.clock(), *self.missing()]
         if any(finding.severity == "error" for finding in found):
             return found
         if self.driven in self.values:
             self.period = dominant_period(self.time, self.values[self.driven])
         signals = (f for name in self.values for f in self.signal(name))
-        return [*found, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
+        told = extent_warnings(self.series, self.time, self.values, self.compared, self.period)
+        extent = [self.found("warning", *one) for one in told]
+        return [*found, *extent, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
 
     def found(self, severity: Severity, channel: str, time: float | None, message: str, expected: str = "") -> Finding:
         return Finding(severity, self.test.file, self.test.id, channel, time, message, expected)
@@ -118,6 +123,14 @@ class _Check:
             if missing := int((~self.series.good).sum()):
                 left = f"{left}, as {missing} of its {count} rows lack a value"
             yield self.found("error", "", None, left, f"a transient that leaves {LEAST_SAMPLES} samples or more")
+
+    def units(self) -> Iterator[Finding]:
+        """Does the file state the unit that the manifest does?"""
+        for channel, unit in self.series.units.items():
+            stated = self.series.channels[channel]
+            if unit != stated.unit:
+                yield self.found("warning", channel, None, f"the file states {unit} for column {stated.column!r}, and the "
+                                 f"manifest {stated.unit}")
 
     def zero(self) -> Iterator[Finding]:
         """Is there still water to take off?"""
@@ -220,25 +233,42 @@ class _Check:
                 left_out = ": left out" if channel in frozen(self.series) else ""
                 yield self.found("warning", channel, None, f"{said}{left_out}")
             return
+        step = local_resolution(values)
         starts, lengths = constant_stretches(values, grain)
         long = max(LEAST_SAMPLES, int((self.period or 0) / 3 / self.step))
         for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:SHOWN]:
             beside = (values[max(0, i - long): i + 1], values[i + n - 1: i + n + long])
-            if max(map(np.ptp, beside)) > 6 * grain:             # else it has come to rest
+            still = self.still_until() > time[i + n - 1] or self.in_zero(time[i], time[i + n - 1])
+            if max(map(np.ptp, beside)) > 6 * step[i] and not still:           # else it has come to rest
                 yield self.found("warning", channel, float(time[i]), f"frozen from {self.at(time[i])} to "
                                  f"{self.at(time[i + n - 1])}, {n} samples at {values[i]:.5g}")
+        piece = straight_piece(values, step)
         for name, extreme in (("highest", values.max()), ("lowest", values.min())):
-            flat = (np.abs(values[starts] - extreme) < grain / 2) & (lengths >= 3) & (starts > 0)
-            flat &= flanks(values, starts, lengths) > 16 * grain
+            flat = (np.abs(values[starts] - extreme) < grain / 2) & (lengths >= 3 * piece) & (starts > 0)
+            flat &= flanks(values, starts, lengths) > 16 * step[starts]
             if (count := int(lengths[flat].sum())) >= 6:
                 yield self.found("warning", channel, float(time[starts[flat][0]]), f"clipped: {count} samples at its "
                                  f"{name} value, {extreme:.5g}, up to {lengths[flat].max()} in a row")
-        off = spikes(values, grain)
+        off = spikes(values, step)
         if len(off := off[time[off + 2] - time[off - 2] < 4.5 * self.step]):  # none beside a gap
             i, more = int(off[0]), f", and {len(off) - 1} more" if len(off) > 1 else ""
             yield self.found("warning", channel, float(time[i]), f"a spike at {self.at(time[i])}, {values[i]:.5g} "
                              f"between {values[i - 1]:.5g} and {values[i + 1]:.5g}{more}")
         yield from self.drift(channel, values, grain)
+
+    def still_until(self) -> float:
+        """When the waves arrive, where the record begins before; until then nothing has to move."""
+        if self.driven != WAVE or WAVE not in self.values:
+            return -np.inf
+        wave = np.abs(self.values[WAVE] - np.median(self.values[WAVE]))
+        return float(self.time[np.argmax(wave > 0.5 * wave.max())])
+
+    def in_zero(self, first: float, last: float) -> bool:
+        """Whether a stretch of time is in still water by the manifest, or goes on for less than a period after it."""
+        zero = self.manifest.zero
+        if zero is None or zero.window is None:
+            return zero is not None and zero.test == self.test.id
+        return bool(first >= zero.window[0] and last < zero.window[1] + (self.period or 0.0))
 
     def drift(self, channel: str, values: np.ndarray, grain: float) -> Iterator[Finding]:
         """In a decay the mean over one cycle, first third against last; otherwise a line, against what is left."""

@@ -24,7 +24,7 @@ def matlab(path: Path) -> pd.DataFrame:
     with path.open("rb") as file:
         start = file.read(128)
     if b"MATLAB 7.3" in start or start[:8] == b"\x89HDF\r\n\x1a\n":
-        return _mat73(path)
+        return mat73(path)
     from scipy.io import loadmat
     try:
         if not _sound(path.read_bytes()):
@@ -57,7 +57,7 @@ def _vectors(group: Mapping[str, Any]) -> dict[str, np.ndarray]:
     return found
 
 
-def _mat73(path: Path) -> pd.DataFrame:
+def mat73(path: Path) -> pd.DataFrame:
     """Version 7.3 is HDF5: vectors at the top, or in one level of groups (a struct)."""
     import h5py
     found: dict[str, np.ndarray] = {}

@@ -18,15 +18,17 @@ ODD, WRONG = 3.0, 20.0  # natural periods, measured against the model's: a secon
 HEAVE = (0.5, 3.0)  # motions that are odd or wrong: of the radius of gyration
 LEVEL = (3.0, 6.0)  # ... in surge and sway, where moorings may be slack
 TURNED = (np.radians(60.0), np.radians(180.0))
-SMALL = 1e-3  # of the radius of gyration, or rad: what nobody would release a platform from
+SMALL, SMALL_ANGLE = 1e-3, 4e-3  # of the radius of gyration, rad: what nobody would release a platform from
+NEAR = 0.15  # of a logarithm: a ratio that is the square root of the scale
 OFF = 0.02  # of the radius of gyration, or rad: where a platform is at rest
 STEEP = (1 / 7, 1.0)  # height over length: beyond 1/7 no wave stands (Michell 1893, Phil. Mag. 36)
 FULL, WHAT = "(full scale)", "a unit, or the scale?"
 NOISY = 0.5  # of a motion's deviation
 
 
-def check_plausible(records: Sequence[Record], model: Model, zeroed: bool) -> tuple[Finding, ...]:
-    """Findings on the records that are used, at full scale, against the declared model. `zeroed`: a zero was taken off them."""
+def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale: float = 1.0) -> tuple[Finding, ...]:
+    """Findings on the records that are used, at full scale, against the declared model. `zeroed`: a zero was taken off them;
+    `scale` is the manifest's."""
     used = [record for record in records if record.use != "ignore"]
     decays = [record for record in used if record.kind == "decay"]
     length, gravity = characteristic_length(model), float(model.environment.gravity)
@@ -37,7 +39,7 @@ def check_plausible(records: Sequence[Record], model: Model, zeroed: bool) -> tu
         modes = natural_modes(model, rest)
         periods = {dof: modes.of(dof) for dof in DOFS if np.isfinite(modes.of(dof))}
         found += [] if zeroed else _at_rest(decays, dict(zip(DOFS, map(float, rest))), length)
-    return (*found, *(one for record in used for one in _of(record, length, gravity, periods)))
+    return (*found, *(one for record in used for one in _of(record, length, gravity, periods, scale)))
 
 
 def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
@@ -53,7 +55,7 @@ def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) ->
             yield Finding("warning", decays[0].file, decays[0].id, name, None, message)
 
 
-def _of(record: Record, length: float, gravity: float, periods: dict[str, float]) -> Iterator[Finding]:
+def _of(record: Record, length: float, gravity: float, periods: dict[str, float], scale: float) -> Iterator[Finding]:
     def found(limits: tuple[float, float], ratio: float, channel: str, message: str, expected: str) -> Iterator[Finding]:
         if ratio > limits[0]:
             severity: Severity = "error" if ratio > limits[1] else "warning"
@@ -63,13 +65,16 @@ def _of(record: Record, length: float, gravity: float, periods: dict[str, float]
         name, own = record.degree_of_freedom, periods[record.degree_of_freedom]
         period = dominant_period(record.time, record.values[name])
         if period is not None:
-            message = f"a period of {period:.3g} s {FULL}, the declared model's is {own:.3g} s: a unit of time, or the scale?"
-            yield from found((ODD, WRONG), max(period / own, own / period), name, message, f"a period of about {own:.3g} s")
+            why, by_scale = _of_time(period / own, scale)
+            message = f"a period of {period:.3g} s {FULL}, the declared model's is {own:.3g} s: {why}"
+            limits, ratio = (1.0 if by_scale else ODD, WRONG), max(period / own, own / period)
+            yield from found(limits, ratio, name, message, f"a period of about {own:.3g} s")
     for name, values in record.values.items():
         size = float(np.percentile(np.abs(values - np.median(values)), 99))
         turns = name in DOFS[3:]
-        if name == record.degree_of_freedom and size < SMALL * (1.0 if turns else length):
-            yield Finding("warning", record.file, record.id, name, None, f"moves by {_in_words(name, size)} only: {WHAT}")
+        if name == record.degree_of_freedom and size < (SMALL_ANGLE if turns else SMALL * length):
+            what = "degrees or radians?" if turns else WHAT
+            yield Finding("warning", record.file, record.id, name, None, f"moves by {_in_words(name, size)} only: {what}")
         if turns:
             message = f"an angle of {_in_words(name, size)}: degrees or radians?"
             yield from found(TURNED, size, name, message, "an angle that a platform may have")
@@ -88,6 +93,17 @@ def _of(record: Record, length: float, gravity: float, periods: dict[str, float]
         wavelength = gravity / (2 * np.pi * peak_frequency(record.wave, step) ** 2)
         message = f"waves {height:.3g} m high and {wavelength:.3g} m long {FULL}: {WHAT}"
         yield from found(STEEP, height / wavelength, "wave", message, "waves that do not break, less than 1/7 as high as long")
+
+
+def _of_time(ratio: float, scale: float) -> tuple[str, bool]:
+    """What may explain a measured period over the model's, and whether `scale` does."""
+    if scale != 1 and abs(np.log(ratio / scale**0.5)) < NEAR:
+        return f"longer by the square root of `scale`, {scale**0.5:.3g}: are the records at full scale already?", True
+    if scale != 1 and abs(np.log(ratio * scale**0.5)) < NEAR:
+        return f"shorter by the square root of `scale`, {scale**0.5:.3g}: is the platform at the model's scale?", True
+    if scale == 1 and 1 / WRONG < ratio < 1 / ODD:
+        return f"a unit of time, or a `scale` of about {ratio**-2:.2g}, as model-scale records would need?", False
+    return "a unit of time, or the scale?", False
 
 
 def _in_words(dof: str, value: float) -> str:

@@ -9,7 +9,7 @@ Froude scaling by the length scale L: lengths times L, times times L^0.5, angles
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,7 @@ import pandas as pd
 
 from calibration.manifest import IN_WAVES, SI, WAVE, Channel, Manifest, Test, quantity
 from calibration.readers import read_table
+from calibration.release import FreeMotion, free_motion
 from calibration.signals import missing_code, noise_level, resolution
 from jaxhydro.problems import InputError, Problem, suggest
 
@@ -26,7 +27,8 @@ _BEYOND = 1e15                                   # what is larger stands for a m
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """A test's window of its file, nothing converted or repaired. `values` has the wave as `wave`."""
+    """A test's window of its file, nothing converted or repaired; of a decay the free motion in it. `values` has the wave
+    as `wave`."""
 
     test: Test
     time: np.ndarray                             # (n,) in the time channel's unit
@@ -35,6 +37,8 @@ class Series:
     span: tuple[float, float]                    # first and last time of the whole file
     rows: np.ndarray                             # (n,) index in the file, 0 for the first sample
     still: dict[str, np.ndarray] = field(default_factory=dict)      # in the manifest's zero window of this file
+    units: dict[str, str] = field(default_factory=dict)             # channel -> the unit that the file states, if any
+    free: FreeMotion | None = None               # of a decay: what of its window moves freely, which alone is here
 
     @property
     def good(self) -> np.ndarray:
@@ -106,6 +110,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     problems: list[Problem] = []
     columns: dict[str, np.ndarray] = {}
     taken: dict[int, str] = {}
+    units: dict[str, str] = {}
     names = [str(name) for name in table.columns]
     for channel, stated in list(channels.items()):
         column, where = stated.column, f"{test.file}, channel {channel} of test {test.id}"
@@ -122,10 +127,16 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
             cells, other = table.iloc[:, number], taken.setdefault(number, channel)
             if other != channel:
                 problems.append(Problem(where, "a column of its own", f"that of channel {other}, {column!r}"))
+            elif names[number] in table.attrs.get("times", ()) and (channel != "time" or stated.unit != "s"):
+                expected = "unit: s, since such times are read as seconds" if channel == "time" else "numbers"
+                problems.append(Problem(where, expected, f"times in column {column!r}, stated in {stated.unit}"))
             elif cells.dtype.kind == "f":
                 columns[channel] = cells.to_numpy()
+                if (unit := table.attrs.get("stated", {}).get(names[number])) is not None:
+                    units[channel] = unit
             else:
-                problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}"))
+                row = f" in row {table.attrs['row']}" if "row" in table.attrs else ""
+                problems.append(Problem(where, f"numbers in column {column!r}", f"text such as {cells.iloc[0]!r}{row}"))
     if problems:
         raise InputError(test.file, problems)
     time = columns.pop("time")
@@ -133,9 +144,22 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     rows = _rows(time, test.window)
     zero = manifest.zero.window if manifest.zero is not None else None
     still = _rows(time, zero) if zero is not None else np.arange(0)
-    return Series(test, time[rows], {name: values[rows] for name, values in columns.items()}, channels,
-                  (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan), rows,
-                  {name: values[still][there(values[still])] for name, values in columns.items()})
+    series = Series(test, time[rows], {name: values[rows] for name, values in columns.items()}, channels,
+                    (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan), rows,
+                    {name: values[still][there(values[still])] for name, values in columns.items()}, units)
+    return _free(series) if test.kind == "decay" else series
+
+
+def _free(series: Series) -> Series:
+    """A decay from its release to the next push or to where the model is caught, or to the end of its `window`."""
+    good = np.flatnonzero(series.good)
+    free = free_motion(series.time[good], series.values[str(series.test.degree_of_freedom)][good])
+    if free.start == free.end == "record":
+        return series
+    last = good[free.last - 1] if series.test.window is None else len(series.time) - 1       # what is stated is respected
+    kept = slice(good[free.first], last + 1)
+    values = {name: column[kept] for name, column in series.values.items()}
+    return replace(series, time=series.time[kept], values=values, rows=series.rows[kept], free=free)
 
 
 def _rows(time: np.ndarray, window: tuple[float, float] | None) -> np.ndarray:

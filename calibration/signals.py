@@ -9,6 +9,7 @@ import pandas as pd
 from scipy import signal
 
 SPIKE = 8.0               # robust standard deviations
+OUTSIDE = 2.0             # the same, or steps of the last digit: a spike is that far beyond both neighbours
 CODE = 10.0               # times all else: what is no measurement
 SEGMENT = 1000.0          # s of a record in waves, or an eighth of it
 
@@ -108,13 +109,27 @@ def missing_code(values: np.ndarray) -> float | None:
     return extreme if nines and len(rest) and abs(extreme) > CODE * float(rest.max()) else None
 
 
-def spikes(values: np.ndarray, grain: float) -> np.ndarray:
-    """Single samples off the cubic through two neighbours on either side, by the scatter of the hundred around."""
+def spikes(values: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Indices of single samples that stick out: above both neighbours or below both, by more than digits and noise explain.
+
+    Such a sample is off the cubic through two neighbours on either side, and off the lines that continue either side: a corner
+    between straight pieces is not.
+
+    Args:
+        values: (n,) one channel.
+        step: (n,) the step of its last digit at every value.
+    """
     if len(values) < 12:
         return np.arange(0)
-    off = values[2:-2] - (4 * (values[1:-3] + values[3:-1]) - values[:-4] - values[4:]) / 6
+    middle, step = values[2:-2], step[2:-2]
+    before, after = values[1:-3], values[3:-1]
+    off = middle - (4 * (before + after) - values[:-4] - values[4:]) / 6
     scatter = 1.4826 * pd.Series(np.abs(off)).rolling(101, center=True, min_periods=8).median().to_numpy()
-    alone = np.abs(off) > SPIKE * np.maximum(scatter, grain)
+    tolerance = np.maximum(scatter, step)
+    alone = np.abs(off) > SPIKE * tolerance
     for shift in (-1, 1):                        # its neighbours are off by two thirds of it, the other way
         alone &= np.abs(np.roll(off, shift) + 2 / 3 * off) < 0.35 * np.abs(off)
-    return np.flatnonzero(alone) + 2
+    above = np.sign(off)
+    outside = np.minimum(above * (middle - before), above * (middle - after))
+    beyond = np.minimum(above * (middle - 2 * before + values[:-4]), above * (middle - 2 * after + values[4:]))
+    return np.flatnonzero(alone & (outside > OUTSIDE * tolerance) & (beyond > 0.5 * np.abs(off))) + 2

@@ -186,6 +186,7 @@ Wave = Annotated[
     Path | None, _option("--wave", RECORD, "File with a measured elevation: evenly sampled, s and m at full scale.")
 ]
 WaveColumn = Annotated[str | None, _option("--wave-column", RECORD, "Its column: a header, or a number from 0.", WAVE_COLUMN)]
+WaveUnit = Annotated[str | None, _option("--wave-unit", RECORD, "Its unit: m, cm, mm, ft.", "m")]
 TimeColumn = Annotated[str | None, _option("--wave-time-column", RECORD, "The column of times.", TIME_COLUMN)]
 Gauge = Annotated[
     tuple[float, float] | None,

@@ -103,6 +103,7 @@ def simulate(
     amplitudes: arguments.Height = None,
     wave: arguments.Wave = None,
     wave_column: arguments.WaveColumn = None,
+    wave_unit: arguments.WaveUnit = None,
     wave_time_column: arguments.TimeColumn = None,
     wave_position: arguments.Gauge = None,
     low: arguments.Low = None,

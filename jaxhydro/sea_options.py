@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy import signal
 
 from jaxhydro.options import finite, positive, wrong
 from jaxhydro.problems import InputError, Problem, suggest
@@ -18,8 +19,10 @@ ORDER, SEED = 2, 0
 DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
 OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes")
 OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
-OF_RECORD = ("--wave-column", "--wave-time-column", "--wave-position")
+OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
+STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
 
@@ -177,5 +180,27 @@ def with_record(sea: Asked, file: Path, table: Any, given: Mapping[str, Any]) ->
     except ValueError as error:
         hint = "Interpolate to even times, or make it a campaign, which takes such records."
         raise wrong_file(f"column {time_name}", "even sampling", f"none ({error})", hint) from None
+    stated = table.attrs.get("stated", {})
+    unit = str(given.get("--wave-unit", "m"))
+    if unit not in UNITS:
+        raise wrong("--wave-unit", f"one of {', '.join(UNITS)} expected, found {unit}")
+    if name in stated and stated[name] != unit:
+        found = f"{stated[name]}, as the file states"
+        raise wrong_file(f"column {name}", f"a unit of {unit}", found, "--wave-unit says which.")
+    if stated.get(time_name, "s") != "s":
+        raise wrong_file(f"column {time_name}", "times in s", f"{stated[time_name]}, as the file states")
+    elevation = elevation * UNITS[unit]
+    height, length = 4 * float(np.std(elevation)), _peak_length(times, elevation)
+    if height > STEEPEST * length:
+        found = f"waves {height:.3g} m high and {length:.3g} m long"
+        expected = "waves less than 1/7 as high as long, at full scale"
+        raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")
     x, y = (finite(float(value), "--wave-position") for value in given.get("--wave-position", (0.0, 0.0)))
     return replace(sea, record=Record(str(file), name, times, elevation, (x, y)))
+
+
+def _peak_length(times: np.ndarray, elevation: np.ndarray) -> float:
+    """Length (m) in deep water of the waves at the spectrum's peak (Welch): no water makes them longer."""
+    step = float(times[-1] - times[0]) / (len(times) - 1)
+    frequency, density = signal.welch(elevation, 1 / step, nperseg=min(len(times), max(round(1000.0 / step), 8)))
+    return 9.80665 / (2 * np.pi * float(frequency[max(int(density.argmax()), 1)]) ** 2)

@@ -75,7 +75,7 @@ EDGE = {  # third-party or built-in, and the only modules that may use it
     "PIL": {"jaxhydro.plot"},
     "ruamel": {"jaxhydro.problems"},
     "yaml": set(),
-    "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals")},
+    "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals", "spreadsheet")},
     "xarray": {f"jaxhydro.sweep.{name}" for name in ("outputs", "run", "store")}
     | {"jaxhydro.export", "jaxhydro.interop.capytaine"}
     | {f"calibration.{name}" for name in ("folder", "outputs", "readers", "seas_outputs")},

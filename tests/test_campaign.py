@@ -252,8 +252,9 @@ def test_openfast_without_its_library_says_what_to_install(tmp_path, monkeypatch
     ("a.outb", b"\x02\x00" + b"\xff" * 40, "OpenFAST binary output"),
     ("a.outb", outb(2)[:-100], "OpenFAST binary output"),
     ("a.outb", b"", "OpenFAST binary output"),
-    ("a.xlsx", b"PK", "one of the endings .csv"),
-    ("a", b"t,x\n", "no ending"),
+    ("a.yaml", b"t,x\n0,1\n", "a data file: text (.csv, .txt, .dat, ...), .mat, .nc, .xlsx, .out or .outb"),
+    ("a.xls", b"t,x\n0,1\n", "Save it as .xlsx or CSV"),
+    ("a", b"t,x\n", "a header only"),
 ])
 def test_broken_files(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content)
@@ -528,7 +529,7 @@ D2 = {"id": "d-2", "kind": "decay", "degree_of_freedom": "pitch", "file": "d.csv
     (("tests", 0, "file"), "e.csv", "tests[0].file: expected a file in"),
     (("tests", 0, "file"), "d\0.csv", "tests[0].file: expected a file in"),
     (("tests", 0, "file"), "", "tests[0].file"),
-    (("tests", 0, "file"), "campaign.yaml", "one of the endings"),
+    (("tests", 0, "file"), "campaign.yaml", "expected a data file"),
     (("tests", 0, "id"), "a/b", "tests[0].id: expected a name that can be a file's"),
     (("tests", 0, "id"), "..", "a name that can be a file's"),
     (("tests", 0, "window"), [3, 1], "tests[0].window: expected two numbers, the first less"),
@@ -591,7 +592,8 @@ def test_a_campaign_that_is_not_there_or_not_yaml(tmp_path):
     (table().replace("\n3.00000,", "\n3.00000,oops"), "d.csv, row 32, column x: expected a number, found 'oops"),
     (table(header="t,x,x"), "expected one column 'x', found 2 of that name"),
     (table(header="t,X,p"), "expected a column 'x', found t, X, p. Did you mean 'X'?"),
-    ("t,x,p\n" + "\n".join(f"12:00:{i:02d},{i},{i}" for i in range(60)), "expected numbers in column 't', found text"),
+    ("t,x,p\n" + "\n".join(f"{i},high,{i}" for i in range(60)), "numbers in column 'x', found text such as 'high' in row 2"),
+    ("t,x,p\n" + "\n".join(f"{i},12:00:{i:02d},{i}" for i in range(60)), "numbers, found times in column 'x', stated in m"),
 ])
 def test_broken_records(tmp_path, csv, words):
     message = failure(load_campaign, write(tmp_path, files={"d.csv": csv}))
@@ -604,7 +606,7 @@ def test_waves_that_are_not_in_the_file_and_zero_tests_without_a_channel(tmp_pat
     assert "channel wave of test d-1: expected a column 'w'" in failure(load_campaign, write(tmp_path, document))
     wave = np.cos(2 * np.pi * T / 1.8)
     found = messages(write(tmp_path, document, {"d.csv": table(w=wave)}))
-    assert ["wave_channel has no position" in message for message in found] == [True]
+    assert "the waves have begun before the record" in found[0] and "wave_channel has no position" in found[1]
     document = manifest(zero={"test": "d-2"})
     document["tests"].append({**D2, "channels": {"surge": None}})
     assert "expected a channel that the zero test has too" in failure(load_campaign, write(tmp_path, document))
