@@ -27,18 +27,18 @@ class Wetted(NamedTuple):
 class Hull(eqx.Module):
     """Elements, strips and ends, and the constant matrices between the platform's motion and theirs.
 
-    Lines are the strips' first directions, their second ones, then the ends. What belongs to a line is linear in the distance
-    s of its strip from the element's start, and stored as the part for s = 0 and the part that goes with s: `motion` is the
-    lever, `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity the centripetal acceleration.
+    Lines are the strips' first directions, their second ones, then the ends and faces. What belongs to a line is linear in the
+    distance s of its strip from the element's start, and stored as the part for s = 0 and the part that goes with s: `motion`
+    is the lever, `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity the centripetal acceleration.
     `moments` are those of the displaced volume: see `masses`.
     """
 
     elements: Elements
     strips: Strips
     ends: Ends
-    cylinders: Cylinders  # of strips, then ends
+    cylinders: Cylinders  # of strips, then ends without faces
     gauges: Float[Array, "3 g"]  # m, where the surface elevation is looked up
-    gauge_of: tuple[int, ...] = eqx.field(static=True)  # the gauge of every element, then end
+    gauge_of: tuple[int, ...] = eqx.field(static=True)  # the gauge of every element, then end without faces
     motion: Float[Array, "6 2*l"]
     inward: Float[Array, "6 2*l"]
     moments: Float[Array, "6 6 k"]
@@ -47,12 +47,13 @@ class Hull(eqx.Module):
     def of(cls, members: Sequence[Member]) -> "Hull":
         """The hull that members make."""
         elements, strips = cut(members)
-        tips = ends(members)
+        tips = ends(members, strips)
         powers = 5 if np.asarray(strips.taper).any() else 3
         radii = sorted({r for r in strips.diffracts if r > 0})
         index = tuple(radii.index(r) if r > 0 else -1 for r in strips.diffracts)
-        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * len(tips.area)))
-        gauges = np.concatenate([elements.gauge, tips.gauge], axis=1).round(9)
+        whole = len(tips.label) - len(tips.strip)
+        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * whole))
+        gauges = np.concatenate([elements.gauge, tips.gauge[:, :whole]], axis=1).round(9)
         place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
         matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
@@ -121,12 +122,18 @@ def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tu
     first, second = strips.directions[:, 0], strips.directions[:, 1]
     direction = jnp.concatenate([first, second, ends.axis], axis=1)
     point = jnp.concatenate([strips.start, strips.start, ends.position], axis=1)
-    along = jnp.concatenate([strips.axis, strips.axis, jnp.zeros_like(ends.axis)], axis=1)
+    of, whole = jnp.array(ends.strip, dtype=int), len(ends.label) - len(ends.strip)
+    of_faces = strips.axis[:, of]
+    along = jnp.concatenate([strips.axis, strips.axis, jnp.zeros((3, whole)), of_faces], axis=1)
     lever = jnp.concatenate([direction, jnp.cross(point, direction, axis=0)])
     twist = jnp.concatenate([jnp.zeros_like(direction), jnp.cross(along, direction, axis=0)])
     motion = jnp.concatenate([lever, twist], axis=1)
     inward = jnp.concatenate([_centripetal(direction, point), _centripetal(direction, along)], axis=1)
-    return motion, inward, _moments(elements, strips, lever, twist, powers)
+    # of faces of wholly wet elements; along their own axis the distance does not matter
+    home = jnp.array(strips.element, dtype=int)
+    away = jnp.concatenate([jnp.zeros(whole), (elements.length[home] * strips.fraction)[of]])
+    tips = lever[:, lever.shape[1] - away.size :] + away * twist[:, twist.shape[1] - away.size :]
+    return motion, inward, _moments(elements, strips, lever, twist, tips, powers)
 
 
 def _centripetal(direction: Float[Array, "3 l"], point: Float[Array, "3 l"]) -> Float[Array, "6 l"]:
@@ -138,7 +145,12 @@ def _centripetal(direction: Float[Array, "3 l"], point: Float[Array, "3 l"]) -> 
 
 
 def _moments(
-    elements: Elements, strips: Strips, lever: Float[Array, "6 l"], twist: Float[Array, "6 l"], powers: int
+    elements: Elements,
+    strips: Strips,
+    lever: Float[Array, "6 l"],
+    twist: Float[Array, "6 l"],
+    tips: Float[Array, "6 m"],
+    powers: int,
 ) -> Float[Array, "6 6 k"]:
     """Sum over an element's strips of share, sectional area and h h^T as coefficients of a polynomial in its wetted length,
     by power, direction and element; then h h^T of the ends."""
@@ -160,5 +172,4 @@ def _moments(
     home = jnp.array(strips.element, dtype=int)
     index = jnp.concatenate([home, home + e])  # by direction and element
     found = jnp.stack([jnp.zeros((6, 6, 2 * e)).at[:, :, index].add(part) for part in of_strips], axis=2)
-    tips = lever[:, 2 * n :]
     return jnp.concatenate([found.reshape(6, 6, -1), outer(tips, tips)], axis=2)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
-from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripShape
+from jaxhydro.loads.base import AbstractLoad, EndShape, Instant, Lines, Parameter, StripShape
 from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew, turned
 from jaxhydro.solve6 import accelerate
 from jaxhydro.strips import end_wetted
@@ -195,9 +195,10 @@ class Model(eqx.Module):
         matrix = rotation(state.position[3:])
         hull = self.hull if self.directions == "body" else self.hull.turned(matrix.T)
         strips, ends, place = hull.strips, hull.ends, state.position[:3]
-        n, m = len(strips.element), ends.area.shape[0]
+        n, m, faces = len(strips.element), ends.area.shape[0], jnp.array(ends.strip, dtype=int)
+        whole = m - len(ends.strip)
         above, follows = (place[:2], matrix[:2]) if self.waves_at == "displaced" else (jnp.zeros(2), jnp.eye(3)[:2])
-        roots = jnp.concatenate([hull.elements.start, ends.position], axis=1)
+        roots = jnp.concatenate([hull.elements.start, ends.position[:, :whole]], axis=1)
         if self.wetting == "mean":
             vertical, depth = jnp.array([0.0, 0.0, 1.0]), -roots[2]
         else:
@@ -205,10 +206,10 @@ class Model(eqx.Module):
             depth = -(place[2] + vertical @ roots)
             surface = sea.surface(time, above[:, None] + follows @ hull.gauges)
             depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
-        wetted = hull.wetted(vertical, depth[: roots.shape[1] - m])
+        wetted = hull.wetted(vertical, depth[: roots.shape[1] - whole])
         of = jnp.array(strips.element, dtype=int)
         covered, reach = wetted.length[of] * strips.weight, wetted.reach[of] * strips.fraction
-        away = hull.join(jnp.stack([reach, reach]), jnp.zeros(m))
+        away = hull.join(jnp.stack([reach, reach]), jnp.concatenate([jnp.zeros(whole), reach[faces]]))
         still, turning = (state.velocity @ hull.motion).reshape(2, -1)
         own, own_end = hull.split(-(still + turning * away))
         if (stream := self.stream()) is not None:
@@ -222,8 +223,8 @@ class Model(eqx.Module):
         inward = inward + away * outgoing if self.centripetal else jnp.zeros_like(away)
         lines = Lines(away, inward)
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
-        end_wet = end_wetted(depth[roots.shape[1] - m :])
-        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
+        end_wet = jnp.concatenate([end_wetted(depth[roots.shape[1] - whole :]), jnp.ones(m - whole)])
+        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position[:, :whole]], axis=1)
         where = place[:, None] + turned(matrix, points)
         level = points if self.waves_at == "mean" else where
         where = jnp.concatenate([level[:2], (where if self.wetting == "instantaneous" else points)[2:]])
@@ -242,8 +243,9 @@ class Model(eqx.Module):
 
             extra = [None if field is None else across(field) for field in (flow.diffracted, flow.tuned)]
             past = StripFlow(own + across(flow.velocity), across(flow.acceleration), *extra)
-            at_ends = [(toward_end * field[:, n:]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
-            past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[n:], end_wet)
+            at = jnp.concatenate([jnp.arange(n, n + whole), faces]) if ends.strip else slice(n, None)
+            at_ends = [(toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
+            past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[at], end_wet)
         return Instant(
             time,
             state.position,
@@ -253,6 +255,7 @@ class Model(eqx.Module):
             hull,
             wetted,
             shape,
+            EndShape.of(hull, covered, extent),
             past,
             past_end,
             lines,

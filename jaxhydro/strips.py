@@ -5,6 +5,9 @@ across its member's axis, an end along it. A member steeper than 45 degrees is a
 coefficients (t) and its ends the axial ones (z). A flatter one is a pontoon: its horizontal direction takes t, the other,
 near-vertical one z, and its ends take none but the pressure.
 
+Where the section of a member changes, its side looks along the axis too. Every strip of a tapered element therefore has a
+face, which is loaded along the axis as an end is. A step in size is a short taper.
+
 A load element is integrated by Gauss quadrature over the length that is under water (Abramowitz and Stegun 1964, eq.
 25.4.30). So the strips of a column that pierces the surface move along it with the surface: the wetted length is
 exact, forces are smooth in the motion, and no strip is spent on what is dry.
@@ -90,18 +93,26 @@ class Member(NamedTuple):
         low, high = sorted((self.a[2], self.b[2]))
         return self.circular and self.axis[2] > UPRIGHT and low < 0 <= high
 
+    def kinks(self) -> list[float]:
+        """Fractions of the length, strictly inside, at which the change of size along the axis is another."""
+        slope = np.diff(self.sizes, axis=0) / np.diff(self.stations)[:, None]
+        bend = np.abs(np.diff(slope, axis=0)).max(axis=1)
+        return [float(at) for at, one in zip(self.stations[1:-1], bend, strict=True) if one > 1e-9 * self.sizes.max()]
+
     def area(self, size: np.ndarray) -> np.ndarray:
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
 
     def elements_and_orders(self) -> list[tuple[float, float, int]]:
         """Load elements as fractions of the length from a to b, with the number of strips of each.
 
-        As many as the platform file says, `points` strips each; else one between stations, with as many as its length asks for.
+        As many as the platform file says, `points` strips each, cut at `kinks` too; else one between stations, with as many
+        as its length asks for.
         """
         length = float(np.linalg.norm(self.b - self.a))
         if self.elements is not None:
             at = np.linspace(0.0, 1.0, self.elements + 1)
-            return [(lo, hi, self.points) for lo, hi in pairwise(at)]
+            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
         found = []
         for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
@@ -143,16 +154,22 @@ class Elements(eqx.Module):
 
 
 class Ends(eqx.Module):
-    """Ends of members."""
+    """Ends of members, then the faces of tapered strips: what is loaded along the axis.
 
-    position: Float[Array, "3 m"]
+    The sizes of a face depend on how much of its element is wet: see `EndShape`. Here they are 0, but for `radius`.
+    """
+
+    position: Float[Array, "3 m"]  # m; of a face, the start of its element
     axis: Float[Array, "3 m"]  # unit vector, upward for a column
     gauge: Float[Array, "3 m"]  # as that of the member's elements
     outward: Float[Array, " m"]  # +1 where the face looks along the axis (a top), -1 where against it (a bottom)
-    area: Float[Array, " m"]
-    radius: Float[Array, " m"]  # m, of the circle of equal area that carries added mass and drag; 0: none, a pontoon's end
+    area: Float[Array, " m"]  # m2, on which pressure acts
+    radius: Float[Array, " m"]  # m, of the circle of equal section; 0: of a pontoon, without added mass and drag
+    facing: Float[Array, " m"]  # m2, on which drag acts: what no other member covers
+    volume: Float[Array, " m"]  # m3, to which added mass refers
     label: tuple[int, ...] = eqx.field(static=True)
     labels: tuple[str, ...] = eqx.field(static=True)
+    strip: tuple[int, ...] = eqx.field(static=True)  # the strip of every face
 
 
 _STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")
@@ -213,28 +230,71 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
     return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
 
 
-def ends(members: Sequence[Member]) -> Ends:
-    """The two ends of every member; what is not in the water is left out by its wetting.
+class _End(NamedTuple):
+    """An end of a member, or a face."""
+
+    position: np.ndarray
+    axis: np.ndarray
+    gauge: np.ndarray
+    outward: float
+    area: float
+    radius: float
+    facing: float
+    volume: float
+    label: int
+
+
+def ends(members: Sequence[Member], strips: Strips) -> Ends:
+    """The two ends of every member, and the faces of tapered strips; what is not in the water is left out by its wetting.
 
     Pressure acts on all of them: where members meet, it cancels that on the other's side, which its strips count as exposed.
-    Added mass and drag have the free ends of columns only.
+    Added mass and drag have columns only, on what is free of an end: see `_free`.
     """
     labels = tuple(dict.fromkeys(m.group for m in members if m.column))
-    position, axis, gauge, outward, area, radius, label = [], [], [], [], [], [], []
+    rows: list[_End] = []
+    faces: list[_End] = []
+    of: list[int] = []
+    taper, count = np.asarray(strips.taper), 0
     for member in members:
         upright = bool(member.axis @ (member.b - member.a) > 0)
+        label = labels.index(member.group) if member.column else 0
         for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
-            position.append(point)
-            axis.append(member.axis)
-            gauge.append(member.gauge)
-            outward.append(1.0 if far else -1.0)
-            area.append(float(member.area(member.size(np.array([fraction])))[0]))
-            radius.append(math.sqrt(area[-1] / math.pi) if member.column else 0.0)
-            label.append(labels.index(member.group) if member.column else 0)
-    vectors = [np.array(rows).reshape(-1, 3).T for rows in (position, axis, gauge)]
-    arrays = map(jnp.asarray, (*vectors, np.array(outward), np.array(area), np.array(radius)))
-    fields: dict[str, Any] = dict(zip(("position", "axis", "gauge", "outward", "area", "radius"), arrays, strict=True))
-    return Ends(**fields, label=tuple(label), labels=labels)
+            area = float(member.area(member.size(np.array([fraction])))[0])
+            radius = math.sqrt(area / math.pi) if member.column else 0.0
+            own = (radius, area if member.column else 0.0, 2 / 3 * math.pi * radius**3)
+            rows.append(_End(point, member.axis, member.gauge, 1.0 if far else -1.0, area, *own, label))
+        for lo, hi, order in member.elements_and_orders():
+            near, far_end = (lo, hi) if upright else (hi, lo)
+            first, last = (float(member.area(member.size(np.array([at])))[0]) for at in (near, far_end))
+            if taper[:, count].any():
+                radius = math.sqrt(0.5 * (first + last) / math.pi) if member.column else 0.0
+                start = member.a + (member.b - member.a) * near
+                outward = -1.0 if last >= first else 1.0
+                faces += order * [_End(start, member.axis, member.gauge, outward, 0.0, radius, 0.0, 0.0, label)]
+                of += range(count, count + order)
+            count += order
+    columns = list(zip(*(_free(rows) + faces), strict=True)) if rows else [()] * len(_End._fields)
+    vectors = [np.array(column, float).reshape(-1, 3).T for column in columns[:3]]
+    numbers = [np.array(column, float) for column in columns[3:-1]]
+    fields: dict[str, Any] = dict(zip(_End._fields, map(jnp.asarray, (*vectors, *numbers))))
+    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of))
+
+
+def _free(rows: Sequence[_End]) -> list[_End]:
+    """Ends of columns of which the larger of two that meet on one axis keeps what is free of it, and the smaller nothing.
+
+    So a step between two members has the added mass and drag of the ring, as OpenFAST HydroDyn and RAFT have it.
+    """
+    found = list(rows)
+    for i, one in enumerate(rows):
+        for j, other in enumerate(rows[:i]):
+            met = np.linalg.norm(one.position - other.position) < 1e-3 * max(one.radius, other.radius)
+            if met and abs(one.axis @ other.axis) > 1 - 1e-6 and one.outward * other.outward * (one.axis @ other.axis) < 0:
+                large, small = (i, j) if one.area >= other.area else (j, i)
+                ring = (found[large].facing - found[small].facing, found[large].volume - found[small].volume)
+                found[large] = found[large]._replace(facing=max(ring[0], 0.0), volume=max(ring[1], 0.0))
+                found[small] = found[small]._replace(facing=0.0, volume=0.0)
+    return found
 
 
 def end_wetted(depth: Float[Array, " m"]) -> Float[Array, " m"]:

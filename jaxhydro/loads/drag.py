@@ -67,8 +67,8 @@ def strip_area(now: Instant, values: Values) -> Float[Array, "2 n"]:
 
 
 def end_area(now: Instant, values: Values) -> Float[Array, " m"]:
-    """Cd A (m2) of ends, A the wet area of the face; 0 where `values` has no coefficient."""
-    return of_ends(now, values, "Cd", 0.0) * (np.pi * now.hull.ends.radius**2) * now.end_flow.wet
+    """Cd A (m2) of ends, A the wet area that is free; 0 where `values` has no coefficient."""
+    return of_ends(now, values, "Cd", 0.0) * now.end_shape.facing * now.end_flow.wet
 
 
 def lines_of(hull: Hull, labels: Iterable[str], both: bool = False) -> tuple[int, ...]:

@@ -1,6 +1,7 @@
 """Buoyancy of the displaced hull up to still water level, and what the platform file declares beyond its geometry."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -17,12 +18,15 @@ SMOOTH = 0.25  # m over which an end of a member enters or leaves the water
 
 
 class Buoyancy(AbstractLoad):
-    """F = rho g V up, at the centroid of the volume V that is under still water; exact for prismatic members.
+    """F = rho g V up, at the centroid of the volume V that is under still water.
 
-    V and its centroid follow the finite displacement and rotation: the wetted length along the axis, and for a column the
-    wedge of its inclined waterplane, which moves the volume by I tan across and I tan^2/2 along the axis, I the section's
-    second moment (Newman 1977, Marine Hydrodynamics, chapter 6, Hydrostatics, without linearisation). A column is taken
-    as cut through its sides, not its ends.
+    V and its centroid follow the finite displacement and rotation. They are those of the wetted length along the axis, and for
+    a column those of the wedge of its inclined waterplane. The wedge moves the volume by I tan across and I tan^2/2 along the
+    axis, I the second moment of the section at the waterline (Newman 1977, Marine Hydrodynamics, chapter 6, Hydrostatics,
+    without linearisation). A column is taken as cut through its sides, not its ends.
+
+    Sizes vary linearly along a piece. A prismatic column is exact at any lean; a tapered one is exact when upright or wholly
+    under water, and to second order in the lean where the waterline cuts it.
 
     `extra_force` and `extra_stiffness` are the declared hydrostatics less those of the geometry, about the upright platform
     at its reference position: extra volume acts at the geometry's centre of buoyancy.
@@ -31,8 +35,10 @@ class Buoyancy(AbstractLoad):
     lower: Float[Array, "3 p"]  # m, body axes: the lower end of a piece
     axis: Float[Array, "3 p"]
     length: Float[Array, " p"]
-    area: Float[Array, " p"]
-    second_moment: Float[Array, "2 p"]  # m4, for a lean along either direction
+    size: Float[Array, "2 p"]  # m, extent along either direction at the lower end
+    taper: Float[Array, "2 p"]  # its change per metre
+    shape: Float[Array, " p"]  # area over the product of extents: pi/4 for a circle
+    bend: Float[Array, " p"]  # second moment over extent^3 times the other extent: pi/64 for a circle, 1/12 for a box
     directions: Float[Array, "3 2 p"]
     thickness: Float[Array, " p"]  # m, vertical extent beyond that of the axis
     extra_force: Float[Array, ""]  # N
@@ -60,17 +66,34 @@ class Buoyancy(AbstractLoad):
         low = heave + low + 0.5 * (slope * self.length - rise) - 0.5 * self.thickness
         height = rise + self.thickness
         wet = SMOOTH / height * (ramp(-low / SMOOTH) - ramp(-(low + height) / SMOOTH))
-        volume = self.area * self.length * wet
         # a column fills from its lower end; a pontoon loses volume evenly
         column = self.thickness == 0
-        reach = jnp.where(column, 0.5 * wet, 0.5) * self.length
+        filled = jnp.where(column, wet, 1.0) * self.length
+        volume, along = self._frustum(filled)
+        volume, along = (jnp.where(column, one, one * wet) for one in (volume, along))
         # the wedge of an inclined waterplane moves volume by -I tan along a direction and by I tan^2/2 along the axis
         tangent = jnp.stack(lean) / jnp.where(column, slope, 1.0)
         pierced = jnp.where(column, step(-low / SMOOTH) - step(-(low + height) / SMOOTH), 0.0)
-        across = self.second_moment * tangent * pierced
-        along = 0.5 * (across * tangent).sum(axis=0) + volume * reach
-        moment = volume * self.lower + along * self.axis - (self.directions * across).sum(axis=1)
+        second, change = (one * tangent * pierced for one in self._second_moment(filled))
+        swell = 0.5 * (change * tangent).sum(axis=0)  # where the section grows, the raised side gains more than the other loses
+        volume, along = volume + swell, along + 0.5 * (second * tangent).sum(axis=0) + filled * swell
+        moment = volume * self.lower + along * self.axis - (self.directions * second).sum(axis=1)
         return volume, moment
+
+    def _frustum(self, reach: Float[Array, " p"]) -> tuple[Float[Array, " p"], Float[Array, " p"]]:
+        """Volume (m3) of pieces up to `reach` (m) from their lower ends, and its first moment (m4) about these."""
+        (a, b), (p, q) = self.size, self.taper
+        area = [self.shape * part for part in (a * b, a * q + b * p, p * q)]  # by power of the distance
+        parts = [[part * reach ** (i + j) / (i + j) for i, part in enumerate(area)] for j in (1, 2)]
+        volume, first = (one + two + three for one, two, three in parts)
+        return volume, first
+
+    def _second_moment(self, reach: Float[Array, " p"]) -> tuple[Float[Array, "2 p"], Float[Array, "2 p"]]:
+        """Second moment (m4) of the section `reach` (m) from the lower end, for a lean along either direction, and its change
+        per metre (m3)."""
+        size = self.size + self.taper * reach
+        other, growth = size[::-1], self.taper[::-1]
+        return self.bend * size**3 * other, self.bend * size**2 * (3 * self.taper * other + size * growth)
 
     def force(
         self, position: Float[Array, "6"], matrix: Float[Array, "3 3"], weight_density: Float[Array, ""] | float
@@ -107,36 +130,35 @@ def _upright(load: Buoyancy, weight_density: Float[Array, ""]):
 
 
 def buoyancy(members: Sequence[Member]) -> Buoyancy:
-    """The buoyancy of members as they are, nothing declared beyond them. A tapered member is cut at its stations, finer."""
+    """The buoyancy of members as they are, nothing declared beyond them. A member is cut where its taper changes."""
     rows: list[tuple] = []
     for member in members:
-        tapered = bool(np.ptp(member.sizes, axis=0).any())
-        edges = np.unique(np.concatenate([member.stations, np.linspace(0, 1, 21)])) if tapered else np.array([0.0, 1.0])
-        middle = 0.5 * (edges[1:] + edges[:-1])
-        size, span = member.size(middle), member.b - member.a
-        start = edges[:-1] if not member.column or span[2] > 0 else edges[1:]
-        first, second = member.directions
-        directions = np.stack([first, second], axis=1)
-        shape = np.pi / 64 * size**4 if member.circular else np.stack(
-            [size[:, 1] * size[:, 0] ** 3 / 12, size[:, 0] * size[:, 1] ** 3 / 12], axis=-1
-        )
-        for i in range(len(middle)):
-            thickness = 0.0 if member.column else float(np.abs(directions[2]) @ size[i])
+        edges = [0.0, *member.kinks(), 1.0]
+        span = member.b - member.a
+        upward = not member.column or span[2] > 0
+        directions = np.stack(member.directions, axis=1)
+        for near, far in pairwise(edges):
+            low, high = (near, far) if upward else (far, near)
+            first, last = member.size(np.array(low)), member.size(np.array(high))
+            length = (far - near) * float(np.linalg.norm(span))
             rows.append(
                 (
-                    member.a + span * start[i],
+                    member.a + span * low,
                     member.axis,
-                    (edges[i + 1] - edges[i]) * np.linalg.norm(span),
-                    float(member.area(size[i])),
-                    shape[i],
+                    length,
+                    first,
+                    (last - first) / length,
+                    np.pi / 4 if member.circular else 1.0,
+                    np.pi / 64 if member.circular else 1 / 12,
                     directions,
-                    thickness,
+                    0.0 if member.column else float(np.abs(directions[2]) @ (0.5 * (first + last))),
                 )
             )
     flat, triple = np.zeros(0), np.zeros((3, 0))
-    arrays = [triple, triple, flat, flat, np.zeros((2, 0)), np.zeros((3, 2, 0)), flat]
+    pair = np.zeros((2, 0))
+    arrays = [triple, triple, flat, pair, pair, flat, flat, np.zeros((3, 2, 0)), flat]
     if rows:
         arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
-    names = ("lower", "axis", "length", "area", "second_moment", "directions", "thickness")
+    names = ("lower", "axis", "length", "size", "taper", "shape", "bend", "directions", "thickness")
     pieces: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
     return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)), values={})
