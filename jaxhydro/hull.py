@@ -12,8 +12,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.rotations import ramp
-from jaxhydro.strips import SMOOTH, Elements, Ends, Member, Strips, cut, ends
+from jaxhydro.scales import covered, entered
+from jaxhydro.strips import COVERING, ENTERING, Elements, Ends, Member, Strips, cut, ends
 from jaxhydro.waves.flow import Cylinders
 
 
@@ -42,12 +42,13 @@ class Hull(eqx.Module):
     motion: Float[Array, "6 2*l"]
     inward: Float[Array, "6 2*l"]
     moments: Float[Array, "6 6 k"]
+    size: Float[Array, ""]  # `scales.size_of` the platform
 
     @classmethod
-    def of(cls, members: Sequence[Member]) -> "Hull":
-        """The hull that members make."""
-        elements, strips = cut(members)
-        tips = ends(members, strips)
+    def of(cls, members: Sequence[Member], size: float = 1.0) -> "Hull":
+        """The hull that members make, of a platform of a `size` (`scales.size_of`)."""
+        elements, strips = cut(members, size)
+        tips = ends(members, strips, size)
         powers = 5 if np.asarray(strips.taper).any() else 3
         radii = sorted({r for r in strips.diffracts if r > 0})
         index = tuple(radii.index(r) if r > 0 else -1 for r in strips.diffracts)
@@ -57,7 +58,7 @@ class Hull(eqx.Module):
         place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
         matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
-        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices)
+        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices, jnp.asarray(size))
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
         """With the directions of strips and ends turned about their points, which stay."""
@@ -65,7 +66,7 @@ class Hull(eqx.Module):
         tips = eqx.tree_at(lambda x: x.axis, self.ends, rotation @ self.ends.axis)
         powers = (self.moments.shape[2] - tips.area.size) // max(2 * len(self.elements.length), 1)
         matrices = _matrices(self.elements, strips, tips, powers)
-        return Hull(self.elements, strips, tips, self.cylinders, self.gauges, self.gauge_of, *matrices)
+        return Hull(self.elements, strips, tips, self.cylinders, self.gauges, self.gauge_of, *matrices, self.size)
 
     def wrench(self, force: Float[Array, " l"], away: Float[Array, " l"]) -> Float[Array, "6"]:
         """Force and moment (N, N m) on the platform, in body axes, of forces (N) along lines whose strips are `away` (m) from
@@ -97,24 +98,30 @@ class Hull(eqx.Module):
         return jnp.concatenate([*[row.reshape(-1) for row in rows[:powers]], ends])
 
     def extremities(self) -> np.ndarray:
-        """Ends of all elements and of all columns (m)."""
+        """Where a sea has to be known (m): the ends of all elements and members, and the reference point."""
         start, axis = np.asarray(self.elements.start), np.asarray(self.elements.axis)
-        return np.concatenate([start, start + axis * np.asarray(self.elements.length), np.asarray(self.ends.position)], axis=1)
+        ends = (start, start + axis * np.asarray(self.elements.length), np.asarray(self.ends.position))
+        return np.concatenate([*ends, np.zeros((3, 1))], axis=1)
 
     def wetted(self, vertical: Float[Array, "3"], depth: Float[Array, " e"]) -> Wetted:
         """What of every element is under water.
 
-        `vertical` is the vertical in body axes, `depth` (m) that of the elements' lower ends under the surface. Exact, but for
-        a quarter of a metre about the element's ends. A pontoon loses volume evenly as its height leaves the water.
+        `vertical` is the vertical in body axes, `depth` (m) that of the elements' lower ends under the surface. Exact, but
+        where an end has just entered the water (`scales.entered`). A pontoon loses volume evenly as it leaves the water.
         """
         elements = self.elements
         column, slope = elements.thickness == 0, vertical @ elements.axis
         steep = jnp.where(column, jnp.maximum(slope, 1e-3), 1.0)
         rise = jnp.where(column, steep * elements.length, jnp.abs(slope) * elements.length + elements.thickness)
         low = depth + jnp.where(column, 0.0, 0.5 * elements.thickness + jnp.maximum(-slope, 0.0) * elements.length)
-        under = SMOOTH * (ramp(low / SMOOTH) - ramp((low - rise) / SMOOTH))
+        width = ENTERING * self.size
+        under = entered(low, width) - entered(low - rise, width)
         wet = under / rise * elements.length
         return Wetted(wet, jnp.where(column, wet, elements.length))
+
+    def ends_wetted(self, depth: Float[Array, " m"]) -> Float[Array, " m"]:
+        """Share of ends at a `depth` (m) that is under water."""
+        return covered(depth, COVERING * self.size)
 
 
 def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tuple[Array, Array, Array]:

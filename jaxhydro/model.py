@@ -13,8 +13,8 @@ from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, EndShape, Instant, Lines, Parameter, StripShape
 from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew, turned
+from jaxhydro.scales import pace_of, size_of
 from jaxhydro.solve6 import accelerate
-from jaxhydro.strips import end_wetted
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
@@ -98,6 +98,16 @@ class Model(eqx.Module):
     bound: bool = eqx.field(static=True, default=True)
 
     @property
+    def size(self) -> Float[Array, ""]:
+        """Length (-) over that of VolturnUS-S, by displaced volume: see `scales`."""
+        return size_of(self.body.mass, self.environment.density)
+
+    @property
+    def pace(self) -> Float[Array, ""]:
+        """Time (-) over that of VolturnUS-S, by Froude."""
+        return pace_of(self.size, self.environment.gravity)
+
+    @property
     def cylinders(self) -> Cylinders | None:
         """The strips, then ends, that diffract the waves; None: none do."""
         if self.diffraction == "none" or not self.hull.cylinders.radius.size:
@@ -111,10 +121,13 @@ class Model(eqx.Module):
         return {label: value for load in self.loads for label, value in load.values.items()}
 
     def about(self, label: str) -> Parameter:
-        """Unit, meaning, bounds and null of a parameter. Raises KeyError for an unknown label."""
+        """Unit, meaning, bounds and null of a parameter. Raises KeyError for an unknown label.
+
+        Bounds that are lengths or times go with the platform's size.
+        """
         for load in self.loads:
             if label in load.values:
-                return load.about(label)
+                return load.about(label).sized(float(self.size), float(self.pace))
         raise KeyError(f"no parameter {label!r}; there are: {', '.join(sorted(self.values))}")
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
@@ -223,7 +236,7 @@ class Model(eqx.Module):
         inward = inward + away * outgoing if self.centripetal else jnp.zeros_like(away)
         lines = Lines(away, inward)
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
-        end_wet = jnp.concatenate([end_wetted(depth[roots.shape[1] - whole :]), jnp.ones(m - whole)])
+        end_wet = jnp.concatenate([hull.ends_wetted(depth[roots.shape[1] - whole :]), jnp.ones(m - whole)])
         points = jnp.concatenate([strips.start + reach * strips.axis, ends.position[:, :whole]], axis=1)
         where = place[:, None] + turned(matrix, points)
         level = points if self.waves_at == "mean" else where

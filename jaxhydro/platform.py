@@ -38,6 +38,7 @@ from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.model import Model, RigidBody, strongly_typed
 from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.scales import size_of
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
 
@@ -56,10 +57,11 @@ def build(platform: schema.Platform) -> Model:
     mass, centre, inertia = platform.rigid_body.combined()
     body = RigidBody(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
     members = members_of(platform)
-    hull = Hull.of(members)
+    size = size_of(mass, water.density)
+    hull = Hull.of(members, size)
     loads: list[AbstractLoad] = [
         Weight(mass=body.mass, centre=body.centre, values={}),
-        _declared_hydrostatics(buoyancy(members), platform, mass, float(centre[2])),
+        _declared_hydrostatics(buoyancy(members, size), platform, mass, float(centre[2])),
     ]
     loads += _mooring(platform)
     for name, matrix, load in (

@@ -23,13 +23,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.rotations import step
-
 COLUMN_SLOPE = math.cos(math.radians(45.0))
 UPRIGHT = math.cos(math.radians(10.0))  # of an axis that counts as vertical
-SPACING = 2.5  # m, of the strips of a column under still water, where the platform file does not say
-PONTOON_SPACING = 5.0  # m, of a pontoon
-SMOOTH = 0.25  # m over which an end of an element enters or leaves the water
+SPACING = 2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
+PONTOON_SPACING = 5.0  # the same of a pontoon
+NEARLY = 0.05  # of a strip, that a hull may ask for beyond a whole number
+ENTERING = 0.1  # m times the size of the hull, in which an element's end enters the water
+COVERING = 0.5  # the same, in which water covers a face
 
 
 class Member(NamedTuple):
@@ -102,11 +102,11 @@ class Member(NamedTuple):
     def area(self, size: np.ndarray) -> np.ndarray:
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
 
-    def elements_and_orders(self) -> list[tuple[float, float, int]]:
+    def elements_and_orders(self, size: float = 1.0) -> list[tuple[float, float, int]]:
         """Load elements as fractions of the length from a to b, with the number of strips of each.
 
         As many as the platform file says, `points` strips each, cut at `kinks` too; else one between stations, with as many
-        as its length asks for.
+        as its length asks for in a hull of a `size` (`scales.size_of`).
         """
         length = float(np.linalg.norm(self.b - self.a))
         if self.elements is not None:
@@ -116,8 +116,9 @@ class Member(NamedTuple):
         found = []
         for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
-            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9)) if self.column else 1.0
-            count = math.ceil(under * (hi - lo) * length / (SPACING if self.column else PONTOON_SPACING))
+            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.column else 1.0
+            spacing = size * (SPACING if self.column else PONTOON_SPACING)
+            count = math.ceil(under * (hi - lo) * length / spacing - NEARLY)
             found.append((float(lo), float(hi), max(2, min(count, 20))))
         return found
 
@@ -175,8 +176,8 @@ class Ends(eqx.Module):
 _STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")
 
 
-def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
-    """Cut members into load elements and strips."""
+def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]:
+    """Cut members into load elements and strips; `size` as in `Member.elements_and_orders`."""
     labels: list[tuple[str, str]] = []
     elements: list[tuple] = []
     rows: list[tuple] = []
@@ -189,7 +190,7 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
         span = float(np.linalg.norm(member.b - member.a))
         directions = np.stack(member.directions, axis=1)
         upright = member.axis @ (member.b - member.a) > 0
-        for lo, hi, order in member.elements_and_orders():
+        for lo, hi, order in member.elements_and_orders(size):
             near, far = (lo, hi) if upright else (hi, lo)
             length = (hi - lo) * span
             first, last = member.size(np.array(near)), member.size(np.array(far))
@@ -244,7 +245,7 @@ class _End(NamedTuple):
     label: int
 
 
-def ends(members: Sequence[Member], strips: Strips) -> Ends:
+def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     """The two ends of every member, and the faces of tapered strips; what is not in the water is left out by its wetting.
 
     Pressure acts on all of them: where members meet, it cancels that on the other's side, which its strips count as exposed.
@@ -263,7 +264,7 @@ def ends(members: Sequence[Member], strips: Strips) -> Ends:
             radius = math.sqrt(area / math.pi) if member.column else 0.0
             own = (radius, area if member.column else 0.0, 2 / 3 * math.pi * radius**3)
             rows.append(_End(point, member.axis, member.gauge, 1.0 if far else -1.0, area, *own, label))
-        for lo, hi, order in member.elements_and_orders():
+        for lo, hi, order in member.elements_and_orders(size):
             near, far_end = (lo, hi) if upright else (hi, lo)
             first, last = (float(member.area(member.size(np.array([at])))[0]) for at in (near, far_end))
             if taper[:, count].any():
@@ -295,8 +296,3 @@ def _free(rows: Sequence[_End]) -> list[_End]:
                 found[large] = found[large]._replace(facing=max(ring[0], 0.0), volume=max(ring[1], 0.0))
                 found[small] = found[small]._replace(facing=0.0, volume=0.0)
     return found
-
-
-def end_wetted(depth: Float[Array, " m"]) -> Float[Array, " m"]:
-    """Share of ends at `depth` (m) that is under water."""
-    return step(depth / (2 * SMOOTH))

@@ -27,6 +27,12 @@ class Parameter(NamedTuple):
     upper: float = float("inf")
     null: float = 0.0
 
+    def sized(self, size: float, pace: float) -> "Parameter":
+        """With the bounds of a platform of other `size` and `pace` (-, `scales`), where they are lengths or times."""
+        factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
+        lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
+        return self if factor == 1.0 else self._replace(lower=lower, upper=upper)
+
 
 class StripShape(NamedTuple):
     """What of each strip is under water: displaced volume (m3), and the area (m2) that a flow along either direction sees."""

@@ -11,10 +11,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.rotations import cross, ramp, rotation, step
-from jaxhydro.strips import Member
-
-SMOOTH = 0.25  # m over which an end of a member enters or leaves the water
+from jaxhydro.rotations import cross, rotation
+from jaxhydro.scales import covered, entered
+from jaxhydro.strips import ENTERING, Member
 
 
 class Buoyancy(AbstractLoad):
@@ -41,6 +40,7 @@ class Buoyancy(AbstractLoad):
     bend: Float[Array, " p"]  # second moment over extent^3 times the other extent: pi/64 for a circle, 1/12 for a box
     directions: Float[Array, "3 2 p"]
     thickness: Float[Array, " p"]  # m, vertical extent beyond that of the axis
+    hull_size: Float[Array, ""]  # `scales.size_of` the platform
     extra_force: Float[Array, ""]  # N
     extra_stiffness: Float[Array, "3"]  # C33, C44, C55 beyond the geometry's
     values: dict[str, Float[Array, ""]]
@@ -65,7 +65,8 @@ class Buoyancy(AbstractLoad):
         rise = jnp.abs(slope) * self.length
         low = heave + low + 0.5 * (slope * self.length - rise) - 0.5 * self.thickness
         height = rise + self.thickness
-        wet = SMOOTH / height * (ramp(-low / SMOOTH) - ramp(-(low + height) / SMOOTH))
+        width = ENTERING * self.hull_size
+        wet = (entered(-low, width) - entered(-low - height, width)) / height
         # a column fills from its lower end; a pontoon loses volume evenly
         column = self.thickness == 0
         filled = jnp.where(column, wet, 1.0) * self.length
@@ -73,7 +74,7 @@ class Buoyancy(AbstractLoad):
         volume, along = (jnp.where(column, one, one * wet) for one in (volume, along))
         # the wedge of an inclined waterplane moves volume by -I tan along a direction and by I tan^2/2 along the axis
         tangent = jnp.stack(lean) / jnp.where(column, slope, 1.0)
-        pierced = jnp.where(column, step(-low / SMOOTH) - step(-(low + height) / SMOOTH), 0.0)
+        pierced = jnp.where(column, covered(-low, width) - covered(-low - height, width), 0.0)
         second, change = (one * tangent * pierced for one in self._second_moment(filled))
         swell = 0.5 * (change * tangent).sum(axis=0)  # where the section grows, the raised side gains more than the other loses
         volume, along = volume + swell, along + 0.5 * (second * tangent).sum(axis=0) + filled * swell
@@ -129,8 +130,10 @@ def _upright(load: Buoyancy, weight_density: Float[Array, ""]):
     return *load.geometry(zeros[0], jnp.eye(3)[2]), slope
 
 
-def buoyancy(members: Sequence[Member]) -> Buoyancy:
-    """The buoyancy of members as they are, nothing declared beyond them. A member is cut where its taper changes."""
+def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
+    """The buoyancy of members as they are, nothing declared beyond them. A member is cut where its taper changes.
+
+    `size` is that of the platform (`scales.size_of`)."""
     rows: list[tuple] = []
     for member in members:
         edges = [0.0, *member.kinks(), 1.0]
@@ -161,4 +164,5 @@ def buoyancy(members: Sequence[Member]) -> Buoyancy:
         arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
     names = ("lower", "axis", "length", "size", "taper", "shape", "bend", "directions", "thickness")
     pieces: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
+    pieces["hull_size"] = jnp.asarray(size)
     return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)), values={})
