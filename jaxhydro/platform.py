@@ -1,6 +1,7 @@
 """A platform file made into a model."""
 
 import math
+import warnings
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -37,7 +38,7 @@ from jaxhydro.loads import (
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.model import Model, RigidBody, strongly_typed
-from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.problems import InputError, PlatformWarning, Problem, suggest
 from jaxhydro.scales import size_of
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
@@ -49,9 +50,14 @@ def load_model(path_or_name: str | PathLike[str]) -> Model:
 
 
 def build(platform: schema.Platform) -> Model:
-    """The model that a platform declares. Raises RuntimeError unless JAX's float64 is switched on."""
+    """The model that a platform declares. Warns of mooring lines that are slack (`PlatformWarning`).
+
+    Raises RuntimeError unless JAX's float64 is switched on.
+    """
     if not jax.config.read("jax_enable_x64"):
         raise RuntimeError("jaxhydro needs float64: jax.config.update('jax_enable_x64', True) before anything else")
+    if isinstance(platform.mooring, schema.LinearSprings) and (said := platform.mooring.slackness()):
+        warnings.warn(f"{platform.name}: {said}", PlatformWarning, stacklevel=2)
     water = platform.water
     environment = Environment(water.density, water.depth, water.gravity)
     mass, centre, inertia = platform.rigid_body.combined()
