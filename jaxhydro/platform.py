@@ -43,6 +43,8 @@ from jaxhydro.scales import size_of
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
 
+PARTLY_WET = 0.05  # of the height of a pontoon: less, under or above still water, does not matter
+
 
 def load_model(path_or_name: str | PathLike[str]) -> Model:
     """The model of a platform file, or of a built-in platform by its name. Raises InputError with all that is wrong in it."""
@@ -63,6 +65,7 @@ def build(platform: schema.Platform) -> Model:
     mass, centre, inertia = platform.rigid_body.combined()
     body = RigidBody(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
     members = members_of(platform)
+    _none_partly_wet(members, platform)
     size = size_of(mass, water.density)
     hull = Hull.of(members, size)
     loads: list[AbstractLoad] = [
@@ -113,6 +116,24 @@ def build(platform: schema.Platform) -> Model:
     model = Model(environment, body, hull, tuple(loads), *forms)
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
+
+
+def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
+    """Raises InputError for pontoons that still water cuts: their waterplane and the waves' pressure on it are not modelled."""
+    names = [member.name for member in platform.members for _ in member.heading]
+    where = {name: i for i, name in reversed(list(enumerate(member.name for member in platform.members)))}
+    problems = [
+        Problem(
+            f"members[{where[name]}]",
+            "a member flatter than 45 deg to be wholly above or wholly under still water",
+            f"{name!r}, of whose height {member.submerged:.0%} is under it",
+            "Make what floats of upright members, rA under rB, side by side; cut an inclined brace in two at still water.",
+        )
+        for name, member in zip(names, members, strict=True)
+        if not member.column and PARTLY_WET < member.submerged < 1 - PARTLY_WET
+    ]
+    if problems:
+        raise InputError(platform.name, list(dict.fromkeys(problems)))
 
 
 def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:

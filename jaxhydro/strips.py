@@ -99,6 +99,17 @@ class Member(NamedTuple):
         bend = np.abs(np.diff(slope, axis=0)).max(axis=1)
         return [float(at) for at, one in zip(self.stations[1:-1], bend, strict=True) if one > 1e-9 * self.sizes.max()]
 
+    @property
+    def submerged(self) -> float:
+        """Share (-) of a pontoon's height that is under still water at the reference position."""
+        heights = []
+        for end, size in ((self.a, self.sizes[0]), (self.b, self.sizes[-1])):
+            up, other = (abs(float(direction[2])) for direction in self.directions)
+            half = 0.5 * math.hypot(up, other) * size[0] if self.circular else 0.5 * (up * size[0] + other * size[1])
+            heights += [float(end[2] - half), float(end[2] + half)]
+        low, high = min(heights), max(heights)
+        return min(1.0, max(0.0, -low / (high - low)))
+
     def area(self, size: np.ndarray) -> np.ndarray:
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
 
