@@ -13,7 +13,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.scales import covered, entered
-from jaxhydro.strips import COVERING, ENTERING, Elements, Ends, Member, Strips, cut, ends
+from jaxhydro.strips import COVERING, ENTERING, Elements, Ends, Member, Strips, cut, ends, waterplane
+from jaxhydro.waterplane import Waterplane, segment
 from jaxhydro.waves.flow import Cylinders
 
 
@@ -43,6 +44,7 @@ class Hull(eqx.Module):
     inward: Float[Array, "6 2*l"]
     moments: Float[Array, "6 6 k"]
     size: Float[Array, ""]  # `scales.size_of` the platform
+    waterplane: Waterplane | None = None  # of members that lie at the surface
 
     @classmethod
     def of(cls, members: Sequence[Member], size: float = 1.0) -> "Hull":
@@ -58,7 +60,8 @@ class Hull(eqx.Module):
         place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
         matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
-        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices, jnp.asarray(size))
+        more = (jnp.asarray(size), waterplane(members, size))
+        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices, *more)
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
         """With the directions of strips and ends turned about their points, which stay."""
@@ -66,7 +69,8 @@ class Hull(eqx.Module):
         tips = eqx.tree_at(lambda x: x.axis, self.ends, rotation @ self.ends.axis)
         powers = (self.moments.shape[2] - tips.area.size) // max(2 * len(self.elements.length), 1)
         matrices = _matrices(self.elements, strips, tips, powers)
-        return Hull(self.elements, strips, tips, self.cylinders, self.gauges, self.gauge_of, *matrices, self.size)
+        points, more = (self.cylinders, self.gauges, self.gauge_of), (self.size, self.waterplane)
+        return Hull(self.elements, strips, tips, *points, *matrices, *more)
 
     def wrench(self, force: Float[Array, " l"], away: Float[Array, " l"]) -> Float[Array, "6"]:
         """Force and moment (N, N m) on the platform, in body axes, of forces (N) along lines whose strips are `away` (m) from
@@ -116,7 +120,10 @@ class Hull(eqx.Module):
         low = depth + jnp.where(column, 0.0, 0.5 * elements.thickness + jnp.maximum(-slope, 0.0) * elements.length)
         width = ENTERING * self.size
         under = entered(low, width) - entered(low - rise, width)
-        wet = under / rise * elements.length
+        share = under / rise
+        if self.waterplane is not None:
+            share = jnp.where(elements.circle > 0, segment(2 * share - 1) / jnp.pi, share)
+        wet = share * elements.length
         return Wetted(wet, jnp.where(column, wet, elements.length))
 
     def ends_wetted(self, depth: Float[Array, " m"]) -> Float[Array, " m"]:

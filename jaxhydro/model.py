@@ -254,8 +254,9 @@ class Model(eqx.Module):
             def across(field: Float[Array, "a n+m"]) -> Float[Array, "2 n"]:
                 return (toward * field[:, None, :n]).sum(axis=0)
 
-            extra = [None if field is None else across(field) for field in (flow.diffracted, flow.tuned)]
-            past = StripFlow(own + across(flow.velocity), across(flow.acceleration), *extra)
+            diffracted, tuned = (None if field is None else across(field) for field in (flow.diffracted, flow.tuned))
+            moving = (own + across(flow.velocity), across(flow.acceleration))
+            past = StripFlow(*moving, diffracted, tuned, flow.pressure[:n])
             at = jnp.concatenate([jnp.arange(n, n + whole), faces]) if ends.strip else slice(n, None)
             at_ends = [(toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
             past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[at], end_wet)

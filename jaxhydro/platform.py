@@ -43,8 +43,6 @@ from jaxhydro.scales import size_of
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
 
-PARTLY_WET = 0.05  # of the height of a pontoon: less, under or above still water, does not matter
-
 
 def load_model(path_or_name: str | PathLike[str]) -> Model:
     """The model of a platform file, or of a built-in platform by its name. Raises InputError with all that is wrong in it."""
@@ -119,18 +117,18 @@ def build(platform: schema.Platform) -> Model:
 
 
 def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
-    """Raises InputError for pontoons that still water cuts: their waterplane and the waves' pressure on it are not modelled."""
+    """Raises InputError for pontoons that still water cuts, but for level ones (`waterplane`): theirs is not modelled."""
     names = [member.name for member in platform.members for _ in member.heading]
     where = {name: i for i, name in reversed(list(enumerate(member.name for member in platform.members)))}
     problems = [
         Problem(
             f"members[{where[name]}]",
-            "a member flatter than 45 deg to be wholly above or wholly under still water",
+            "a member between 10 and 45 deg to the horizontal, or a tilted box, to be wholly above or under still water",
             f"{name!r}, of whose height {member.submerged:.0%} is under it",
-            "Make what floats of upright members, rA under rB, side by side; cut an inclined brace in two at still water.",
+            "Make what floats of level or upright members, side by side; cut an inclined brace in two at still water.",
         )
         for name, member in zip(names, members, strict=True)
-        if not member.column and PARTLY_WET < member.submerged < 1 - PARTLY_WET
+        if member.pierced and not member.floats
     ]
     if problems:
         raise InputError(platform.name, list(dict.fromkeys(problems)))

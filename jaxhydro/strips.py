@@ -23,10 +23,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.waterplane import Waterplane, wet_section
+
 COLUMN_SLOPE = math.cos(math.radians(45.0))
 UPRIGHT = math.cos(math.radians(10.0))  # of an axis that counts as vertical
 SPACING = 2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
 PONTOON_SPACING = 5.0  # the same of a pontoon
+PARTLY_WET = 0.05  # of the height of a pontoon: less, under or above still water, does not matter
+FLOATING = 8  # load elements at least along a member that lies at the surface
 NEARLY = 0.05  # of a strip, that a hull may ask for beyond a whole number
 ENTERING = 0.1  # m times the size of the hull, in which an element's end enters the water
 COVERING = 0.5  # the same, in which water covers a face
@@ -110,6 +114,24 @@ class Member(NamedTuple):
         low, high = min(heights), max(heights)
         return min(1.0, max(0.0, -low / (high - low)))
 
+    @property
+    def pierced(self) -> bool:
+        """Whether still water cuts it lengthwise: a pontoon that is partly wet."""
+        return not self.column and PARTLY_WET < self.submerged < 1 - PARTLY_WET
+
+    @property
+    def upward(self) -> int | None:
+        """Which of its two directions is near vertical, where it lies level enough to be wet by its local depth; else None."""
+        steep = [abs(float(direction[2])) > UPRIGHT for direction in self.directions]
+        if abs(float(self.axis[2])) > math.sqrt(1 - UPRIGHT**2) or not (any(steep) or self.circular):
+            return None
+        return 0 if steep[0] else 1
+
+    @property
+    def floats(self) -> bool:
+        """Whether it lies at the surface: see `waterplane`."""
+        return self.pierced and self.upward is not None
+
     def area(self, size: np.ndarray) -> np.ndarray:
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
 
@@ -120,6 +142,10 @@ class Member(NamedTuple):
         as its length asks for in a hull of a `size` (`scales.size_of`).
         """
         length = float(np.linalg.norm(self.b - self.a))
+        if self.floats:
+            at = np.linspace(0.0, 1.0, max(self.elements or 0, FLOATING) + 1)
+            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
         if self.elements is not None:
             at = np.linspace(0.0, 1.0, self.elements + 1)
             far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
@@ -161,6 +187,7 @@ class Elements(eqx.Module):
     length: Float[Array, " e"]  # m
     thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: a column
     gauge: Float[Array, "3 e"]  # m, where the surface is looked up: a column's axis at still water, a pontoon's middle
+    circle: Float[Array, " e"]  # 1: wet by the segment of a circle (a cylinder that lies at the surface), 0: evenly
     label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and element
     labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
 
@@ -207,11 +234,17 @@ def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]
             first, last = member.size(np.array(near)), member.size(np.array(far))
             start = member.a + (member.b - member.a) * near
             thickness = 0.0 if member.column else float(np.abs(directions[2]) @ (0.5 * (first + last)))
+            lowered = np.zeros(3)
+            if (up := member.upward) is not None and member.floats:
+                height = 0.5 * float(first[up] + last[up])
+                thickness = height
+                middle = wet_section(member.submerged, member.circular)[1]
+                lowered = middle * height * directions[:, up] * np.sign(directions[2, up])
             point, weight = np.polynomial.legendre.leggauss(order)
             for fraction, share in zip(0.5 * (1 + point), 0.5 * weight, strict=True):
                 rows.append(
                     (
-                        start,
+                        start + lowered,
                         member.axis,
                         directions,
                         fraction,
@@ -223,9 +256,10 @@ def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]
                         0.25 * float(first[0] + last[0]) if member.diffracts else 0.0,
                     )
                 )
-            elements.append((start, member.axis, length, thickness, member.gauge, label))
+            round_ = 1.0 if member.floats and member.circular else 0.0
+            elements.append((start, member.axis, length, thickness, member.gauge, round_, label))
     triple, pair, flat = np.zeros((3, 0)), np.zeros((2, 0)), np.zeros(0)
-    whole = [triple, triple, flat, flat, triple]
+    whole = [triple, triple, flat, flat, triple, flat]
     parts = [triple, triple, np.zeros((3, 2, 0)), flat, flat, pair, pair, flat]
     label_of: tuple[tuple[int, ...], ...] = ((), ())
     element_of: tuple[int, ...] = ()
@@ -237,9 +271,27 @@ def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]
         label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
     of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
     strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
-    names = ("start", "axis", "length", "thickness", "gauge")
+    names = ("start", "axis", "length", "thickness", "gauge", "circle")
     of_elements: dict[str, Any] = dict(zip(names, map(jnp.asarray, whole), strict=True))
     return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
+
+
+def waterplane(members: Sequence[Member], size: float = 1.0) -> Waterplane | None:
+    """Of members that lie at the surface; None: there are none."""
+    width, length = list[float](), list[float]()
+    strip, up, count = list[int](), list[int](), 0
+    for member in members:
+        span = float(np.linalg.norm(member.b - member.a))
+        for lo, hi, order in member.elements_and_orders(size):
+            if (upward := member.upward) is not None and member.floats:
+                across = float(member.size(np.array(0.5 * (lo + hi)))[1 - upward])
+                share = 0.5 * np.polynomial.legendre.leggauss(order)[1]
+                width += order * [across * wet_section(member.submerged, member.circular)[2]]
+                length += [float(one) * (hi - lo) * span for one in share]
+                strip += range(count, count + order)
+                up += order * [upward]
+            count += order
+    return Waterplane(jnp.array(width), jnp.array(length), tuple(strip), tuple(up)) if strip else None
 
 
 class _End(NamedTuple):
@@ -274,6 +326,11 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
             area = float(member.area(member.size(np.array([fraction])))[0])
             radius = math.sqrt(area / math.pi) if member.column else 0.0
             own = (radius, area if member.column else 0.0, 2 / 3 * math.pi * radius**3)
+            if (up := member.upward) is not None and member.floats:
+                part, middle, _ = wet_section(member.submerged, member.circular)
+                area, direction = part * area, member.directions[up]
+                height = float(member.size(np.array([fraction]))[0][up])
+                point = point + middle * height * direction * np.sign(direction[2])
             rows.append(_End(point, member.axis, member.gauge, 1.0 if far else -1.0, area, *own, label))
         for lo, hi, order in member.elements_and_orders(size):
             near, far_end = (lo, hi) if upright else (hi, lo)

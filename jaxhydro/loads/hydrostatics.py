@@ -14,6 +14,9 @@ from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
 from jaxhydro.strips import ENTERING, Member
+from jaxhydro.waterplane import chord, segment
+
+ALONG, ACROSS = 16, 4  # slabs and slices of a member that lies at the surface
 
 
 class Buoyancy(AbstractLoad):
@@ -40,6 +43,10 @@ class Buoyancy(AbstractLoad):
     bend: Float[Array, " p"]  # second moment over extent^3 times the other extent: pi/64 for a circle, 1/12 for a box
     directions: Float[Array, "3 2 p"]
     thickness: Float[Array, " p"]  # m, vertical extent beyond that of the axis
+    tube: Float[Array, "3 t"]  # m: middles of slices of cylinders that lie at the surface
+    tube_across: Float[Array, "3 2 t"]  # unit vectors across their axes
+    tube_radius: Float[Array, " t"]
+    tube_length: Float[Array, " t"]
     hull_size: Float[Array, ""]  # `scales.size_of` the platform
     extra_force: Float[Array, ""]  # N
     extra_stiffness: Float[Array, "3"]  # C33, C44, C55 beyond the geometry's
@@ -81,6 +88,19 @@ class Buoyancy(AbstractLoad):
         moment = volume * self.lower + along * self.axis - (self.directions * second).sum(axis=1)
         return volume, moment
 
+    def _tubes(
+        self, heave: Float[Array, ""], vertical: Float[Array, "3"]
+    ) -> tuple[Float[Array, " t"], Float[Array, "3 t"]]:
+        """Wet volume (m3) of slices of cylinders, and its first moment (m4): segments of circles."""
+        depth = -(heave + vertical @ self.tube)
+        upward = jnp.einsum("i,idt->dt", vertical, self.tube_across)
+        slope = jnp.sqrt((upward**2).sum(axis=0))
+        x = depth / (slope * self.tube_radius)
+        volume = segment(x) * self.tube_radius**2 * self.tube_length
+        towards = jnp.einsum("idt,dt->it", self.tube_across, upward / slope)
+        first = 2 / 3 * chord(x) ** 3 * self.tube_radius**3 * self.tube_length
+        return volume, volume * self.tube - first * towards
+
     def _frustum(self, reach: Float[Array, " p"]) -> tuple[Float[Array, " p"], Float[Array, " p"]]:
         """Volume (m3) of pieces up to `reach` (m) from their lower ends, and its first moment (m4) about these."""
         (a, b), (p, q) = self.size, self.taper
@@ -102,6 +122,9 @@ class Buoyancy(AbstractLoad):
         """Buoyancy (N, N m) in body axes at a displacement of the reference point; `weight_density` is rho g (N/m3)."""
         vertical = matrix[2]
         volume, moment = self.geometry(position[2], vertical)
+        if self.tube_radius.size:
+            more = self._tubes(position[2], vertical)
+            volume, moment = (jnp.concatenate(parts, axis=-1) for parts in zip((volume, moment), more, strict=True))
         total = jnp.concatenate([volume[None], moment]).sum(axis=1) * weight_density
         up = total[0] + self.extra_force - self.extra_stiffness[0] * position[2]
         # the sine of the lean about the body's own x and y: roll and pitch to first order
@@ -127,7 +150,8 @@ class Buoyancy(AbstractLoad):
 def _upright(load: Buoyancy, weight_density: Float[Array, ""]):
     zeros = jnp.zeros(6)
     slope = jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(zeros)
-    return *load.geometry(zeros[0], jnp.eye(3)[2]), slope
+    pieces, tubes = load.geometry(zeros[0], jnp.eye(3)[2]), load._tubes(zeros[0], jnp.eye(3)[2])
+    return *(jnp.concatenate(parts, axis=-1) for parts in zip(pieces, tubes, strict=True)), slope
 
 
 def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
@@ -135,11 +159,18 @@ def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
 
     `size` is that of the platform (`scales.size_of`)."""
     rows: list[tuple] = []
+    tubes: list[tuple] = []
     for member in members:
         edges = [0.0, *member.kinks(), 1.0]
         span = member.b - member.a
         upward = not member.column or span[2] > 0
         directions = np.stack(member.directions, axis=1)
+        if (up := member.upward) is not None and member.floats:
+            if member.circular:
+                tubes += _slices(member, directions)
+            else:
+                rows += _slabs(member, directions, up)
+            continue
         for near, far in pairwise(edges):
             low, high = (near, far) if upward else (far, near)
             first, last = member.size(np.array(low)), member.size(np.array(high))
@@ -164,5 +195,35 @@ def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
         arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
     names = ("lower", "axis", "length", "size", "taper", "shape", "bend", "directions", "thickness")
     pieces: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
+    of_tubes = [triple, np.zeros((3, 2, 0)), flat, flat]
+    if tubes:
+        of_tubes = [np.stack(column, axis=-1) for column in zip(*tubes, strict=True)]
+    pieces |= zip(("tube", "tube_across", "tube_radius", "tube_length"), map(jnp.asarray, of_tubes), strict=True)
     pieces["hull_size"] = jnp.asarray(size)
     return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)), values={})
+
+
+def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
+    """A box that lies at the surface as upright slabs: exact while still water cuts their sides."""
+    span, upward = member.b - member.a, directions[:, up] * np.sign(directions[2, up])
+    across = directions[:, 1 - up]
+    found = []
+    for s in (np.arange(ALONG) + 0.5) / ALONG:
+        size = member.size(np.array(s))
+        height, width = float(size[up]), float(size[1 - up])
+        extent = np.array([np.linalg.norm(span) / ALONG, width / ACROSS])
+        for u in (np.arange(ACROSS) + 0.5) / ACROSS - 0.5:
+            lower = member.a + span * s + u * width * across - 0.5 * height * upward
+            frame = np.stack([member.axis, across], axis=1)
+            found.append((lower, upward, height, extent, np.zeros(2), 1.0, 1 / 12, frame, 0.0))
+    return found
+
+
+def _slices(member: Member, directions: np.ndarray) -> list[tuple]:
+    """A cylinder that lies at the surface as slices, at Gauss points of its length."""
+    point, weight = np.polynomial.legendre.leggauss(ALONG)
+    span = member.b - member.a
+    return [
+        (member.a + span * s, directions, 0.5 * float(member.size(np.array(s))[0]), float(np.linalg.norm(span)) * w)
+        for s, w in zip(0.5 * (1 + point), 0.5 * weight, strict=True)
+    ]
