@@ -12,9 +12,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.ends import Ends, ends
 from jaxhydro.scales import covered, entered
-from jaxhydro.strips import COVERING, ENTERING, Elements, Ends, Member, Strips, cut, ends, waterplane
-from jaxhydro.waterplane import Waterplane, segment
+from jaxhydro.strips import COVERING, ENTERING, Elements, Member, Strips, cut
+from jaxhydro.waterplane import Waterplane, segment, waterplane
 from jaxhydro.waves.flow import Cylinders
 
 

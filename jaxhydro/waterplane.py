@@ -5,6 +5,7 @@ the waves on the lid that still water makes of the section, which a wet body doe
 force would be that on a closed body under water.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import equinox as eqx
@@ -17,6 +18,7 @@ from jaxhydro.scales import covered
 
 if TYPE_CHECKING:
     from jaxhydro.loads.base import Instant
+    from jaxhydro.strips import Member
 
 EDGE = 0.02  # of a section's height: share that is wet or dry, below which the surface has left it
 
@@ -81,3 +83,21 @@ class Waterplane(eqx.Module):
         moment = -area * self.width**2 / 12 * aside * sign * jnp.cross(across, upward, axis=0)
         on_strips = jnp.zeros_like(flow.acceleration).at[up, of].add(force)
         return on_strips, jnp.concatenate([jnp.zeros(3), moment.sum(axis=1)])
+
+
+def waterplane(members: "Sequence[Member]", size: float = 1.0) -> Waterplane | None:
+    """Of members that lie at the surface; None: there are none."""
+    width, length = list[float](), list[float]()
+    strip, up, count = list[int](), list[int](), 0
+    for member in members:
+        span = float(np.linalg.norm(member.b - member.a))
+        for lo, hi, order in member.elements_and_orders(size):
+            if (upward := member.upward) is not None and member.floats:
+                across = float(member.size(np.array(0.5 * (lo + hi)))[1 - upward])
+                share = 0.5 * np.polynomial.legendre.leggauss(order)[1]
+                width += order * [across * wet_section(member.submerged, member.circular)[2]]
+                length += [float(one) * (hi - lo) * span for one in share]
+                strip += range(count, count + order)
+                up += order * [upward]
+            count += order
+    return Waterplane(jnp.array(width), jnp.array(length), tuple(strip), tuple(up)) if strip else None

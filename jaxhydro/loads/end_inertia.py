@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.ends import Ends
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.strips import Ends
 
 
 def spread_ends(
