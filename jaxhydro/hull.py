@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 from jaxhydro.ends import Ends, ends
 from jaxhydro.scales import covered, entered
 from jaxhydro.strips import COVERING, ENTERING, Elements, Member, Strips, cut
-from jaxhydro.waterplane import Waterplane, segment, waterplane
+from jaxhydro.waterplane import Leaning, Waterplane, leaning, segment, waterplane
 from jaxhydro.waves.flow import Cylinders
 
 
@@ -38,7 +38,7 @@ class Hull(eqx.Module):
     elements: Elements
     strips: Strips
     ends: Ends
-    cylinders: Cylinders  # of strips, then ends without faces
+    cylinders: Cylinders  # of strips, ends without faces, and `leaning`
     gauges: Float[Array, "3 g"]  # m, where the surface elevation is looked up
     gauge_of: tuple[int, ...] = eqx.field(static=True)  # the gauge of every element, then end without faces
     motion: Float[Array, "6 2*l"]
@@ -46,6 +46,7 @@ class Hull(eqx.Module):
     moments: Float[Array, "6 6 k"]
     size: Float[Array, ""]  # `scales.size_of` the platform
     waterplane: Waterplane | None = None  # of members that lie at the surface
+    leaning: Leaning | None = None  # members that lean and that still water cuts
 
     @classmethod
     def of(cls, members: Sequence[Member], size: float = 1.0) -> "Hull":
@@ -56,12 +57,14 @@ class Hull(eqx.Module):
         radii = sorted({r for r in strips.diffracts if r > 0})
         index = tuple(radii.index(r) if r > 0 else -1 for r in strips.diffracts)
         whole = len(tips.label) - len(tips.strip)
-        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * whole))
+        lean = leaning(members)
+        points = whole + (0 if lean is None else lean.area.size)
+        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * points))
         gauges = np.concatenate([elements.gauge, tips.gauge[:, :whole]], axis=1).round(9)
         place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
         matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
-        more = (jnp.asarray(size), waterplane(members, size))
+        more = (jnp.asarray(size), waterplane(members, size), lean)
         return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices, *more)
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
@@ -70,7 +73,7 @@ class Hull(eqx.Module):
         tips = eqx.tree_at(lambda x: x.axis, self.ends, rotation @ self.ends.axis)
         powers = (self.moments.shape[2] - tips.area.size) // max(2 * len(self.elements.length), 1)
         matrices = _matrices(self.elements, strips, tips, powers)
-        points, more = (self.cylinders, self.gauges, self.gauge_of), (self.size, self.waterplane)
+        points, more = (self.cylinders, self.gauges, self.gauge_of), (self.size, self.waterplane, self.leaning)
         return Hull(self.elements, strips, tips, *points, *matrices, *more)
 
     def wrench(self, force: Float[Array, " l"], away: Float[Array, " l"]) -> Float[Array, "6"]:

@@ -237,7 +237,8 @@ class Model(eqx.Module):
         lines = Lines(away, inward)
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
         end_wet = jnp.concatenate([hull.ends_wetted(depth[roots.shape[1] - whole :]), jnp.ones(m - whole)])
-        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position[:, :whole]], axis=1)
+        lids = [] if hull.leaning is None else [hull.leaning.point]
+        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position[:, :whole], *lids], axis=1)
         where = place[:, None] + turned(matrix, points)
         level = points if self.waves_at == "mean" else where
         where = jnp.concatenate([level[:2], (where if self.wetting == "instantaneous" else points)[2:]])
@@ -257,7 +258,7 @@ class Model(eqx.Module):
             diffracted, tuned = (None if field is None else across(field) for field in (flow.diffracted, flow.tuned))
             moving = (own + across(flow.velocity), across(flow.acceleration))
             past = StripFlow(*moving, diffracted, tuned, flow.pressure[:n])
-            at = jnp.concatenate([jnp.arange(n, n + whole), faces]) if ends.strip else slice(n, None)
+            at = jnp.concatenate([jnp.arange(n, n + whole), faces]) if ends.strip else slice(n, n + whole)
             at_ends = [(toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
             past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[at], end_wet)
         return Instant(
@@ -275,6 +276,7 @@ class Model(eqx.Module):
             lines,
             sea.drift(time),
             None if replaced is None else sea.excitation(time, above),
+            None if flow is None or not lids else (flow.pressure[n + whole :], axes.T @ flow.acceleration[:, n + whole :]),
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":

@@ -117,18 +117,19 @@ def build(platform: schema.Platform) -> Model:
 
 
 def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
-    """Raises InputError for pontoons that still water cuts, but for level ones (`waterplane`): theirs is not modelled."""
+    """Raises InputError for pontoons that still water cuts, but for those whose waterplane is modelled: level
+    ones, and inclined ones that are cut through their sides (`waterplane`)."""
     names = [member.name for member in platform.members for _ in member.heading]
     where = {name: i for i, name in reversed(list(enumerate(member.name for member in platform.members)))}
     problems = [
         Problem(
             f"members[{where[name]}]",
-            "a member between 10 and 45 deg to the horizontal, or a tilted box, to be wholly above or under still water",
+            "a member flatter than 45 deg to be level, or clear of still water, or cut by it between its ends",
             f"{name!r}, of whose height {member.submerged:.0%} is under it",
-            "Make what floats of level or upright members, side by side; cut an inclined brace in two at still water.",
+            "Make what floats of level or upright members, side by side; let a brace end well above still water.",
         )
         for name, member in zip(names, members, strict=True)
-        if member.pierced and not member.floats
+        if member.pierced and not (member.floats or member.fills)
     ]
     if problems:
         raise InputError(platform.name, list(dict.fromkeys(problems)))

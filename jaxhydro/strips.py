@@ -57,9 +57,12 @@ class Member(NamedTuple):
 
     @property
     def axis(self) -> np.ndarray:
-        """Unit vector from the lower to the upper end of a column, from a to b of a pontoon."""
-        axis = (self.b - self.a) / np.linalg.norm(self.b - self.a)
-        return -axis if self.column and axis[2] < 0 else axis
+        """Unit vector from the lower to the upper end of what fills from its lower end, from a to b of others."""
+        return -self._along if self.fills and self._along[2] < 0 else self._along
+
+    @property
+    def _along(self) -> np.ndarray:
+        return (self.b - self.a) / np.linalg.norm(self.b - self.a)
 
     @property
     def column(self) -> bool:
@@ -68,7 +71,9 @@ class Member(NamedTuple):
     @property
     def directions(self) -> tuple[np.ndarray, np.ndarray]:
         """The two unit vectors across the axis: for a pontoon horizontal and upward, for a vertical column x and y."""
-        axis = self.axis
+        return self._across(self.axis)
+
+    def _across(self, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if abs(axis[2]) > 1.0 - 1e-9:
             first = np.array([1.0, 0.0, 0.0])
         else:
@@ -80,8 +85,8 @@ class Member(NamedTuple):
 
     @property
     def gauge(self) -> np.ndarray:
-        """Where (m) the surface elevation is looked up for it: a column's axis at still water, a pontoon's middle."""
-        if self.column:
+        """Where (m) the surface elevation is looked up for it: its axis at still water if it `fills`, else its middle."""
+        if self.fills:
             return self.a + (self.b - self.a) * (-self.a[2] / (self.b[2] - self.a[2]))
         return 0.5 * (self.a + self.b)
 
@@ -105,14 +110,19 @@ class Member(NamedTuple):
 
     @property
     def submerged(self) -> float:
-        """Share (-) of a pontoon's height that is under still water at the reference position."""
-        heights = []
-        for end, size in ((self.a, self.sizes[0]), (self.b, self.sizes[-1])):
-            up, other = (abs(float(direction[2])) for direction in self.directions)
-            half = 0.5 * math.hypot(up, other) * size[0] if self.circular else 0.5 * (up * size[0] + other * size[1])
-            heights += [float(end[2] - half), float(end[2] + half)]
-        low, high = min(heights), max(heights)
+        """Share (-) of its height that is under still water at the reference position."""
+        heights = np.concatenate(self._edges())
+        low, high = float(heights.min()), float(heights.max())
         return min(1.0, max(0.0, -low / (high - low)))
+
+    def _edges(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest z (m) of the faces at a and b."""
+        up, other = (abs(float(direction[2])) for direction in self._across(self._along))
+        found = []
+        for end, size in ((self.a, self.sizes[0]), (self.b, self.sizes[-1])):
+            half = 0.5 * math.hypot(up, other) * size[0] if self.circular else 0.5 * (up * size[0] + other * size[1])
+            found.append(np.array([end[2] - half, end[2] + half]))
+        return found[0], found[1]
 
     @property
     def pierced(self) -> bool:
@@ -122,10 +132,18 @@ class Member(NamedTuple):
     @property
     def upward(self) -> int | None:
         """Which of its two directions is near vertical, where it lies level enough to be wet by its local depth; else None."""
-        steep = [abs(float(direction[2])) > UPRIGHT for direction in self.directions]
-        if abs(float(self.axis[2])) > math.sqrt(1 - UPRIGHT**2) or not (any(steep) or self.circular):
+        steep = [abs(float(direction[2])) > UPRIGHT for direction in self._across(self._along)]
+        if abs(float(self._along[2])) > math.sqrt(1 - UPRIGHT**2) or not (any(steep) or self.circular):
             return None
         return 0 if steep[0] else 1
+
+    @property
+    def fills(self) -> bool:
+        """Whether it fills from its lower end: a column, or an inclined pontoon that still water cuts through its sides."""
+        if self.column:
+            return True
+        low, high = sorted(self._edges(), key=lambda edge: edge[0])
+        return self.pierced and self.upward is None and low[1] <= 0.0 <= high[0]
 
     @property
     def floats(self) -> bool:
@@ -153,7 +171,7 @@ class Member(NamedTuple):
         found = []
         for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
-            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.column else 1.0
+            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.fills else 1.0
             spacing = size * (SPACING if self.column else PONTOON_SPACING)
             count = math.ceil(under * (hi - lo) * length / spacing - NEARLY)
             found.append((float(lo), float(hi), max(2, min(count, 20))))
@@ -185,7 +203,7 @@ class Elements(eqx.Module):
     start: Float[Array, "3 e"]  # m, the lower end
     axis: Float[Array, "3 e"]  # upward for a column
     length: Float[Array, " e"]  # m
-    thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: a column
+    thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: it fills from its lower end
     gauge: Float[Array, "3 e"]  # m, where the surface is looked up: a column's axis at still water, a pontoon's middle
     circle: Float[Array, " e"]  # 1: wet by the segment of a circle (a cylinder that lies at the surface), 0: evenly
     label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and element
@@ -214,7 +232,7 @@ def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]
             length = (hi - lo) * span
             first, last = member.size(np.array(near)), member.size(np.array(far))
             start = member.a + (member.b - member.a) * near
-            thickness = 0.0 if member.column else float(np.abs(directions[2]) @ (0.5 * (first + last)))
+            thickness = 0.0 if member.fills else float(np.abs(directions[2]) @ (0.5 * (first + last)))
             lowered = np.zeros(3)
             if (up := member.upward) is not None and member.floats:
                 height = 0.5 * float(first[up] + last[up])

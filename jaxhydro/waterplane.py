@@ -85,6 +85,56 @@ class Waterplane(eqx.Module):
         return on_strips, jnp.concatenate([jnp.zeros(3), moment.sum(axis=1)])
 
 
+class Leaning(eqx.Module):
+    """Members that lean and that still water cuts through their sides: pressure on their waterplane across the axis.
+
+    The pressure on their ends and the inertia of their strips make up the force on the wet volume and, on the lid that still
+    water makes, the part along the axis. With A the section, p the pressure there, s the axis and k the vertical, what is left
+    is p A (k / (k . s) - s).
+
+    The moment about the lid's middle is that of the pressure's slope over the lid, less what an upright column would have, and
+    that of the wedge by which the wet volume is not symmetrical about the axis.
+    """
+
+    point: Float[Array, "3 k"]  # m, where still water cuts the axis
+    axis: Float[Array, "3 k"]
+    area: Float[Array, " k"]
+    second: Float[Array, "3 3 k"]  # m4, integral of r r^T over the section
+
+    def act(self, now: "Instant") -> Float[Array, "6"]:
+        """Force and moment (N, N m; body axes) on the platform."""
+        assert now.lid is not None
+        density, vertical = now.environment.density, now.rotation[2]
+        (pressure, water), steep = now.lid, vertical @ self.axis
+        force = density * pressure * self.area * (vertical[:, None] / steep - self.axis)
+        slanted = jnp.eye(3)[:, :, None] - self.axis[:, None] * vertical[None, :, None] / steep  # along the axis, onto the lid
+        lid = jnp.einsum("ijk,jlk,mlk,mk->ik", slanted, self.second, slanted, water) / steep
+        own = jnp.einsum("ijk,jk->ik", self.second, water)
+        lean = jnp.einsum("ijk,j->ik", self.second, vertical) / steep
+        wedge = 0.5 * (lean * vertical[:, None]).sum(axis=0) / steep * self.axis - lean
+        moment = jnp.cross(self.point, force, axis=0) + density * (
+            jnp.cross(own, self.axis, axis=0) - jnp.cross(lid, vertical[:, None], axis=0) + jnp.cross(wedge, water, axis=0)
+        )
+        return jnp.concatenate([force, moment]).sum(axis=1)
+
+
+LEAN = 0.02  # rad: what leans less is upright
+
+
+def leaning(members: "Sequence[Member]") -> Leaning | None:
+    """Of members that lean and that still water cuts; None: there are none."""
+    found = []
+    for member in members:
+        low, high = sorted((float(member.a[2]), float(member.b[2])))
+        if member.fills and low < 0 < high and abs(float(member.axis[2])) < np.cos(LEAN):
+            share = float(-member.a[2] / (member.b[2] - member.a[2]))
+            size, directions = member.size(np.array(share)), np.stack(member.directions)
+            along = size**2 / (16 if member.circular else 12)  # of the area: mean squares of the distances
+            second = float(member.area(size)) * (along * directions.T) @ directions
+            found.append((member.gauge, member.axis, float(member.area(size)), second))
+    return Leaning(*(jnp.array(np.stack(part, axis=-1)) for part in zip(*found, strict=True))) if found else None
+
+
 def waterplane(members: "Sequence[Member]", size: float = 1.0) -> Waterplane | None:
     """Of members that lie at the surface; None: there are none."""
     width, length = list[float](), list[float]()

@@ -85,7 +85,8 @@ class Instant(eqx.Module):
     `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
     same along earth axes. `wetted`, `strip_shape` and `end_shape` say what of elements, strips and faces is under water,
     `strip_flow` and `end_flow` how the water moves past strips and ends. `drift` (m2) and `excitation` (N, N m) are those of
-    the sea: see `AbstractSea.drift`, `AbstractSea.excitation`.
+    the sea: see `AbstractSea.drift`, `AbstractSea.excitation`. `lid` is pressure over density
+    (m2/s2) and acceleration (m/s2, body axes) of the water at the points of `Hull.leaning`.
     """
 
     time: Float[Array, ""]
@@ -102,6 +103,7 @@ class Instant(eqx.Module):
     lines: Lines
     drift: Float[Array, " d"] | None = None
     excitation: Float[Array, "6"] | None = None
+    lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""

@@ -26,7 +26,8 @@ class EndInertia(AbstractLoad):
 
     Added mass of an end as in OpenFAST HydroDyn (Morison module, loads on member ends); p A is the dynamic pressure on the
     end's area, the axial Froude-Krylov force, which the ends of pontoons carry too. Only ends under water are loaded. The
-    same holds where the section changes along the axis, with the V and A of the ring: see `EndShape`.
+    same holds where the section changes along the axis, with the V and A of the ring: see `EndShape`. Where still water
+    cuts what leans, the waves' pressure on the waterplane is part of it: `waterplane.Leaning`.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -43,4 +44,5 @@ class EndInertia(AbstractLoad):
             return Action(end_mass=mass)
         assert flow.pressure is not None
         pressure = -density * flow.pressure * now.end_shape.area * ends.outward * flow.wet
-        return Action(end_force=mass * flow.acceleration + pressure, end_mass=mass)
+        lid = None if now.hull.leaning is None else now.hull.leaning.act(now)
+        return Action(end_force=mass * flow.acceleration + pressure, end_mass=mass, body_force=lid)

@@ -163,7 +163,7 @@ def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
     for member in members:
         edges = [0.0, *member.kinks(), 1.0]
         span = member.b - member.a
-        upward = not member.column or span[2] > 0
+        upward = bool(member.axis @ span > 0)
         directions = np.stack(member.directions, axis=1)
         if (up := member.upward) is not None and member.floats:
             if member.circular:
@@ -185,7 +185,7 @@ def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
                     np.pi / 4 if member.circular else 1.0,
                     np.pi / 64 if member.circular else 1 / 12,
                     directions,
-                    0.0 if member.column else float(np.abs(directions[2]) @ (0.5 * (first + last))),
+                    0.0 if member.fills else float(np.abs(directions[2]) @ (0.5 * (first + last))),
                 )
             )
     flat, triple = np.zeros(0), np.zeros((3, 0))
