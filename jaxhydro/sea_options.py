@@ -68,8 +68,10 @@ class Asked:
         return replace(self, low=low, cutoff=cutoff)
 
     def band(self, pace: float) -> tuple[float, float]:
-        """Lowest and highest frequency (Hz), for a platform of a `pace`."""
-        return LOW / pace if self.low is None else self.low, CUTOFF / pace if self.cutoff is None else self.cutoff
+        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave to three digits."""
+        usual = (float(f"{one / pace:.3g}") for one in (LOW, CUTOFF))
+        low, cutoff = (by_size if given is None else given for given, by_size in zip((self.low, self.cutoff), usual))
+        return low, cutoff
 
     def start(self, duration: float, pace: float = 1.0) -> float:
         """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""

@@ -6,7 +6,7 @@ force would be that on a closed body under water.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -15,10 +15,6 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.scales import covered
-
-if TYPE_CHECKING:
-    from jaxhydro.loads.base import Instant
-    from jaxhydro.strips import Member
 
 EDGE = 0.02  # of a section's height: share that is wet or dry, below which the surface has left it
 
@@ -61,7 +57,7 @@ class Waterplane(eqx.Module):
     strip: tuple[int, ...] = eqx.field(static=True)
     up: tuple[int, ...] = eqx.field(static=True)  # the direction of the strip that is near vertical, 0 or 1
 
-    def act(self, now: "Instant") -> tuple[Float[Array, "2 n"], Float[Array, "6"]]:
+    def act(self, now: Any) -> tuple[Float[Array, "2 n"], Float[Array, "6"]]:
         """Force (N) on strips and moment (N, N m; body axes) on the platform: the integral of the pressure over the lid.
 
         The pressure is that of the strip's point, continued to still water and across the width by its slope, minus density
@@ -101,8 +97,8 @@ class Leaning(eqx.Module):
     area: Float[Array, " k"]
     second: Float[Array, "3 3 k"]  # m4, integral of r r^T over the section
 
-    def act(self, now: "Instant") -> Float[Array, "6"]:
-        """Force and moment (N, N m; body axes) on the platform."""
+    def act(self, now: Any) -> Float[Array, "6"]:
+        """Force and moment (N, N m; body axes) on the platform at an instant (`loads.base.Instant`)."""
         assert now.lid is not None
         density, vertical = now.environment.density, now.rotation[2]
         (pressure, water), steep = now.lid, vertical @ self.axis
@@ -121,8 +117,8 @@ class Leaning(eqx.Module):
 LEAN = 0.02  # rad: what leans less is upright
 
 
-def leaning(members: "Sequence[Member]") -> Leaning | None:
-    """Of members that lean and that still water cuts; None: there are none."""
+def leaning(members: Sequence[Any]) -> Leaning | None:
+    """Of `strips.Member`s that lean and that still water cuts; None: there are none."""
     found = []
     for member in members:
         low, high = sorted((float(member.a[2]), float(member.b[2])))
@@ -135,8 +131,8 @@ def leaning(members: "Sequence[Member]") -> Leaning | None:
     return Leaning(*(jnp.array(np.stack(part, axis=-1)) for part in zip(*found, strict=True))) if found else None
 
 
-def waterplane(members: "Sequence[Member]", size: float = 1.0) -> Waterplane | None:
-    """Of members that lie at the surface; None: there are none."""
+def waterplane(members: Sequence[Any], size: float = 1.0) -> Waterplane | None:
+    """Of `strips.Member`s that lie at the surface; None: there are none."""
     width, length = list[float](), list[float]()
     strip, up, count = list[int](), list[int](), 0
     for member in members:
