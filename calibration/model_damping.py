@@ -14,10 +14,11 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model, State
-from jaxhydro.statics import equilibrium, linearised, natural_modes
+from jaxhydro.statics import equilibrium, linearised, natural_modes, widths
 from jaxhydro.waves.sea import StillWater
 
-SPEEDS = (0.5, 1.0, 2.0)  # m/s, rad/s: two give both coefficients, the third shows that there is nothing but these
+# m/s, rad/s, times size over pace of the platform: two give both coefficients, the third shows that there is nothing but these
+SPEEDS = (0.5, 1.0, 2.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,7 @@ def motion_shape(model: Model, dof: str, position: Float[Array, "6"] | None = No
     modes, place = natural_modes(model, position), DOFS.index(dof)
     for shape in modes.shape:
         if np.argmax(np.abs(shape)) == place:
-            rates = shape / np.array([1, 1, 1, 50, 50, 50])  # as `natural_modes` compares rotations with translations
+            rates = shape / widths(model)
             return rates / rates[place]
     raise ValueError(f"expected a natural mode mainly of {dof}, found none: nothing restores it")
 
@@ -68,7 +69,7 @@ def _resistance(model: Model, position: Array, rates: Array, speeds: Array) -> A
 
 @eqx.filter_jit
 def _damping(model: Model, position: Array, rates: Array) -> tuple[Array, Array, Array, dict[str, Array]]:
-    speeds = jnp.array(SPEEDS)
+    speeds = jnp.array(SPEEDS) * model.size / model.pace
 
     def split(values: dict[str, Array]) -> tuple[Array, tuple[Array, Array]]:
         resistance = _resistance(model.with_values(values), position, rates, speeds)

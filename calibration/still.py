@@ -15,9 +15,8 @@ from calibration.records import Record
 from calibration.residuals import characteristic_length, group_products
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.statics import equilibrium, held_at, linearised
+from jaxhydro.statics import WIDTH, equilibrium, held_at, linearised
 
-WIDTHS = np.array([1.0, 1.0, 1.0, 50.0, 50.0, 50.0])  # as `natural_modes` compares rotations with translations
 ALIKE = 0.7  # of a shape's largest entry: surge and sway of one period may come mixed
 NEAR = 1e-4  # of an eigenvalue, off which inverse iterations are shifted
 CORRECTIONS = 3  # steps of Newton's method, where sensors track another point
@@ -125,7 +124,8 @@ def natural_period(model: Model, dof: int) -> Float[Array, ""]:
 
     whole = scaled(k)
     square, vectors = jnp.linalg.eigh(0.5 * (whole + whole.T))
-    shape = jnp.abs(jax.scipy.linalg.solve_triangular(half.T, vectors, lower=False)).T * WIDTHS
+    wide = jnp.ones(6).at[3:].set(WIDTH * model.size)
+    shape = jnp.abs(jax.scipy.linalg.solve_triangular(half.T, vectors, lower=False)).T * wide
     mine = (shape[:, dof] > ALIKE * shape.max(axis=1)) & (square > 1e-10 * jnp.abs(square).max())
     at = jnp.argmin(jnp.where(mine, square, jnp.inf))
     right = left = vectors[:, at]

@@ -192,10 +192,13 @@ Gauge = Annotated[
     tuple[float, float] | None,
     _option("--wave-position", RECORD, "Where it was measured, m from the reference position.", "0 0", metavar="X Y"),
 ]
-Low = Annotated[float | None, _option("--low", HOW, "Lowest frequency of the first-order waves, Hz.", f"{LOW:g}")]
+Low = Annotated[
+    float | None,
+    _option("--low", HOW, "Lowest frequency of the first-order waves, Hz; as VolturnUS-S, by Froude.", f"{LOW:g}"),
+]
 Cutoff = Annotated[
     float | None,
-    _option("--cutoff", HOW, "Highest, Hz. In high seas take less: a note says so.", f"{CUTOFF:g}"),
+    _option("--cutoff", HOW, "Highest, Hz; likewise. In high seas take less: a note says so.", f"{CUTOFF:g}"),
 ]
 Order = Annotated[
     int | None, _option("--order", HOW, "2: with the waves that they bind (Sharma and Dean).", str(ORDER), min=1, max=2)

@@ -23,6 +23,7 @@ from jaxhydro.problems import (
     shown,
 )
 
+STEP = 1e-6  # of a member's length, over which a step in its size is made
 Matrix3 = Float[np.ndarray, "3 3"]
 
 
@@ -122,9 +123,11 @@ Shape = Annotated[
 
 
 class Member(Consistent):
-    """A cylinder or box from rA to rB, m, in RAFT's words: d its diameter or [width, height], m, or one of these at
-    each of `stations`; heading, deg, turns copies about z; gamma, deg, twists a box about its axis; `elements` load
-    elements of `points` Gauss points each; maccamy_fuchs None: as the member's position says."""
+    """A cylinder or box from rA to rB, m, in RAFT's words.
+
+    d is its diameter or [width, height], m, or one of these at each of `stations`; a station named twice is a step in size.
+    heading, deg, turns copies about z; gamma, deg, twists a box about its axis. There are `elements` load elements of `points`
+    Gauss points each. maccamy_fuchs None: as the member's position says."""
 
     name: Text
     group: Text = ""
@@ -153,9 +156,12 @@ class Member(Consistent):
             yield Problem("maccamy_fuchs", "false for a rectangular member", "true", "The law is for circular ones.")
         if self.elements is None and "points" in self.model_fields_set:
             yield Problem("points", "`elements` with it", "none", "Without, strips are chosen by length.")
-        if self.stations is not None and any(b <= a for a, b in zip(self.stations, self.stations[1:])):
-            step = "A step in d is two stations a millimetre apart." if len(set(self.stations)) > 1 else ""
-            yield Problem("stations", "numbers in ascending order", shown(self.stations), step)
+        if self.stations is not None:
+            apart = np.diff(self.stations)
+            steps = apart == 0
+            if (apart < 0).any() or steps[0] or steps[-1] or (steps[1:] & steps[:-1]).any():
+                hint = "A step in d is one station twice, between the ends." if steps.any() and not steps.all() else ""
+                yield Problem("stations", "numbers in ascending order", shown(self.stations), hint)
         kind = _sizes(self.d)
         constant = "one" if self.shape == "circ" else "row"
         if kind == constant and (self.shape == "circ" or len(np.atleast_1d(self.d)) == 2):
@@ -176,7 +182,11 @@ class Member(Consistent):
         if sizes.ndim == 1 or self.stations is None:
             return np.array([0.0, 1.0]), np.stack([sizes, sizes])
         stations = np.array(self.stations)
-        return (stations - stations[0]) / (stations[-1] - stations[0]), sizes
+        at = (stations - stations[0]) / (stations[-1] - stations[0])
+        steps = np.flatnonzero(np.diff(stations) == 0)
+        at[steps] -= 0.5 * STEP
+        at[steps + 1] += 0.5 * STEP
+        return at, sizes
 
 
 Share = Annotated[float, Field(strict=True, ge=0, le=1)]

@@ -12,8 +12,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.rotations import ramp
-from jaxhydro.strips import SMOOTH, Elements, Ends, Member, Strips, cut, ends
+from jaxhydro.ends import Ends, ends
+from jaxhydro.scales import covered, entered
+from jaxhydro.strips import COVERING, ENTERING, Elements, Member, Strips, cut
+from jaxhydro.waterplane import Leaning, Waterplane, leaning, segment, waterplane
 from jaxhydro.waves.flow import Cylinders
 
 
@@ -27,36 +29,43 @@ class Wetted(NamedTuple):
 class Hull(eqx.Module):
     """Elements, strips and ends, and the constant matrices between the platform's motion and theirs.
 
-    Lines are the strips' first directions, their second ones, then the ends. What belongs to a line is linear in the distance
-    s of its strip from the element's start, and stored as the part for s = 0 and the part that goes with s: `motion` is the
-    lever, `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity the centripetal acceleration.
+    Lines are the strips' first directions, their second ones, then the ends and faces. What belongs to a line is linear in the
+    distance s of its strip from the element's start, and stored as the part for s = 0 and the part that goes with s: `motion`
+    is the lever, `inward` times the products p^2, q^2, r^2, pq, pr, qr of the angular velocity the centripetal acceleration.
     `moments` are those of the displaced volume: see `masses`.
     """
 
     elements: Elements
     strips: Strips
     ends: Ends
-    cylinders: Cylinders  # of strips, then ends
+    cylinders: Cylinders  # of strips, ends without faces, and `leaning`
     gauges: Float[Array, "3 g"]  # m, where the surface elevation is looked up
-    gauge_of: tuple[int, ...] = eqx.field(static=True)  # the gauge of every element, then end
+    gauge_of: tuple[int, ...] = eqx.field(static=True)  # the gauge of every element, then end without faces
     motion: Float[Array, "6 2*l"]
     inward: Float[Array, "6 2*l"]
     moments: Float[Array, "6 6 k"]
+    size: Float[Array, ""]  # `scales.size_of` the platform
+    waterplane: Waterplane | None = None  # of members that lie at the surface
+    leaning: Leaning | None = None  # members that lean and that still water cuts
 
     @classmethod
-    def of(cls, members: Sequence[Member]) -> "Hull":
-        """The hull that members make."""
-        elements, strips = cut(members)
-        tips = ends(members)
+    def of(cls, members: Sequence[Member], size: float = 1.0) -> "Hull":
+        """The hull that members make, of a platform of a `size` (`scales.size_of`)."""
+        elements, strips = cut(members, size)
+        tips = ends(members, strips, size)
         powers = 5 if np.asarray(strips.taper).any() else 3
         radii = sorted({r for r in strips.diffracts if r > 0})
         index = tuple(radii.index(r) if r > 0 else -1 for r in strips.diffracts)
-        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * len(tips.area)))
-        gauges = np.concatenate([elements.gauge, tips.gauge], axis=1).round(9)
+        whole = len(tips.label) - len(tips.strip)
+        lean = leaning(members)
+        points = whole + (0 if lean is None else lean.area.size)
+        cylinders = Cylinders(jnp.array(radii), (*index, *[-1] * points))
+        gauges = np.concatenate([elements.gauge, tips.gauge[:, :whole]], axis=1).round(9)
         place, which = np.unique(gauges, axis=1, return_inverse=True)
         gauge_of = tuple(map(int, which.reshape(-1)))
         matrices = eqx.filter_jit(_matrices)(elements, strips, tips, powers)
-        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices)
+        more = (jnp.asarray(size), waterplane(members, size), lean)
+        return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices, *more)
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
         """With the directions of strips and ends turned about their points, which stay."""
@@ -64,7 +73,8 @@ class Hull(eqx.Module):
         tips = eqx.tree_at(lambda x: x.axis, self.ends, rotation @ self.ends.axis)
         powers = (self.moments.shape[2] - tips.area.size) // max(2 * len(self.elements.length), 1)
         matrices = _matrices(self.elements, strips, tips, powers)
-        return Hull(self.elements, strips, tips, self.cylinders, self.gauges, self.gauge_of, *matrices)
+        points, more = (self.cylinders, self.gauges, self.gauge_of), (self.size, self.waterplane, self.leaning)
+        return Hull(self.elements, strips, tips, *points, *matrices, *more)
 
     def wrench(self, force: Float[Array, " l"], away: Float[Array, " l"]) -> Float[Array, "6"]:
         """Force and moment (N, N m) on the platform, in body axes, of forces (N) along lines whose strips are `away` (m) from
@@ -96,24 +106,33 @@ class Hull(eqx.Module):
         return jnp.concatenate([*[row.reshape(-1) for row in rows[:powers]], ends])
 
     def extremities(self) -> np.ndarray:
-        """Ends of all elements and of all columns (m)."""
+        """Where a sea has to be known (m): the ends of all elements and members, and the reference point."""
         start, axis = np.asarray(self.elements.start), np.asarray(self.elements.axis)
-        return np.concatenate([start, start + axis * np.asarray(self.elements.length), np.asarray(self.ends.position)], axis=1)
+        ends = (start, start + axis * np.asarray(self.elements.length), np.asarray(self.ends.position))
+        return np.concatenate([*ends, np.zeros((3, 1))], axis=1)
 
     def wetted(self, vertical: Float[Array, "3"], depth: Float[Array, " e"]) -> Wetted:
         """What of every element is under water.
 
-        `vertical` is the vertical in body axes, `depth` (m) that of the elements' lower ends under the surface. Exact, but for
-        a quarter of a metre about the element's ends. A pontoon loses volume evenly as its height leaves the water.
+        `vertical` is the vertical in body axes, `depth` (m) that of the elements' lower ends under the surface. Exact, but
+        where an end has just entered the water (`scales.entered`). A pontoon loses volume evenly as it leaves the water.
         """
         elements = self.elements
         column, slope = elements.thickness == 0, vertical @ elements.axis
         steep = jnp.where(column, jnp.maximum(slope, 1e-3), 1.0)
         rise = jnp.where(column, steep * elements.length, jnp.abs(slope) * elements.length + elements.thickness)
         low = depth + jnp.where(column, 0.0, 0.5 * elements.thickness + jnp.maximum(-slope, 0.0) * elements.length)
-        under = SMOOTH * (ramp(low / SMOOTH) - ramp((low - rise) / SMOOTH))
-        wet = under / rise * elements.length
+        width = ENTERING * self.size
+        under = entered(low, width) - entered(low - rise, width)
+        share = under / rise
+        if self.waterplane is not None:
+            share = jnp.where(elements.circle > 0, segment(2 * share - 1) / jnp.pi, share)
+        wet = share * elements.length
         return Wetted(wet, jnp.where(column, wet, elements.length))
+
+    def ends_wetted(self, depth: Float[Array, " m"]) -> Float[Array, " m"]:
+        """Share of ends at a `depth` (m) that is under water."""
+        return covered(depth, COVERING * self.size)
 
 
 def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tuple[Array, Array, Array]:
@@ -121,12 +140,18 @@ def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tu
     first, second = strips.directions[:, 0], strips.directions[:, 1]
     direction = jnp.concatenate([first, second, ends.axis], axis=1)
     point = jnp.concatenate([strips.start, strips.start, ends.position], axis=1)
-    along = jnp.concatenate([strips.axis, strips.axis, jnp.zeros_like(ends.axis)], axis=1)
+    of, whole = jnp.array(ends.strip, dtype=int), len(ends.label) - len(ends.strip)
+    of_faces = strips.axis[:, of]
+    along = jnp.concatenate([strips.axis, strips.axis, jnp.zeros((3, whole)), of_faces], axis=1)
     lever = jnp.concatenate([direction, jnp.cross(point, direction, axis=0)])
     twist = jnp.concatenate([jnp.zeros_like(direction), jnp.cross(along, direction, axis=0)])
     motion = jnp.concatenate([lever, twist], axis=1)
     inward = jnp.concatenate([_centripetal(direction, point), _centripetal(direction, along)], axis=1)
-    return motion, inward, _moments(elements, strips, lever, twist, powers)
+    # of faces of wholly wet elements; along their own axis the distance does not matter
+    home = jnp.array(strips.element, dtype=int)
+    away = jnp.concatenate([jnp.zeros(whole), (elements.length[home] * strips.fraction)[of]])
+    tips = lever[:, lever.shape[1] - away.size :] + away * twist[:, twist.shape[1] - away.size :]
+    return motion, inward, _moments(elements, strips, lever, twist, tips, powers)
 
 
 def _centripetal(direction: Float[Array, "3 l"], point: Float[Array, "3 l"]) -> Float[Array, "6 l"]:
@@ -138,7 +163,12 @@ def _centripetal(direction: Float[Array, "3 l"], point: Float[Array, "3 l"]) -> 
 
 
 def _moments(
-    elements: Elements, strips: Strips, lever: Float[Array, "6 l"], twist: Float[Array, "6 l"], powers: int
+    elements: Elements,
+    strips: Strips,
+    lever: Float[Array, "6 l"],
+    twist: Float[Array, "6 l"],
+    tips: Float[Array, "6 m"],
+    powers: int,
 ) -> Float[Array, "6 6 k"]:
     """Sum over an element's strips of share, sectional area and h h^T as coefficients of a polynomial in its wetted length,
     by power, direction and element; then h h^T of the ends."""
@@ -160,5 +190,4 @@ def _moments(
     home = jnp.array(strips.element, dtype=int)
     index = jnp.concatenate([home, home + e])  # by direction and element
     found = jnp.stack([jnp.zeros((6, 6, 2 * e)).at[:, :, index].add(part) for part in of_strips], axis=2)
-    tips = lever[:, 2 * n :]
     return jnp.concatenate([found.reshape(6, 6, -1), outer(tips, tips)], axis=2)

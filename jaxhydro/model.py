@@ -11,11 +11,11 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
-from jaxhydro.loads.base import AbstractLoad, Instant, Lines, Parameter, StripShape
+from jaxhydro.loads.base import AbstractLoad, EndShape, Instant, Lines, Parameter, StripShape
 from jaxhydro.remarks import Remark
 from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew, turned
+from jaxhydro.scales import pace_of, size_of
 from jaxhydro.solve6 import accelerate
-from jaxhydro.strips import end_wetted
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
@@ -101,6 +101,16 @@ class Model(eqx.Module):
     remarks: tuple[Remark, ...] = eqx.field(static=True, default=())
 
     @property
+    def size(self) -> Float[Array, ""]:
+        """Length (-) over that of VolturnUS-S, by displaced volume: see `scales`."""
+        return size_of(self.body.mass, self.environment.density)
+
+    @property
+    def pace(self) -> Float[Array, ""]:
+        """Time (-) over that of VolturnUS-S, by Froude."""
+        return pace_of(self.size, self.environment.gravity)
+
+    @property
     def cylinders(self) -> Cylinders | None:
         """The strips, then ends, that diffract the waves; None: none do."""
         if self.diffraction == "none" or not self.hull.cylinders.radius.size:
@@ -114,10 +124,13 @@ class Model(eqx.Module):
         return {label: value for load in self.loads for label, value in load.values.items()}
 
     def about(self, label: str) -> Parameter:
-        """Unit, meaning, bounds and null of a parameter. Raises KeyError for an unknown label."""
+        """Unit, meaning, bounds and null of a parameter. Raises KeyError for an unknown label.
+
+        Bounds that are lengths or times go with the platform's size.
+        """
         for load in self.loads:
             if label in load.values:
-                return load.about(label)
+                return load.about(label).sized(float(self.size), float(self.pace))
         raise KeyError(f"no parameter {label!r}; there are: {', '.join(sorted(self.values))}")
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
@@ -198,9 +211,10 @@ class Model(eqx.Module):
         matrix = rotation(state.position[3:])
         hull = self.hull if self.directions == "body" else self.hull.turned(matrix.T)
         strips, ends, place = hull.strips, hull.ends, state.position[:3]
-        n, m = len(strips.element), ends.area.shape[0]
+        n, m, faces = len(strips.element), ends.area.shape[0], jnp.array(ends.strip, dtype=int)
+        whole = m - len(ends.strip)
         above, follows = (place[:2], matrix[:2]) if self.waves_at == "displaced" else (jnp.zeros(2), jnp.eye(3)[:2])
-        roots = jnp.concatenate([hull.elements.start, ends.position], axis=1)
+        roots = jnp.concatenate([hull.elements.start, ends.position[:, :whole]], axis=1)
         if self.wetting == "mean":
             vertical, depth = jnp.array([0.0, 0.0, 1.0]), -roots[2]
         else:
@@ -208,10 +222,10 @@ class Model(eqx.Module):
             depth = -(place[2] + vertical @ roots)
             surface = sea.surface(time, above[:, None] + follows @ hull.gauges)
             depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
-        wetted = hull.wetted(vertical, depth[: roots.shape[1] - m])
+        wetted = hull.wetted(vertical, depth[: roots.shape[1] - whole])
         of = jnp.array(strips.element, dtype=int)
         covered, reach = wetted.length[of] * strips.weight, wetted.reach[of] * strips.fraction
-        away = hull.join(jnp.stack([reach, reach]), jnp.zeros(m))
+        away = hull.join(jnp.stack([reach, reach]), jnp.concatenate([jnp.zeros(whole), reach[faces]]))
         still, turning = (state.velocity @ hull.motion).reshape(2, -1)
         own, own_end = hull.split(-(still + turning * away))
         if (stream := self.stream()) is not None:
@@ -225,8 +239,9 @@ class Model(eqx.Module):
         inward = inward + away * outgoing if self.centripetal else jnp.zeros_like(away)
         lines = Lines(away, inward)
         shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
-        end_wet = end_wetted(depth[roots.shape[1] - m :])
-        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position], axis=1)
+        end_wet = jnp.concatenate([hull.ends_wetted(depth[roots.shape[1] - whole :]), jnp.ones(m - whole)])
+        lids = [] if hull.leaning is None else [hull.leaning.point]
+        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position[:, :whole], *lids], axis=1)
         where = place[:, None] + turned(matrix, points)
         level = points if self.waves_at == "mean" else where
         where = jnp.concatenate([level[:2], (where if self.wetting == "instantaneous" else points)[2:]])
@@ -243,10 +258,12 @@ class Model(eqx.Module):
             def across(field: Float[Array, "a n+m"]) -> Float[Array, "2 n"]:
                 return (toward * field[:, None, :n]).sum(axis=0)
 
-            extra = [None if field is None else across(field) for field in (flow.diffracted, flow.tuned)]
-            past = StripFlow(own + across(flow.velocity), across(flow.acceleration), *extra)
-            at_ends = [(toward_end * field[:, n:]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
-            past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[n:], end_wet)
+            diffracted, tuned = (None if field is None else across(field) for field in (flow.diffracted, flow.tuned))
+            moving = (own + across(flow.velocity), across(flow.acceleration))
+            past = StripFlow(*moving, diffracted, tuned, flow.pressure[:n])
+            at = jnp.concatenate([jnp.arange(n, n + whole), faces]) if ends.strip else slice(n, n + whole)
+            at_ends = [(toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
+            past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[at], end_wet)
         return Instant(
             time,
             state.position,
@@ -256,11 +273,13 @@ class Model(eqx.Module):
             hull,
             wetted,
             shape,
+            EndShape.of(hull, covered, extent),
             past,
             past_end,
             lines,
             sea.drift(time),
             None if replaced is None else sea.excitation(time, above),
+            None if flow is None or not lids else (flow.pressure[n + whole :], axes.T @ flow.acceleration[:, n + whole :]),
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":

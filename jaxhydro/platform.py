@@ -1,6 +1,7 @@
 """A platform file made into a model."""
 
 import math
+import warnings
 from dataclasses import replace
 from os import PathLike
 
@@ -32,7 +33,8 @@ from jaxhydro.loads import (
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.model import Model, RigidBody, strongly_typed
-from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.problems import InputError, PlatformWarning, Problem, suggest
+from jaxhydro.scales import size_of
 from jaxhydro.start import need_float64
 from jaxhydro.strips import Member
 from jaxhydro.waves.sea_state import SeaState
@@ -44,15 +46,22 @@ def load_model(path_or_name: str | PathLike[str]) -> Model:
 
 
 def build(platform: schema.Platform) -> Model:
-    """The model that a platform declares. Raises Float64Error, a RuntimeError, unless JAX computes in float64."""
+    """The model that a platform declares. Warns of mooring lines that are slack (`PlatformWarning`).
+
+    Raises Float64Error, a RuntimeError, unless JAX computes in float64.
+    """
     need_float64()
+    if isinstance(platform.mooring, schema.LinearSprings) and (slack := platform.mooring.slackness()):
+        warnings.warn(f"{platform.name}: {slack}", PlatformWarning, stacklevel=2)
     water = platform.water
     environment = Environment(water.density, water.depth, water.gravity)
     mass, centre, inertia = platform.rigid_body.combined()
     body = RigidBody(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
     members = members_of(platform)
-    hull = Hull.of(members)
-    geometry = buoyancy(members)
+    _none_partly_wet(members, platform)
+    size = size_of(mass, water.density)
+    hull = Hull.of(members, size)
+    geometry = buoyancy(members, size)
     platform, coupling, remarks = with_hydrostatics(platform, geometry)
     declared = _declared_hydrostatics(geometry, platform, mass, float(centre[2]))
     loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre, values={}), declared, *coupling]
@@ -92,6 +101,25 @@ def build(platform: schema.Platform) -> Model:
     model = Model(environment, body, hull, tuple(loads), *forms, remarks=(*remarks, *said))
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
+
+
+def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
+    """Raises InputError for pontoons that still water cuts, but for those whose waterplane is modelled: level
+    ones, and inclined ones that are cut through their sides (`waterplane`)."""
+    names = [member.name for member in platform.members for _ in member.heading]
+    where = {name: i for i, name in reversed(list(enumerate(member.name for member in platform.members)))}
+    problems = [
+        Problem(
+            f"members[{where[name]}]",
+            "a member flatter than 45 deg to be level, or clear of still water, or cut by it between its ends",
+            f"{name!r}, of whose height {member.submerged:.0%} is under it",
+            "Make what floats of level or upright members, side by side; let a brace end well above still water.",
+        )
+        for name, member in zip(names, members, strict=True)
+        if member.pierced and not (member.floats or member.fills)
+    ]
+    if problems:
+        raise InputError(platform.name, list(dict.fromkeys(problems)))
 
 
 def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:

@@ -122,6 +122,11 @@ class Line(Schema):
             length_at_rest = float(np.linalg.norm(np.subtract(self.anchor, self.fairlead)))
         return self.stiffness, length_at_rest - self.pretension / self.stiffness
 
+    def slack(self) -> tuple[float, float] | None:
+        """Distance from anchor to fairlead at the reference position and unstretched length, m, if the line is slack there."""
+        distance, unstretched = float(np.linalg.norm(np.subtract(self.anchor, self.fairlead))), self.spring()[1]
+        return (distance, unstretched) if unstretched > distance * (1 + 1e-9) else None
+
     @model_validator(mode="after")
     def _one_spring(self) -> Self:
         if self.anchor == self.fairlead:
@@ -145,6 +150,23 @@ class LinearSprings(Schema):
 
     kind: Literal["linear_springs"]
     lines: Annotated[tuple[Line, ...], Field(min_length=1)]
+
+    def slackness(self) -> str:
+        """What is to be said of lines that are slack at the reference position; nothing where none is."""
+        slack = [(i, *found) for i, line in enumerate(self.lines, 1) if (found := line.slack()) is not None]
+        if not slack:
+            return ""
+        shown = [f"line {i}: {distance:.4g} m to its anchor, {length:.4g} m unstretched" for i, distance, length in slack[:6]]
+        shown += [f"and {len(slack) - 6} more"] if len(slack) > 6 else []
+        every = len(slack) == len(self.lines)
+        some = f"{len(slack)} of {len(self.lines)} lines are" if len(slack) > 1 else "one line is"
+        which = "every line is" if every else some
+        return (
+            f"mooring.lines: {which} slack at the reference position ({'; '.join(shown)})"
+            + (", so nothing holds the platform there. " if every else ", and pulls nothing there. ")
+            + "Lines here are straight, weightless springs: for a catenary take kind: stiffness_matrix, with its stiffness and "
+            "preload (its pull) at the reference position."
+        )
 
 
 Row = tuple[Number, Number, Number, Number, Number, Number]

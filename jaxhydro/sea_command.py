@@ -44,9 +44,11 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
 
     Raises InputError for a sea that cannot be, BadParameter for a transient, EquilibriumError where the platform does not rest.
     """
+    pace = float(model.pace)
+    asked = asked.for_platform(pace)
     begin = 0.0 if asked.record is None else float(asked.record.times[0])
     times = begin + job.times
-    transient = asked.start(job.duration)
+    transient = asked.start(job.duration, pace)
     kept = times >= begin + transient
     if kept.sum() < LEAST:
         expected = f"{LEAST} samples or more after the transient of {transient:g} s"
@@ -55,7 +57,7 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
     sea, about, target, notes = build_sea(model, asked, job.duration)
     print_remarks([*model.remarks, *outside(model, sea, about)])
     print_rest(model, job.platform)
-    step = largest_step(model, asked.cutoff) if job.step is None else job.step
+    step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
     about |= {"transient": transient, "step_at_most": step}
     table("Sea", ("Property", "Value"), _about(about), left=2)
     for note in notes:
@@ -92,6 +94,7 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
 def build_sea(model: Model, asked: Asked, duration: float) -> Built:
     """The sea that is asked for. Raises InputError that names the option or the record."""
     notes: list[str] = []
+    low, cutoff = asked.band(float(model.pace))
     if asked.record is not None:
         waves, about = _from_record(model, asked, asked.record, notes)
         target = None
@@ -99,8 +102,8 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         waves, about, target = _from_spectrum(model, asked, duration, notes)
     energy = float(0.5 * (waves.amplitude**2).sum())
     about |= {
-        "lowest_frequency": asked.low,
-        "cutoff": asked.cutoff,
+        "lowest_frequency": low,
+        "cutoff": cutoff,
         "components": int(waves.omega.size),
         "repeat_period": round(float(waves.period), 6),
         "significant_wave_height_of_components": 4 * math.sqrt(energy),
@@ -110,7 +113,7 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         "diffraction": "none" if model.cylinders is None else model.diffraction,
     }
     usual = usual_cutoff(4 * math.sqrt(energy), float(model.environment.gravity))
-    if asked.order == 2 and asked.cutoff > usual:
+    if asked.order == 2 and cutoff > usual:
         notes.append(
             f"in a sea this high second order is usually cut off at sqrt(2 g / Hs), --cutoff {usual:.2g} (Stansberg): "
             "beyond, short waves bind more than they have"
@@ -148,7 +151,8 @@ def _from_spectrum(
     hs, tp, gamma = asked.hs or 0.0, asked.tp or 0.0, asked.gamma
     if asked.spectrum == "jonswap" and gamma is None:
         gamma = float(peak_enhancement(hs, tp))
-    band = (2 * math.pi * asked.low * (1 - 1e-9), 2 * math.pi * asked.cutoff * (1 + 1e-9))
+    low, cutoff = asked.band(float(model.pace))
+    band = (2 * math.pi * low * (1 - 1e-9), 2 * math.pi * cutoff * (1 + 1e-9))
 
     def spectrum(omega):
         if asked.spectrum == "white":
@@ -157,7 +161,7 @@ def _from_spectrum(
 
     try:
         waves = spectrum_components(
-            spectrum, duration, model.environment, low=asked.low, cutoff=asked.cutoff, seed=asked.seed,
+            spectrum, duration, model.environment, low=low, cutoff=cutoff, seed=asked.seed,
             amplitudes=asked.amplitudes, heading=math.radians(asked.heading),
         )  # fmt: skip
     except ValueError as error:
@@ -166,10 +170,10 @@ def _from_spectrum(
         raise _impossible("--cutoff", error) from None
     share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
     if share < NEARLY_NONE:
-        expected = f"a band, here {asked.low:g} to {asked.cutoff:g} Hz, with waves in it"
+        expected = f"a band, here {low:g} to {cutoff:g} Hz, with waves in it"
         raise InputError("--cutoff", [Problem("", expected, f"one with {share:.1%} of the spectrum")])
     if share < CUT:
-        notes.append(f"{share:.1%} of the spectrum lies from {asked.low:g} to {asked.cutoff:g} Hz: see --low and --cutoff")
+        notes.append(f"{share:.1%} of the spectrum lies from {low:g} to {cutoff:g} Hz: see --low and --cutoff")
     about = {
         "spectrum": asked.spectrum, "significant_wave_height": hs, "peak_period": asked.tp, "peak_enhancement": gamma,
         "seed": asked.seed, "amplitudes": asked.amplitudes,
@@ -178,20 +182,21 @@ def _from_spectrum(
 
 
 def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
+    low, cutoff = asked.band(float(model.pace))
     try:
         found = separated_record(
             record.times, record.elevation, model.environment, position=record.position,
-            heading=math.radians(asked.heading), low=asked.low, cutoff=asked.cutoff, order=asked.order,
+            heading=math.radians(asked.heading), low=low, cutoff=cutoff, order=asked.order,
         )  # fmt: skip
     except ValueError as error:
         option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
         raise _impossible(option, error) from None
     if found.mismatch > MISSED:
         missed = f"first and second order miss {found.mismatch:.1%} of the record in the band, and the nearest found is used"
-        notes.append(f"{missed}: a --cutoff below {asked.cutoff:g}, or --order 1, follows it")
+        notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
     spectrum = power_spectrum(record.times, record.elevation)
-    inside = (spectrum.frequency >= asked.low) & (spectrum.frequency <= asked.cutoff)
-    peak = spectrum.frequency[inside][np.argmax(spectrum.density[inside])] if inside.any() else asked.cutoff
+    inside = (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
+    peak = spectrum.frequency[inside][np.argmax(spectrum.density[inside])] if inside.any() else cutoff
     return found.waves, {
         "record": record.source, "record_column": record.column, "wave_position": list(record.position),
         "significant_wave_height": 4 * float(np.std(record.elevation)), "peak_period": 1 / float(peak),

@@ -12,8 +12,8 @@ from jaxhydro.options import finite, positive, wrong
 from jaxhydro.problems import InputError, Problem, suggest
 from jaxhydro.waves.irregular import sampling_interval
 
-LOW, CUTOFF = 0.03, 0.3  # Hz
-TRANSIENT = 500.0  # s, at most a quarter of the duration
+LOW, CUTOFF = 0.03, 0.3  # Hz over the pace of the platform (`jaxhydro.scales`)
+TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
 LEAST = 100  # samples after the transient
 ORDER, SEED = 2, 0
 DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
@@ -26,9 +26,9 @@ STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, 
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
 
-def usual_transient(duration: float) -> float:
+def usual_transient(duration: float, pace: float = 1.0) -> float:
     """s, left out of statistics where nothing else is asked for."""
-    return min(TRANSIENT, 0.25 * duration)
+    return min(TRANSIENT * pace, 0.25 * duration)
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,10 @@ class Record:
 
 @dataclass(frozen=True)
 class Asked:
-    """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead."""
+    """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
+
+    low and cutoff None: those of the platform's size, see `for_platform`.
+    """
 
     hs: float | None
     tp: float | None
@@ -52,18 +55,31 @@ class Asked:
     spectrum: str
     seed: int
     amplitudes: str
-    low: float
-    cutoff: float
+    low: float | None
+    cutoff: float | None
     order: int
     stretching: str
     heading: float
     transient: float | None
     record: Record | None = None
 
-    def start(self, duration: float) -> float:
+    def for_platform(self, pace: float) -> "Asked":
+        """With a band, for a platform of a `pace` (`jaxhydro.scales`). Raises BadParameter where it is none."""
+        low, cutoff = self.band(pace)
+        if cutoff <= low:
+            raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
+        return replace(self, low=low, cutoff=cutoff)
+
+    def band(self, pace: float) -> tuple[float, float]:
+        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave to three digits."""
+        usual = (float(f"{one / pace:.3g}") for one in (LOW, CUTOFF))
+        low, cutoff = (by_size if given is None else given for given, by_size in zip((self.low, self.cutoff), usual))
+        return low, cutoff
+
+    def start(self, duration: float, pace: float = 1.0) -> float:
         """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
         if self.transient is None:
-            return usual_transient(duration)
+            return usual_transient(duration, pace)
         if not 0 <= self.transient < duration:
             limits = f"from 0 to less than the duration, {duration:g} s, expected"
             raise wrong("--transient", f"{limits}; found {self.transient:g}")
@@ -116,10 +132,10 @@ def asked(given: Mapping[str, Any], heading: float) -> Asked | None:
     if not record:
         positive(named["--hs"], "--hs")
         _spectrum(kind, tp, gamma)
-    low, cutoff = finite(named.get("--low", LOW), "--low"), finite(named.get("--cutoff", CUTOFF), "--cutoff")
-    if low < 0:
+    low, cutoff = (finite(named[name], name) if name in named else None for name in ("--low", "--cutoff"))
+    if low is not None and low < 0:
         raise wrong("--low", f"a number from 0 on expected, found {low:g}")
-    if cutoff <= low:
+    if low is not None and cutoff is not None and cutoff <= low:
         raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
     seed, amplitudes = named.get("--seed", SEED), str(named.get("--amplitudes", "deterministic"))
     how = (named.get("--order", ORDER), stretching(given), heading, named.get("--transient"))

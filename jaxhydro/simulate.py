@@ -24,7 +24,9 @@ from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.support_sea import SupportSea
 
-SEA_STEP = 0.25  # s, in irregular seas where no step is asked for
+SEA_STEP = 0.25  # s times the platform's pace, in irregular seas where no step is asked for
+LONGEST_STEP, STEP_AT_REST = 1.0, 0.5  # the same elsewhere: the longest, and that of a platform which nothing restores
+ALIKE = 1.001  # of a step: hulls of nearly one size take the same
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
 RESOLVED = 0.075  # of the shortest waves' period: the longest step
 STABLE = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
@@ -32,13 +34,14 @@ STABLE_ELSE = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
 
 
 def default_step(model: Model, method: Method = "tsit5") -> float:
-    """A time step (s) that follows the model's fastest natural motion: a 24th of its shortest period, at most 1 s, and what
-    its loads remember (`memory_step`).
+    """A time step (s) that follows the model's fastest natural motion: a 24th of its shortest period, at most 1 s at the size
+    of VolturnUS-S, and what its loads remember (`memory_step`).
 
     The error of a decay is then some 1e-6 of its amplitude. Waves shorter than the platform's motions ask for less.
     """
     periods = natural_modes(model).period
-    step = min(1.0, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else 0.5
+    pace = float(model.pace)
+    step = min(LONGEST_STEP * pace, float(periods.min()) / STEPS_PER_PERIOD) if len(periods) else STEP_AT_REST * pace
     return min(step, memory_step(model, method))
 
 
@@ -48,9 +51,19 @@ def memory_step(model: Model, method: Method = "tsit5") -> float:
     return STABLE.get(method, STABLE_ELSE) / fastest if fastest else math.inf
 
 
+def sea_step(model: Model) -> float:
+    """The step (s) in irregular seas where none is asked for: 0.25 s at the size of VolturnUS-S."""
+    return ALIKE * SEA_STEP * float(model.pace)
+
+
+def excursion_of(model: Model) -> float:
+    """How far (m) a platform may drift along the waves before its sea is prepared anew: 20 m at the size of VolturnUS-S."""
+    return EXCURSION * float(model.size)
+
+
 def largest_step(model: Model, cutoff: float) -> float:
     """s, in irregular seas: what follows the platform's motions, and waves of up to `cutoff` (Hz)."""
-    return min(SEA_STEP, default_step(model, "ab4"), RESOLVED / cutoff)
+    return min(sea_step(model), default_step(model, "ab4"), RESOLVED / cutoff)
 
 
 @eqx.filter_jit
@@ -86,7 +99,7 @@ def simulate(
     `step` (s) is the largest internal step; the one taken divides the duration. Positions are those of the reference
     point, equilibrium included.
 
-    In an `IrregularSea` the default is "ab4", four-step Adams-Bashforth at 0.25 s (see `adams_bashforth`), the sea is
+    In an `IrregularSea` the default is "ab4", four-step Adams-Bashforth at `sea_step` (see `adams_bashforth`), the sea is
     prepared for the hull first (see `supports`), and coefficients that depend on the sea state are those of its own
     (`Model.in_sea`). Else it is "tsit5".
 
@@ -108,7 +121,7 @@ def simulate(
     check_waves(model, sea)
     method = ("ab4" if irregular else "tsit5") if method is None else method
     if step is None:
-        step = min(SEA_STEP, memory_step(model, method)) if irregular else default_step(model, method)
+        step = min(sea_step(model), memory_step(model, method)) if irregular else default_step(model, method)
     named = position is None or isinstance(position, Mapping)
     memory = model.settled(by_name(position)) if named else model.rest().memory
     rest = equilibrium(model) if named else jnp.zeros(6)
@@ -157,7 +170,8 @@ def in_irregular(
     """
     begin = float(times[0])
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
-    points, excursion = model.hull.extremities(), EXCURSION
+    points, own = model.hull.extremities(), excursion_of(model)
+    excursion = own
     computed: Any = {"transfer": model.transfer, "exciting": model.excitation}
     while True:
         prepared = sea.prepared(points, model.cylinders, clock(method, begin, step, steps), excursion, **computed)
@@ -166,9 +180,9 @@ def in_irregular(
         reached = float(_farthest(found.position, jnp.asarray(points), met))
         if not reached + margin > prepared.half:
             return InIrregular(found, grid, prepared, step, steps)
-        if reached > prepared.half + 10 * EXCURSION:
+        if reached > prepared.half + 10 * own:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
-        excursion += reached + margin - prepared.half + 0.5 * EXCURSION
+        excursion += reached + margin - prepared.half + 0.5 * own
 
 
 def steps_in(sea: IrregularSea, duration: float, limit: float) -> tuple[float, int]:

@@ -16,6 +16,9 @@ from jaxhydro.waves.sea import StillWater
 CLOSE = 1e-12  # of the position: the last step
 ITERATIONS = 64
 UNCOUPLED = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
+ARM = 10.0  # m times the platform's size, of what is out of balance
+SUNK = 20.0  # the same: heave in which a platform does not float, if it is not less deep
+WIDTH = 50.0  # the same: VolturnUS-S's half width, by which modes compare rotations with displacements
 FREE = 1e-12  # of the stiffest motion's restoring: what is below is none
 
 
@@ -24,9 +27,10 @@ class EquilibriumError(RuntimeError):
 
 
 def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
-    """Net force over weight, net moment over weight times 10 m."""
+    """Net force over weight, net moment over weight times `ARM`."""
     weight = model.body.mass * model.environment.gravity
-    return model.force_at_rest(position) / (weight * jnp.array([1.0, 1.0, 1.0, 10.0, 10.0, 10.0]))
+    arm = jnp.ones(6).at[3:].set(ARM * model.size)
+    return model.force_at_rest(position) / (weight * arm)
 
 
 class _Held(NamedTuple):
@@ -92,13 +96,13 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
     at = np.asarray(position)
     worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
     if not np.abs(np.asarray(residual)).max() < 1e-8:
-        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else 10)
+        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else ARM * float(model.size))
         raise EquilibriumError(
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
             f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
         )
     draught = np.abs(np.asarray(model.hull.elements.start)[2]).max(initial=0.0)
-    if abs(at[2]) > max(draught, 20.0) or (np.abs(at[3:5]) > 1.0).any():
+    if abs(at[2]) > max(draught, SUNK * float(model.size)) or (np.abs(at[3:5]) > 1.0).any():
         where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], at[2:5], ("m", "rad", "rad")))
         raise EquilibriumError(f"the platform only balances at {where}: check mass, centre of mass, volume and mooring")
     return position
@@ -146,10 +150,15 @@ def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, 
     return mass, -mass @ jax.jacfwd(acceleration)(position)
 
 
+def widths(model: Model) -> np.ndarray:
+    """What displacements (1) and rotations (m) are times where they are compared: (6,)."""
+    return np.array([1.0, 1.0, 1.0, *3 * [WIDTH * float(model.size)]])
+
+
 def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Modes:
     """Natural modes about a position of rest (the equilibrium), damping left out. Motions without restoring have none.
 
-    Shapes are compared with rotations times 50 m, a platform's half width, so that metres and radians can be.
+    In shapes, rotations are times `widths`, so that metres and radians can be compared.
     """
     position = equilibrium(model) if position is None else position
     mass, stiffness = (np.asarray(m) for m in linearised(model, position))
@@ -158,7 +167,7 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     square, vectors = square.real[order], vectors.real[:, order]
     largest = np.abs(square).max()
     kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
-    vectors = vectors * np.array([[1], [1], [1], [50], [50], [50]])
+    vectors = vectors * widths(model)[:, None]
     shape = vectors[:, kept].T
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)
     unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})

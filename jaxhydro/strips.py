@@ -5,6 +5,9 @@ across its member's axis, an end along it. A member steeper than 45 degrees is a
 coefficients (t) and its ends the axial ones (z). A flatter one is a pontoon: its horizontal direction takes t, the other,
 near-vertical one z, and its ends take none but the pressure.
 
+Where the section of a member changes, its side looks along the axis too. Every strip of a tapered element therefore has a
+face, which is loaded along the axis as an end is. A step in size is a short taper.
+
 A load element is integrated by Gauss quadrature over the length that is under water (Abramowitz and Stegun 1964, eq.
 25.4.30). So the strips of a column that pierces the surface move along it with the surface: the wetted length is
 exact, forces are smooth in the motion, and no strip is spent on what is dry.
@@ -20,13 +23,17 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.rotations import step
+from jaxhydro.waterplane import wet_section
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
 UPRIGHT = math.cos(math.radians(10.0))  # of an axis that counts as vertical
-SPACING = 2.5  # m, of the strips of a column under still water, where the platform file does not say
-PONTOON_SPACING = 5.0  # m, of a pontoon
-SMOOTH = 0.25  # m over which an end of an element enters or leaves the water
+SPACING = 2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
+PONTOON_SPACING = 5.0  # the same of a pontoon
+PARTLY_WET = 0.05  # of the height of a pontoon: less, under or above still water, does not matter
+FLOATING = 8  # load elements at least along a member that lies at the surface
+NEARLY = 0.05  # of a strip, that a hull may ask for beyond a whole number
+ENTERING = 0.1  # m times the size of the hull, in which an element's end enters the water
+COVERING = 0.5  # the same, in which water covers a face
 
 
 class Member(NamedTuple):
@@ -50,9 +57,12 @@ class Member(NamedTuple):
 
     @property
     def axis(self) -> np.ndarray:
-        """Unit vector from the lower to the upper end of a column, from a to b of a pontoon."""
-        axis = (self.b - self.a) / np.linalg.norm(self.b - self.a)
-        return -axis if self.column and axis[2] < 0 else axis
+        """Unit vector from the lower to the upper end of what fills from its lower end, from a to b of others."""
+        return -self._along if self.fills and self._along[2] < 0 else self._along
+
+    @property
+    def _along(self) -> np.ndarray:
+        return (self.b - self.a) / np.linalg.norm(self.b - self.a)
 
     @property
     def column(self) -> bool:
@@ -61,7 +71,9 @@ class Member(NamedTuple):
     @property
     def directions(self) -> tuple[np.ndarray, np.ndarray]:
         """The two unit vectors across the axis: for a pontoon horizontal and upward, for a vertical column x and y."""
-        axis = self.axis
+        return self._across(self.axis)
+
+    def _across(self, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if abs(axis[2]) > 1.0 - 1e-9:
             first = np.array([1.0, 0.0, 0.0])
         else:
@@ -73,8 +85,8 @@ class Member(NamedTuple):
 
     @property
     def gauge(self) -> np.ndarray:
-        """Where (m) the surface elevation is looked up for it: a column's axis at still water, a pontoon's middle."""
-        if self.column:
+        """Where (m) the surface elevation is looked up for it: its axis at still water if it `fills`, else its middle."""
+        if self.fills:
             return self.a + (self.b - self.a) * (-self.a[2] / (self.b[2] - self.a[2]))
         return 0.5 * (self.a + self.b)
 
@@ -90,23 +102,78 @@ class Member(NamedTuple):
         low, high = sorted((self.a[2], self.b[2]))
         return self.circular and self.axis[2] > UPRIGHT and low < 0 <= high
 
+    def kinks(self) -> list[float]:
+        """Fractions of the length, strictly inside, at which the change of size along the axis is another."""
+        slope = np.diff(self.sizes, axis=0) / np.diff(self.stations)[:, None]
+        bend = np.abs(np.diff(slope, axis=0)).max(axis=1)
+        return [float(at) for at, one in zip(self.stations[1:-1], bend, strict=True) if one > 1e-9 * self.sizes.max()]
+
+    @property
+    def submerged(self) -> float:
+        """Share (-) of its height that is under still water at the reference position."""
+        heights = np.concatenate(self._edges())
+        low, high = float(heights.min()), float(heights.max())
+        return min(1.0, max(0.0, -low / (high - low)))
+
+    def _edges(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest z (m) of the faces at a and b."""
+        up, other = (abs(float(direction[2])) for direction in self._across(self._along))
+        found = []
+        for end, size in ((self.a, self.sizes[0]), (self.b, self.sizes[-1])):
+            half = 0.5 * math.hypot(up, other) * size[0] if self.circular else 0.5 * (up * size[0] + other * size[1])
+            found.append(np.array([end[2] - half, end[2] + half]))
+        return found[0], found[1]
+
+    @property
+    def pierced(self) -> bool:
+        """Whether still water cuts it lengthwise: a pontoon that is partly wet."""
+        return not self.column and PARTLY_WET < self.submerged < 1 - PARTLY_WET
+
+    @property
+    def upward(self) -> int | None:
+        """Which of its two directions is near vertical, where it lies level enough to be wet by its local depth; else None."""
+        steep = [abs(float(direction[2])) > UPRIGHT for direction in self._across(self._along)]
+        if abs(float(self._along[2])) > math.sqrt(1 - UPRIGHT**2) or not (any(steep) or self.circular):
+            return None
+        return 0 if steep[0] else 1
+
+    @property
+    def fills(self) -> bool:
+        """Whether it fills from its lower end: a column, or an inclined pontoon that still water cuts through its sides."""
+        if self.column:
+            return True
+        low, high = sorted(self._edges(), key=lambda edge: edge[0])
+        return self.pierced and self.upward is None and low[1] <= 0.0 <= high[0]
+
+    @property
+    def floats(self) -> bool:
+        """Whether it lies at the surface: see `waterplane`."""
+        return self.pierced and self.upward is not None
+
     def area(self, size: np.ndarray) -> np.ndarray:
         return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
 
-    def elements_and_orders(self) -> list[tuple[float, float, int]]:
+    def elements_and_orders(self, size: float = 1.0) -> list[tuple[float, float, int]]:
         """Load elements as fractions of the length from a to b, with the number of strips of each.
 
-        As many as the platform file says, `points` strips each; else one between stations, with as many as its length asks for.
+        As many as the platform file says, `points` strips each, cut at `kinks` too; else one between stations, with as many
+        as its length asks for in a hull of a `size` (`scales.size_of`).
         """
         length = float(np.linalg.norm(self.b - self.a))
+        if self.floats:
+            at = np.linspace(0.0, 1.0, max(self.elements or 0, FLOATING) + 1)
+            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
         if self.elements is not None:
             at = np.linspace(0.0, 1.0, self.elements + 1)
-            return [(lo, hi, self.points) for lo, hi in pairwise(at)]
+            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
         found = []
         for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
-            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9)) if self.column else 1.0
-            count = math.ceil(under * (hi - lo) * length / (SPACING if self.column else PONTOON_SPACING))
+            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.fills else 1.0
+            spacing = size * (SPACING if self.column else PONTOON_SPACING)
+            count = math.ceil(under * (hi - lo) * length / spacing - NEARLY)
             found.append((float(lo), float(hi), max(2, min(count, 20))))
         return found
 
@@ -136,30 +203,18 @@ class Elements(eqx.Module):
     start: Float[Array, "3 e"]  # m, the lower end
     axis: Float[Array, "3 e"]  # upward for a column
     length: Float[Array, " e"]  # m
-    thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: a column
+    thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: it fills from its lower end
     gauge: Float[Array, "3 e"]  # m, where the surface is looked up: a column's axis at still water, a pontoon's middle
+    circle: Float[Array, " e"]  # 1: wet by the segment of a circle (a cylinder that lies at the surface), 0: evenly
     label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and element
     labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
-
-
-class Ends(eqx.Module):
-    """Ends of members."""
-
-    position: Float[Array, "3 m"]
-    axis: Float[Array, "3 m"]  # unit vector, upward for a column
-    gauge: Float[Array, "3 m"]  # as that of the member's elements
-    outward: Float[Array, " m"]  # +1 where the face looks along the axis (a top), -1 where against it (a bottom)
-    area: Float[Array, " m"]
-    radius: Float[Array, " m"]  # m, of the circle of equal area that carries added mass and drag; 0: none, a pontoon's end
-    label: tuple[int, ...] = eqx.field(static=True)
-    labels: tuple[str, ...] = eqx.field(static=True)
 
 
 _STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")
 
 
-def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
-    """Cut members into load elements and strips."""
+def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]:
+    """Cut members into load elements and strips; `size` as in `Member.elements_and_orders`."""
     labels: list[tuple[str, str]] = []
     elements: list[tuple] = []
     rows: list[tuple] = []
@@ -172,17 +227,23 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
         span = float(np.linalg.norm(member.b - member.a))
         directions = np.stack(member.directions, axis=1)
         upright = member.axis @ (member.b - member.a) > 0
-        for lo, hi, order in member.elements_and_orders():
+        for lo, hi, order in member.elements_and_orders(size):
             near, far = (lo, hi) if upright else (hi, lo)
             length = (hi - lo) * span
             first, last = member.size(np.array(near)), member.size(np.array(far))
             start = member.a + (member.b - member.a) * near
-            thickness = 0.0 if member.column else float(np.abs(directions[2]) @ (0.5 * (first + last)))
+            thickness = 0.0 if member.fills else float(np.abs(directions[2]) @ (0.5 * (first + last)))
+            lowered = np.zeros(3)
+            if (up := member.upward) is not None and member.floats:
+                height = 0.5 * float(first[up] + last[up])
+                thickness = height
+                middle = wet_section(member.submerged, member.circular)[1]
+                lowered = middle * height * directions[:, up] * np.sign(directions[2, up])
             point, weight = np.polynomial.legendre.leggauss(order)
             for fraction, share in zip(0.5 * (1 + point), 0.5 * weight, strict=True):
                 rows.append(
                     (
-                        start,
+                        start + lowered,
                         member.axis,
                         directions,
                         fraction,
@@ -194,9 +255,10 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
                         0.25 * float(first[0] + last[0]) if member.diffracts else 0.0,
                     )
                 )
-            elements.append((start, member.axis, length, thickness, member.gauge, label))
+            round_ = 1.0 if member.floats and member.circular else 0.0
+            elements.append((start, member.axis, length, thickness, member.gauge, round_, label))
     triple, pair, flat = np.zeros((3, 0)), np.zeros((2, 0)), np.zeros(0)
-    whole = [triple, triple, flat, flat, triple]
+    whole = [triple, triple, flat, flat, triple, flat]
     parts = [triple, triple, np.zeros((3, 2, 0)), flat, flat, pair, pair, flat]
     label_of: tuple[tuple[int, ...], ...] = ((), ())
     element_of: tuple[int, ...] = ()
@@ -208,35 +270,6 @@ def cut(members: Sequence[Member]) -> tuple[Elements, Strips]:
         label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
     of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
     strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
-    names = ("start", "axis", "length", "thickness", "gauge")
+    names = ("start", "axis", "length", "thickness", "gauge", "circle")
     of_elements: dict[str, Any] = dict(zip(names, map(jnp.asarray, whole), strict=True))
     return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
-
-
-def ends(members: Sequence[Member]) -> Ends:
-    """The two ends of every member; what is not in the water is left out by its wetting.
-
-    Pressure acts on all of them: where members meet, it cancels that on the other's side, which its strips count as exposed.
-    Added mass and drag have the free ends of columns only.
-    """
-    labels = tuple(dict.fromkeys(m.group for m in members if m.column))
-    position, axis, gauge, outward, area, radius, label = [], [], [], [], [], [], []
-    for member in members:
-        upright = bool(member.axis @ (member.b - member.a) > 0)
-        for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
-            position.append(point)
-            axis.append(member.axis)
-            gauge.append(member.gauge)
-            outward.append(1.0 if far else -1.0)
-            area.append(float(member.area(member.size(np.array([fraction])))[0]))
-            radius.append(math.sqrt(area[-1] / math.pi) if member.column else 0.0)
-            label.append(labels.index(member.group) if member.column else 0)
-    vectors = [np.array(rows).reshape(-1, 3).T for rows in (position, axis, gauge)]
-    arrays = map(jnp.asarray, (*vectors, np.array(outward), np.array(area), np.array(radius)))
-    fields: dict[str, Any] = dict(zip(("position", "axis", "gauge", "outward", "area", "radius"), arrays, strict=True))
-    return Ends(**fields, label=tuple(label), labels=labels)
-
-
-def end_wetted(depth: Float[Array, " m"]) -> Float[Array, " m"]:
-    """Share of ends at `depth` (m) that is under water."""
-    return step(depth / (2 * SMOOTH))

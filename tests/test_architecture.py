@@ -14,8 +14,11 @@ ROOT = Path(__file__).resolve().parents[1]
 
 LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.excitation", "jaxhydro.remarks"),
+    ("jaxhydro.scales",),
+    ("jaxhydro.waterplane",),
     ("jaxhydro.waves.transfer", "jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta", "jaxhydro.waves.continuation"),
-    ("jaxhydro.adams_bashforth", "jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
+    ("jaxhydro.ends", "jaxhydro.adams_bashforth"),
+    ("jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
     ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
     ("jaxhydro.waves.sea", "jaxhydro.waves.second_order", "jaxhydro.waves.sea_state", "jaxhydro.waves.envelope"),
     ("jaxhydro.waves.irregular", "jaxhydro.waves.support_sea"),
@@ -67,7 +70,7 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "drag": "*",
     "per_dof": "*",
 }
-NUMERICS = [name for layer in LAYERS[:13] for name in layer]
+NUMERICS = [name for layer in LAYERS[:16] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
     "matplotlib": {"jaxhydro.plot", "jaxhydro.sweep.plot"}
     | {f"calibration.{name}" for name in ("plot", "seas_plot", "sea_laws_plot", "uncertainty_plot")}

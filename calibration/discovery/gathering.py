@@ -23,13 +23,13 @@ from calibration.stretches import window
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import clock
 from jaxhydro.model import Model
-from jaxhydro.simulate import memory_step
+from jaxhydro.simulate import excursion_of, memory_step
 from jaxhydro.statics import equilibrium, natural_modes
 from jaxhydro.waves.irregular import fourier_length
-from jaxhydro.waves.irregular_sea import EXCURSION, IrregularSea
+from jaxhydro.waves.irregular_sea import IrregularSea
 
 BANDS = 14
-EXCURSIONS = 1.5  # of EXCURSION: how far a sea is prepared for
+EXCURSIONS = 1.5  # of `excursion_of` the model: how far a sea is prepared for
 OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
 TAPERED = 0.1  # of a test in waves, at its two ends together
 FIRST = 0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
@@ -197,7 +197,7 @@ def _sea_record(
     count = int(np.ceil((times[-1] - times[0]) / dt - 1e-9))
     instants = clock("ab4", float(times[0]), dt, count)
     hull, computed = (model.hull.extremities(), model.cylinders), (model.transfer, model.excitation)
-    sea = made.prepared(*hull, instants, EXCURSIONS * EXCURSION, *computed)
+    sea = made.prepared(*hull, instants, EXCURSIONS * excursion_of(model), *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
     n = min(len(w) for w in windows)

@@ -19,10 +19,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.still import WIDTHS
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.statics import equilibrium, linearised, natural_modes
+from jaxhydro.statics import equilibrium, linearised, natural_modes, widths
 
 if TYPE_CHECKING:
     from calibration.discovery.looks import Place
@@ -119,7 +118,7 @@ def own_mode(model: Model, dof: str) -> tuple[float, float]:
     position = equilibrium(model)
     modes, mass = natural_modes(model, position), np.asarray(linearised(model, position)[0])
     i = int(np.argmin(np.where(np.argmax(np.abs(modes.shape), axis=1) == DOFS.index(dof), -modes.period, np.inf)))
-    shape = modes.shape[i] / WIDTHS
+    shape = modes.shape[i] / widths(model)
     return float(modes.period[i]), float(shape @ mass @ shape) / float(shape[DOFS.index(dof)]) ** 2
 
 

@@ -1,6 +1,7 @@
 """What a load is: one force law with named parameters, and the instant at which it acts."""
 
 import abc
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
@@ -26,6 +27,12 @@ class Parameter(NamedTuple):
     upper: float = float("inf")
     null: float = 0.0
 
+    def sized(self, size: float, pace: float) -> "Parameter":
+        """With the bounds of a platform of other `size` and `pace` (-, `scales`), where they are lengths or times."""
+        factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
+        lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
+        return self if factor == 1.0 else self._replace(lower=lower, upper=upper)
+
 
 class StripShape(NamedTuple):
     """What of each strip is under water: displaced volume (m3), and the area (m2) that a flow along either direction sees."""
@@ -34,8 +41,38 @@ class StripShape(NamedTuple):
     facing: Float[Array, "2 n"]
 
 
+class EndShape(NamedTuple):
+    """What ends and faces are: the area (m2) on which pressure acts, that which a flow along the axis sees, and the volume (m3)
+    to which added mass refers. Of a face it is that of the wet part of its strip; an end is wet by `EndFlow.wet`.
+
+    A face of a strip over which the section A grows by dA has the area dA, against the axis, and the volume r dA, A = pi r^2:
+    over a step that makes 2/3 pi (R^3 - r^3), the difference of two half spheres. OpenFAST HydroDyn, Morison module (tapered
+    members); RAFT, raft_member.py, getHydroConstants.
+    """
+
+    area: Float[Array, " m"]
+    facing: Float[Array, " m"]
+    volume: Float[Array, " m"]
+
+    @classmethod
+    def of(cls, hull: Hull, covered: Float[Array, " n"], extent: Float[Array, "2 n"]) -> "EndShape":
+        """Those of a hull's ends and faces; `covered` (m) is the wet length of every strip, `extent` (m) its size."""
+        ends, strips = hull.ends, hull.strips
+        own = cls(ends.area, ends.facing, ends.volume)
+        if not ends.strip:
+            return own
+        of = jnp.array(ends.strip, dtype=int)
+        shape, (width, height), (wider, higher) = strips.shape[of], extent[:, of], strips.taper[:, of]
+        grown = shape * (wider * height + higher * width) * covered[of]
+        faces = slice(len(ends.label) - len(ends.strip), None)
+        facing = jnp.where(ends.radius[faces] > 0, jnp.abs(grown), 0.0)
+        radius = jnp.sqrt(shape * width * height / math.pi)
+        found = (-ends.outward[faces] * grown, facing, radius * facing)
+        return cls(*(one.at[faces].set(face) for one, face in zip(own, found, strict=True)))
+
+
 class Lines(NamedTuple):
-    """Lines of strips and ends: distance (m) from the element's start, and the centripetal acceleration along them (m/s2)."""
+    """Lines of strips, ends and faces: distance (m) from the element's start, centripetal acceleration along them (m/s2)."""
 
     away: Float[Array, " l"]
     inward: Float[Array, " l"]
@@ -46,9 +83,10 @@ class Instant(eqx.Module):
 
     `position` is surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point; `rotation` takes body to earth axes;
     `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
-    same along earth axes. `wetted` and `strip_shape` say what of elements and strips is under water, `strip_flow` and
-    `end_flow` how the water moves past strips and ends. `drift` (m2) and `excitation` (N, N m) are those of the sea: see
-    `AbstractSea.drift`, `AbstractSea.excitation`.
+    same along earth axes. `wetted`, `strip_shape` and `end_shape` say what of elements, strips and faces is under water,
+    `strip_flow` and `end_flow` how the water moves past strips and ends. `drift` (m2) and `excitation` (N, N m) are those of
+    the sea: see `AbstractSea.drift`, `AbstractSea.excitation`. `lid` is pressure over density
+    (m2/s2) and acceleration (m/s2, body axes) of the water at the points of `Hull.leaning`.
     """
 
     time: Float[Array, ""]
@@ -59,11 +97,13 @@ class Instant(eqx.Module):
     hull: Hull
     wetted: Wetted
     strip_shape: StripShape
+    end_shape: EndShape
     strip_flow: StripFlow
     end_flow: EndFlow
     lines: Lines
     drift: Float[Array, " d"] | None = None
     excitation: Float[Array, "6"] | None = None
+    lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:
         """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""

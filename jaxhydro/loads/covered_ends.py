@@ -34,6 +34,6 @@ class CoveredEnds(AbstractLoad):
         flow, ends = now.end_flow, now.hull.ends
         if flow.pressure is None:
             return Action()
-        area = jnp.where(ends.radius > 0, 0.0, ends.area)
+        area = jnp.where(ends.radius > 0, 0.0, ends.area)  # 0 on the faces of tapered pontoons
         pressure = now.environment.density * flow.pressure * area * ends.outward * flow.wet
         return Action(end_force=self.values[LABEL] * pressure)

@@ -20,7 +20,7 @@ SUCTION = Parameter("-", "share of the drag of the ends of {group} that moves to
 
 POWER = "amplitude_dependent_drag"  # labels of coefficients that go with a power of the speed
 SPEED = 0.5  # m/s at which Cd is what it says
-SLOW = 0.02  # m/s below which the coefficient no longer changes
+SLOW = 0.04  # of that speed, below which the coefficient no longer changes
 SHARE = "sea_state_dependent_drag"  # labels of drag in which slow motion has a coefficient of its own
 OF_SHARE = {
     f"{SHARE}.low_share": Parameter("-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0),
@@ -67,8 +67,8 @@ def strip_area(now: Instant, values: Values) -> Float[Array, "2 n"]:
 
 
 def end_area(now: Instant, values: Values) -> Float[Array, " m"]:
-    """Cd A (m2) of ends, A the wet area of the face; 0 where `values` has no coefficient."""
-    return of_ends(now, values, "Cd", 0.0) * (np.pi * now.hull.ends.radius**2) * now.end_flow.wet
+    """Cd A (m2) of ends, A the wet area that is free; 0 where `values` has no coefficient."""
+    return of_ends(now, values, "Cd", 0.0) * now.end_shape.facing * now.end_flow.wet
 
 
 def lines_of(hull: Hull, labels: Iterable[str], both: bool = False) -> tuple[int, ...]:
@@ -102,8 +102,9 @@ def about(label: str, more: Mapping[str, Parameter]) -> Parameter:
 
 
 def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float = SPEED) -> Float[Array, "..."]:
-    """((u^2 + e^2)/(U0^2 + e^2))^(n/2) of u^2 (m2/s2): exactly 1 for n = 0."""
-    return jnp.exp(0.5 * exponent * jnp.log((square + SLOW**2) / (speed**2 + SLOW**2)))
+    """((u^2 + e^2)/(U0^2 + e^2))^(n/2) of u^2 (m2/s2), e a share of U0: exactly 1 for n = 0."""
+    slow = (SLOW * speed) ** 2
+    return jnp.exp(0.5 * exponent * jnp.log((square + slow) / (speed**2 + slow)))
 
 
 def groups_of(values: Iterable[str]) -> tuple[str, ...]:

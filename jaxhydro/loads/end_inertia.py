@@ -1,14 +1,13 @@
 """Inertia and dynamic pressure at the ends of columns."""
 
-import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.ends import Ends
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.strips import Ends
 
 
 def spread_ends(
@@ -26,7 +25,9 @@ class EndInertia(AbstractLoad):
     """f = rho Ca V (a_water - a_end) + p A, along the member, V = 2/3 pi r^3 half a sphere on the end.
 
     Added mass of an end as in OpenFAST HydroDyn (Morison module, loads on member ends); p A is the dynamic pressure on the
-    end's area, the axial Froude-Krylov force, which the ends of pontoons carry too. Only ends under water are loaded.
+    end's area, the axial Froude-Krylov force, which the ends of pontoons carry too. Only ends under water are loaded. The
+    same holds where the section changes along the axis, with the V and A of the ring: see `EndShape`. Where still water
+    cuts what leans, the waves' pressure on the waterplane is part of it: `waterplane.Leaning`.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -38,10 +39,10 @@ class EndInertia(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow, ends, density = now.end_flow, now.hull.ends, now.environment.density
-        volume = 2 / 3 * math.pi * ends.radius**3
-        mass = density * spread_ends(ends, self.values, "Ca") * volume * flow.wet
+        mass = density * spread_ends(ends, self.values, "Ca") * now.end_shape.volume * flow.wet
         if flow.acceleration is None:
             return Action(end_mass=mass)
         assert flow.pressure is not None
-        pressure = -density * flow.pressure * ends.area * ends.outward * flow.wet
-        return Action(end_force=mass * flow.acceleration + pressure, end_mass=mass)
+        pressure = -density * flow.pressure * now.end_shape.area * ends.outward * flow.wet
+        lid = None if now.hull.leaning is None else now.hull.leaning.act(now)
+        return Action(end_force=mass * flow.acceleration + pressure, end_mass=mass, body_force=lid)

@@ -1,6 +1,7 @@
 """Buoyancy of the displaced hull up to still water level, and what the platform file declares beyond its geometry."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -10,19 +11,24 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.rotations import cross, ramp, rotation, step
-from jaxhydro.strips import Member
+from jaxhydro.rotations import cross, rotation
+from jaxhydro.scales import covered, entered
+from jaxhydro.strips import ENTERING, Member
+from jaxhydro.waterplane import chord, segment
 
-SMOOTH = 0.25  # m over which an end of a member enters or leaves the water
+ALONG, ACROSS = 16, 4  # slabs and slices of a member that lies at the surface
 
 
 class Buoyancy(AbstractLoad):
-    """F = rho g V up, at the centroid of the volume V that is under still water; exact for prismatic members.
+    """F = rho g V up, at the centroid of the volume V that is under still water.
 
-    V and its centroid follow the finite displacement and rotation: the wetted length along the axis, and for a column the
-    wedge of its inclined waterplane, which moves the volume by I tan across and I tan^2/2 along the axis, I the section's
-    second moment (Newman 1977, Marine Hydrodynamics, chapter 6, Hydrostatics, without linearisation). A column is taken
-    as cut through its sides, not its ends.
+    V and its centroid follow the finite displacement and rotation. They are those of the wetted length along the axis, and for
+    a column those of the wedge of its inclined waterplane. The wedge moves the volume by I tan across and I tan^2/2 along the
+    axis, I the second moment of the section at the waterline (Newman 1977, Marine Hydrodynamics, chapter 6, Hydrostatics,
+    without linearisation). A column is taken as cut through its sides, not its ends.
+
+    Sizes vary linearly along a piece. A prismatic column is exact at any lean; a tapered one is exact when upright or wholly
+    under water, and to second order in the lean where the waterline cuts it.
 
     `extra_force` and `extra_stiffness` are the declared hydrostatics less those of the geometry, about the upright platform
     at its reference position: extra volume acts at the geometry's centre of buoyancy.
@@ -31,10 +37,17 @@ class Buoyancy(AbstractLoad):
     lower: Float[Array, "3 p"]  # m, body axes: the lower end of a piece
     axis: Float[Array, "3 p"]
     length: Float[Array, " p"]
-    area: Float[Array, " p"]
-    second_moment: Float[Array, "2 p"]  # m4, for a lean along either direction
+    size: Float[Array, "2 p"]  # m, extent along either direction at the lower end
+    taper: Float[Array, "2 p"]  # its change per metre
+    shape: Float[Array, " p"]  # area over the product of extents: pi/4 for a circle
+    bend: Float[Array, " p"]  # second moment over extent^3 times the other extent: pi/64 for a circle, 1/12 for a box
     directions: Float[Array, "3 2 p"]
     thickness: Float[Array, " p"]  # m, vertical extent beyond that of the axis
+    tube: Float[Array, "3 t"]  # m: middles of slices of cylinders that lie at the surface
+    tube_across: Float[Array, "3 2 t"]  # unit vectors across their axes
+    tube_radius: Float[Array, " t"]
+    tube_length: Float[Array, " t"]
+    hull_size: Float[Array, ""]  # `scales.size_of` the platform
     extra_force: Float[Array, ""]  # N
     extra_stiffness: Float[Array, "3"]  # C33, C44, C55 beyond the geometry's
     values: dict[str, Float[Array, ""]]
@@ -59,18 +72,49 @@ class Buoyancy(AbstractLoad):
         rise = jnp.abs(slope) * self.length
         low = heave + low + 0.5 * (slope * self.length - rise) - 0.5 * self.thickness
         height = rise + self.thickness
-        wet = SMOOTH / height * (ramp(-low / SMOOTH) - ramp(-(low + height) / SMOOTH))
-        volume = self.area * self.length * wet
+        width = ENTERING * self.hull_size
+        wet = (entered(-low, width) - entered(-low - height, width)) / height
         # a column fills from its lower end; a pontoon loses volume evenly
         column = self.thickness == 0
-        reach = jnp.where(column, 0.5 * wet, 0.5) * self.length
+        filled = jnp.where(column, wet, 1.0) * self.length
+        volume, along = self._frustum(filled)
+        volume, along = (jnp.where(column, one, one * wet) for one in (volume, along))
         # the wedge of an inclined waterplane moves volume by -I tan along a direction and by I tan^2/2 along the axis
         tangent = jnp.stack(lean) / jnp.where(column, slope, 1.0)
-        pierced = jnp.where(column, step(-low / SMOOTH) - step(-(low + height) / SMOOTH), 0.0)
-        across = self.second_moment * tangent * pierced
-        along = 0.5 * (across * tangent).sum(axis=0) + volume * reach
-        moment = volume * self.lower + along * self.axis - (self.directions * across).sum(axis=1)
+        pierced = jnp.where(column, covered(-low, width) - covered(-low - height, width), 0.0)
+        second, change = (one * tangent * pierced for one in self._second_moment(filled))
+        swell = 0.5 * (change * tangent).sum(axis=0)  # where the section grows, the raised side gains more than the other loses
+        volume, along = volume + swell, along + 0.5 * (second * tangent).sum(axis=0) + filled * swell
+        moment = volume * self.lower + along * self.axis - (self.directions * second).sum(axis=1)
         return volume, moment
+
+    def _tubes(
+        self, heave: Float[Array, ""], vertical: Float[Array, "3"]
+    ) -> tuple[Float[Array, " t"], Float[Array, "3 t"]]:
+        """Wet volume (m3) of slices of cylinders, and its first moment (m4): segments of circles."""
+        depth = -(heave + vertical @ self.tube)
+        upward = jnp.einsum("i,idt->dt", vertical, self.tube_across)
+        slope = jnp.sqrt((upward**2).sum(axis=0))
+        x = depth / (slope * self.tube_radius)
+        volume = segment(x) * self.tube_radius**2 * self.tube_length
+        towards = jnp.einsum("idt,dt->it", self.tube_across, upward / slope)
+        first = 2 / 3 * chord(x) ** 3 * self.tube_radius**3 * self.tube_length
+        return volume, volume * self.tube - first * towards
+
+    def _frustum(self, reach: Float[Array, " p"]) -> tuple[Float[Array, " p"], Float[Array, " p"]]:
+        """Volume (m3) of pieces up to `reach` (m) from their lower ends, and its first moment (m4) about these."""
+        (a, b), (p, q) = self.size, self.taper
+        area = [self.shape * part for part in (a * b, a * q + b * p, p * q)]  # by power of the distance
+        parts = [[part * reach ** (i + j) / (i + j) for i, part in enumerate(area)] for j in (1, 2)]
+        volume, first = (one + two + three for one, two, three in parts)
+        return volume, first
+
+    def _second_moment(self, reach: Float[Array, " p"]) -> tuple[Float[Array, "2 p"], Float[Array, "2 p"]]:
+        """Second moment (m4) of the section `reach` (m) from the lower end, for a lean along either direction, and its change
+        per metre (m3)."""
+        size = self.size + self.taper * reach
+        other, growth = size[::-1], self.taper[::-1]
+        return self.bend * size**3 * other, self.bend * size**2 * (3 * self.taper * other + size * growth)
 
     def force(
         self, position: Float[Array, "6"], matrix: Float[Array, "3 3"], weight_density: Float[Array, ""] | float
@@ -78,6 +122,9 @@ class Buoyancy(AbstractLoad):
         """Buoyancy (N, N m) in body axes at a displacement of the reference point; `weight_density` is rho g (N/m3)."""
         vertical = matrix[2]
         volume, moment = self.geometry(position[2], vertical)
+        if self.tube_radius.size:
+            more = self._tubes(position[2], vertical)
+            volume, moment = (jnp.concatenate(parts, axis=-1) for parts in zip((volume, moment), more, strict=True))
         total = jnp.concatenate([volume[None], moment]).sum(axis=1) * weight_density
         up = total[0] + self.extra_force - self.extra_stiffness[0] * position[2]
         # the sine of the lean about the body's own x and y: roll and pitch to first order
@@ -103,40 +150,80 @@ class Buoyancy(AbstractLoad):
 def _upright(load: Buoyancy, weight_density: Float[Array, ""]):
     zeros = jnp.zeros(6)
     slope = jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(zeros)
-    return *load.geometry(zeros[0], jnp.eye(3)[2]), slope
+    pieces, tubes = load.geometry(zeros[0], jnp.eye(3)[2]), load._tubes(zeros[0], jnp.eye(3)[2])
+    return *(jnp.concatenate(parts, axis=-1) for parts in zip(pieces, tubes, strict=True)), slope
 
 
-def buoyancy(members: Sequence[Member]) -> Buoyancy:
-    """The buoyancy of members as they are, nothing declared beyond them. A tapered member is cut at its stations, finer."""
+def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
+    """The buoyancy of members as they are, nothing declared beyond them. A member is cut where its taper changes.
+
+    `size` is that of the platform (`scales.size_of`)."""
     rows: list[tuple] = []
+    tubes: list[tuple] = []
     for member in members:
-        tapered = bool(np.ptp(member.sizes, axis=0).any())
-        edges = np.unique(np.concatenate([member.stations, np.linspace(0, 1, 21)])) if tapered else np.array([0.0, 1.0])
-        middle = 0.5 * (edges[1:] + edges[:-1])
-        size, span = member.size(middle), member.b - member.a
-        start = edges[:-1] if not member.column or span[2] > 0 else edges[1:]
-        first, second = member.directions
-        directions = np.stack([first, second], axis=1)
-        shape = np.pi / 64 * size**4 if member.circular else np.stack(
-            [size[:, 1] * size[:, 0] ** 3 / 12, size[:, 0] * size[:, 1] ** 3 / 12], axis=-1
-        )
-        for i in range(len(middle)):
-            thickness = 0.0 if member.column else float(np.abs(directions[2]) @ size[i])
+        edges = [0.0, *member.kinks(), 1.0]
+        span = member.b - member.a
+        upward = bool(member.axis @ span > 0)
+        directions = np.stack(member.directions, axis=1)
+        if (up := member.upward) is not None and member.floats:
+            if member.circular:
+                tubes += _slices(member, directions)
+            else:
+                rows += _slabs(member, directions, up)
+            continue
+        for near, far in pairwise(edges):
+            low, high = (near, far) if upward else (far, near)
+            first, last = member.size(np.array(low)), member.size(np.array(high))
+            length = (far - near) * float(np.linalg.norm(span))
             rows.append(
                 (
-                    member.a + span * start[i],
+                    member.a + span * low,
                     member.axis,
-                    (edges[i + 1] - edges[i]) * np.linalg.norm(span),
-                    float(member.area(size[i])),
-                    shape[i],
+                    length,
+                    first,
+                    (last - first) / length,
+                    np.pi / 4 if member.circular else 1.0,
+                    np.pi / 64 if member.circular else 1 / 12,
                     directions,
-                    thickness,
+                    0.0 if member.fills else float(np.abs(directions[2]) @ (0.5 * (first + last))),
                 )
             )
     flat, triple = np.zeros(0), np.zeros((3, 0))
-    arrays = [triple, triple, flat, flat, np.zeros((2, 0)), np.zeros((3, 2, 0)), flat]
+    pair = np.zeros((2, 0))
+    arrays = [triple, triple, flat, pair, pair, flat, flat, np.zeros((3, 2, 0)), flat]
     if rows:
         arrays = [np.stack(column, axis=-1) for column in zip(*rows, strict=True)]
-    names = ("lower", "axis", "length", "area", "second_moment", "directions", "thickness")
+    names = ("lower", "axis", "length", "size", "taper", "shape", "bend", "directions", "thickness")
     pieces: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
+    of_tubes = [triple, np.zeros((3, 2, 0)), flat, flat]
+    if tubes:
+        of_tubes = [np.stack(column, axis=-1) for column in zip(*tubes, strict=True)]
+    pieces |= zip(("tube", "tube_across", "tube_radius", "tube_length"), map(jnp.asarray, of_tubes), strict=True)
+    pieces["hull_size"] = jnp.asarray(size)
     return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)), values={})
+
+
+def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
+    """A box that lies at the surface as upright slabs: exact while still water cuts their sides."""
+    span, upward = member.b - member.a, directions[:, up] * np.sign(directions[2, up])
+    across = directions[:, 1 - up]
+    found = []
+    for s in (np.arange(ALONG) + 0.5) / ALONG:
+        size = member.size(np.array(s))
+        height, width = float(size[up]), float(size[1 - up])
+        extent = np.array([np.linalg.norm(span) / ALONG, width / ACROSS])
+        for u in (np.arange(ACROSS) + 0.5) / ACROSS - 0.5:
+            lower = member.a + span * s + u * width * across - 0.5 * height * upward
+            frame = np.stack([member.axis, across], axis=1)
+            found.append((lower, upward, height, extent, np.zeros(2), 1.0, 1 / 12, frame, 0.0))
+    return found
+
+
+def _slices(member: Member, directions: np.ndarray) -> list[tuple]:
+    """A cylinder that lies at the surface as slices, at Gauss points of its length."""
+    point, weight = np.polynomial.legendre.leggauss(ALONG)
+    span = member.b - member.a
+    return [
+        (member.a + span * s, directions, 0.5 * float(member.size(np.array(s))[0]), float(np.linalg.norm(span)) * w)
+        for s, w in zip(0.5 * (1 + point), 0.5 * weight, strict=True)
+    ]

@@ -32,7 +32,8 @@ class StripInertia(AbstractLoad):
 
     On members that diffract the waves rho V times `Flow.diffracted` takes the place of rho V (1 + Ca) a_water: the
     coefficient of MacCamy and Fuchs for every component, bound ones by their own wavenumber (2 for long ones, whatever Ca,
-    unless `Model.diffraction` is "ramp").
+    unless `Model.diffraction` is "ramp"). Members that lie at the surface have the pressure on their waterplane too:
+    `waterplane`.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -49,9 +50,11 @@ class StripInertia(AbstractLoad):
         if flow.acceleration is None:
             return Action(element_mass=mass)
         density, volume = now.environment.density, now.strip_shape.volume
+        lid, moment = (0.0, None) if now.hull.waterplane is None else now.hull.waterplane.act(now)
         if flow.diffracted is None:
-            return Action(strip_force=now.over_strips(density + mass) * volume * flow.acceleration, element_mass=mass)
+            force = now.over_strips(density + mass) * volume * flow.acceleration
+            return Action(strip_force=force + lid, element_mass=mass, body_force=moment)
         force = jnp.where(now.diffracting(), density * flow.diffracted, now.over_strips(density + mass) * flow.acceleration)
         if flow.tuned is not None:
             force = force + now.over_strips(mass - density) * flow.tuned
-        return Action(strip_force=force * volume, element_mass=mass)
+        return Action(strip_force=force * volume + lid, element_mass=mass, body_force=moment)

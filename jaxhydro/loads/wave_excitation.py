@@ -47,6 +47,6 @@ class WaveExcitation(AbstractLoad):
         if flow.diffracted is not None:
             water = jnp.where(now.diffracting(), 0.5 * flow.diffracted, water)
         strips = now.over_strips(density * spread(now.hull.elements, values, "Cp", 0.0)) * now.strip_shape.volume * water
-        area = jnp.where(ends.radius > 0, ends.area, 0.0)
+        area = jnp.where(ends.radius > 0, now.end_shape.area, 0.0)
         pressure = -density * now.end_flow.pressure * area * ends.outward * now.end_flow.wet
         return Action(strip_force=strips, end_force=spread_ends(ends, values, "Cp", 0.0) * pressure)

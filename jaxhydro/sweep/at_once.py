@@ -11,7 +11,7 @@ from jaxtyping import Complex, Float
 
 from jaxhydro.integrate import clock, integrate
 from jaxhydro.model import Model, State
-from jaxhydro.simulate import farthest, steps_in
+from jaxhydro.simulate import excursion_of, farthest, steps_in
 from jaxhydro.statics import EquilibriumError, equilibrium
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.preparation import Preparation
@@ -80,7 +80,7 @@ def shared_by(
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     instants = clock("ab4", float(times[0]), step, steps)
     hull, computed = (model.hull.extremities(), model.cylinders), {"transfer": model.transfer, "exciting": model.excitation}
-    return sea.preparation(*hull, instants, **computed), step, steps  # type: ignore[arg-type]
+    return sea.preparation(*hull, instants, excursion_of(model), **computed), step, steps  # type: ignore[arg-type]
 
 
 def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:

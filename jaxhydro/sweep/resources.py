@@ -10,11 +10,11 @@ import numpy as np
 import psutil
 
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.simulate import excursion_of
 from jaxhydro.sweep.at_once import power_of_two
 from jaxhydro.sweep.batch import Setup
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import fourier_length, harmonics, repeat_period
-from jaxhydro.waves.irregular_sea import EXCURSION
 from jaxhydro.waves.supports import MOST, Box, supports
 
 COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
@@ -47,7 +47,7 @@ def supports_of(setup: Setup, source: str = "sweep") -> int:
     points = np.asarray(setup.model.hull.extremities())
     most = 0
     for heading in {math.radians(case.heading) for case in plan.cases}:
-        _, box = Box.of(points, heading, depth, EXCURSION)
+        _, box = Box.of(points, heading, depth, excursion_of(setup.model))
         try:
             most = max(most, supports(box, free, 2 * free if plan.order == 2 else 0.0).wavenumber.size)
         except ValueError:

@@ -53,13 +53,14 @@ class StripFlow(eqx.Module):
     """Flow past strips along their two directions.
 
     `relative` is the water's velocity less the strip's (m/s), `acceleration` the water's (m/s2; None in still water),
-    `diffracted` and `tuned` are those of `Flow`.
+    `diffracted`, `tuned` and `pressure` are those of `Flow`.
     """
 
     relative: Float[Array, "2 n"]
     acceleration: Float[Array, "2 n"] | None
     diffracted: Float[Array, "2 n"] | None = None
     tuned: Float[Array, "2 n"] | None = None
+    pressure: Float[Array, " n"] | None = None
 
 
 class EndFlow(eqx.Module):

@@ -21,7 +21,7 @@ from jaxhydro.waves.transfer import Transfer
 
 Acting = Literal["everywhere", "at the origin", "nowhere"]
 _elevation = eqx.filter_jit(elevation_spectrum)
-EXCURSION = 20.0  # m that a platform may drift along the waves before its sea is prepared anew
+EXCURSION = 20.0  # m times the platform's size, that it may drift along the waves before its sea is prepared anew
 
 
 class IrregularSea(AbstractSea):

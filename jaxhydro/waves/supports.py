@@ -34,11 +34,14 @@ class Box(NamedTuple):
         cls, points: Float[np.ndarray, "3 p"], heading: float, depth: float, excursion: float
     ) -> "tuple[float, Box]":
         """Middle (m), along waves that travel to `heading` (rad), of where points of a hull may be that moves by up to
-        `excursion` (m), and the box about it; a little larger, so that hulls and headings nearly alike have the same."""
+        `excursion` (m), and the box about it. It is a little larger, by shares of the excursion, so that hulls and
+        headings nearly alike have the same."""
         place = np.array([math.cos(heading), math.sin(heading)]) @ points[:2]
         half = 0.5 * np.ptp(place) + excursion
+        wide, deep = 0.25 * excursion, 0.1 * excursion
         low = max(-depth, float(points[2].min()) - 0.3 * excursion)
-        return float(0.5 * (place.max() + place.min())), cls(5.0 * math.ceil(half / 5.0), 2.0 * math.floor(low / 2.0), depth)
+        middle = float(0.5 * (place.max() + place.min()))
+        return middle, cls(wide * math.ceil(half / wide - 1e-9), deep * math.floor(low / deep + 1e-9), depth)
 
 
 class Supports(NamedTuple):

@@ -1,0 +1,200 @@
+"""Froude's similarity: a hull and its model at 1:100 have the same numbers, in statics and in motion."""
+
+import copy
+import math
+from functools import cache
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import jaxhydro as jh
+from jaxhydro.loads import Hysteresis
+from jaxhydro.model import Model
+from jaxhydro.platform import build as built
+from jaxhydro.platform_schema import Platform
+from jaxhydro.problems import validate
+from jaxhydro.scales import covered, entered
+from jaxhydro.statics import EquilibriumError, equilibrium, natural_modes
+from jaxhydro.waves.irregular import spectrum_components
+from jaxhydro.waves.spectra import jonswap
+from jaxhydro.waves.supports import Box
+
+RHO, G = 1000.0, 9.81
+SMALL = 0.01
+SHARE = np.array([1.0, 1, 1, 0, 0, 0])  # of the powers of the length that displacements have and rotations have not
+
+
+@cache
+def barge(size: float) -> Model:
+    """A tapered barge with a bilge column, moored by springs: lengths times `size`."""
+    n, point = size**3, lambda *x: [size * one for one in x]
+    data = {
+        "name": f"barge {size:g}",
+        "water": {"density": RHO, "depth": 60.0 * size, "gravity": G},
+        "rigid_body": {
+            "mass": 5.57e6 * n,
+            "centre_of_mass": point(0.0, 0.0, -3.0),
+            "inertia": {"Ixx": 7e8 * size**5, "Iyy": 9e8 * size**5, "Izz": 1.2e9 * size**5},
+        },
+        "members": [
+            {
+                "name": "box", "group": "hull", "shape": "rect", "d": point(20.0, 25.0),
+                "rA": point(0, 0, -8.0), "rB": point(0, 0, 4.0),
+            },
+            {
+                "name": "skeg", "group": "hull", "shape": "circ", "stations": [0, 1], "d": point(14.0, 8.0),
+                "rA": point(0, 0, -20.0), "rB": point(0, 0, -8.0),
+            },
+            {"name": "beam", "shape": "rect", "d": point(3.0, 2.0), "rA": point(-10, 0, -12.0), "rB": point(10, 0, -12.0)},
+        ],
+        "coefficients": {"hull": {"Ca_t": 0.8, "Ca_z": 0.5, "Cd_t": 1.0, "Cd_z": 1.2}, "beam": {"Ca_t": 1.0, "Cd_z": 2.0}},
+        "linear_damping": {"B11": 1e5 * size**2.5, "B55": 1e8 * size**4.5},
+        "mooring": {
+            "kind": "linear_springs",
+            "lines": [
+                {
+                    "anchor": point(120 * math.cos(a), 120 * math.sin(a), -60.0),
+                    "fairlead": point(10 * math.cos(a), 10 * math.sin(a), -6.0),
+                    "stiffness": 4e4 * size**2,
+                    "pretension": 2e5 * n,
+                }
+                for a in (0.3, 0.3 + 2 * math.pi / 3, 0.3 + 4 * math.pi / 3)
+            ],
+        },
+    }  # fmt: skip
+    return built(validate(Platform, copy.deepcopy(data), data["name"]))
+
+
+@eqx.filter_jit
+def stiffness_of(model: Model) -> jax.Array:
+    return -jax.jacfwd(model.force_at_rest)(jnp.zeros(6))
+
+
+def same(small: np.ndarray, large: np.ndarray, power: float | np.ndarray = 0.0) -> None:
+    """To 1e-6 of the largest of its kind, in motions and rotations apart."""
+    scaled = np.asarray(small) / SMALL**power
+    for part in (slice(0, 3), slice(3, 6)):
+        largest = np.abs(np.asarray(large)[..., part]).max()
+        assert_allclose(scaled[..., part], np.asarray(large)[..., part], atol=1e-6 * max(largest, 1e-6), rtol=0)
+
+
+def test_statics_and_modes() -> None:
+    small, large = barge(SMALL), barge(1.0)
+    same(equilibrium(small), equilibrium(large), SHARE)
+    stiff = [np.asarray(stiffness_of(model)) for model in (small, large)]
+    power = 2 + (1 - SHARE)[:, None] + (1 - SHARE)[None]
+    assert np.abs(stiff[0] / SMALL**power - stiff[1]).max() < 1e-6 * np.abs(stiff[1]).max()
+    assert_allclose(np.diag(stiff[0] / SMALL**power)[:5], np.diag(stiff[1])[:5], rtol=1e-6)
+    first, other = natural_modes(small), natural_modes(large)
+    assert_allclose(first.period / SMALL**0.5, other.period, rtol=1e-6)
+    assert_allclose(np.abs(first.shape), np.abs(other.shape), atol=1e-5)
+    assert [first.of(dof) / SMALL**0.5 for dof in ("surge", "heave", "pitch")] == pytest.approx(
+        [other.of(dof) for dof in ("surge", "heave", "pitch")], rel=1e-6, nan_ok=True
+    )
+
+
+def moved(model: Model, size: float, sea=None, **start: float) -> np.ndarray:
+    times = np.arange(0.0, 150.0, 0.5) * size**0.5
+    position = {dof: x * (size if dof in ("surge", "heave") else 1.0) for dof, x in start.items()}
+    return np.asarray(jh.simulate(model, times, sea, position=position).position)
+
+
+def test_a_decay_and_a_regular_wave() -> None:
+    found = {}
+    for size in (SMALL, 1.0):
+        model = barge(size)
+        sea = jh.regular_wave(3.0 * size, 9.0 * size**0.5, model.environment, heading=0.4, ramp=20.0 * size**0.5)
+        found[size] = (moved(model, size, surge=4.0, heave=1.0, pitch=0.05), moved(model, size, sea))
+    for small, large in zip(found[SMALL], found[1.0]):
+        same(small, large, SHARE)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_an_irregular_sea(order: int) -> None:
+    """The steps and the box that it is prepared for follow the hull."""
+    found = {}
+    for size in (SMALL, 1.0):
+        model, pace = barge(size), size**0.5
+        waves = spectrum_components(
+            lambda omega, s=size, p=pace: jonswap(omega, 2.0 * s, 9.0 * p, 2.0),
+            300.0 * pace, model.environment, low=0.05 / pace, cutoff=0.22 / pace, seed=3,
+        )  # fmt: skip
+        found[size] = moved(model, size, jh.IrregularSea(waves, model.environment, order))
+    same(found[SMALL], found[1.0], SHARE)
+
+
+def test_boxes_of_seas_are_of_one_shape() -> None:
+    points = np.array([[-20.0, 25.0], [3.0, 4.0], [-21.0, 15.0]])
+    for excursion in (20.0, 34.3):
+        (middle, large), (other, small) = (Box.of(size * points, 0.3, 200.0 * size, excursion * size) for size in (1.0, SMALL))
+        assert other / SMALL == pytest.approx(middle, rel=1e-12)
+        assert [x / SMALL for x in small] == pytest.approx(list(large), rel=1e-12)
+
+
+def test_bounds_of_lengths_and_times_follow_the_hull() -> None:
+    large, small = (
+        model.with_load(Hysteresis.null(["surge", "pitch"])).about("hysteresis.surge.yield_displacement")
+        for model in (barge(1.0), barge(SMALL))
+    )
+    assert small.upper == pytest.approx(max(large.upper * SMALL, small.null))
+    assert small.lower == pytest.approx(large.lower * SMALL)
+
+
+def box(size: float, top: float, bottom: float = -4.0) -> Model:
+    """100 x 30 m from `bottom` to `top`, afloat at that draught."""
+    draught = -bottom
+    data = {
+        "name": "box",
+        "water": {"density": RHO, "depth": 100 * size, "gravity": G},
+        "rigid_body": {
+            "mass": RHO * 100 * 30 * draught * size**3,
+            "centre_of_mass": [0, 0, -0.5 * draught * size],
+            "inertia": {"Ixx": 1e9 * size**5, "Iyy": 1e10 * size**5, "Izz": 1e10 * size**5},
+        },
+        "members": [
+            {
+                "name": "box", "shape": "rect", "d": [100 * size, 30 * size],
+                "rA": [0, 0, bottom * size], "rB": [0, 0, top * size],
+            }
+        ],
+        "coefficients": {"box": {}},
+        "mooring": {"kind": "none"},
+    }  # fmt: skip
+    return built(validate(Platform, data, "box"))
+
+
+@pytest.mark.parametrize("top", [0.0, 0.05, 0.3])
+@pytest.mark.parametrize("size", [1.0, SMALL])
+def test_a_barge_that_ends_at_still_water(size: float, top: float) -> None:
+    """It has the stiffness of its whole section, and rests where it is."""
+    model = box(size, top)
+    assert abs(float(equilibrium(model)[2])) < 1e-9 * size
+    stiffness = np.asarray(stiffness_of(model))
+    weight, area = RHO * G, 100 * 30 * size**2
+    assert stiffness[2, 2] == pytest.approx(weight * area, rel=1e-9)
+    second, volume, mass = np.array([100 * 30**3, 30 * 100**3]) / 12 * size**4, area * 4 * size, area * 4 * size
+    expected = weight * second + weight * volume * -2 * size - weight * mass * -2 * size
+    assert stiffness[[3, 4], [3, 4]] == pytest.approx(expected, rel=1e-6)
+    assert natural_modes(model).of("heave") == pytest.approx(2 * math.pi * math.sqrt(4 * size / G), rel=1e-9)
+
+
+def test_a_model_that_sinks_says_so() -> None:
+    heavy = eqx.tree_at(lambda m: (m.body.mass, m.loads[0].mass), box(SMALL, 1.0), (jnp.asarray(50.0), jnp.asarray(50.0)))
+    with pytest.raises(EquilibriumError):
+        equilibrium(heavy)
+
+
+def test_what_has_entered() -> None:
+    """Nothing at the surface and above, the depth below, one smooth curve between; its slope is at most 1.6."""
+    depth = jnp.linspace(-1.0, 2.0, 3001)
+    value = entered(depth, 0.5)
+    slope = jax.vmap(jax.grad(lambda x: entered(x, 0.5)))(depth)
+    assert (np.asarray(value)[depth <= 0] == 0).all()
+    assert_allclose(np.asarray(value)[depth > 0.5], np.asarray(depth)[depth > 0.5], rtol=1e-12)
+    assert_allclose(np.gradient(np.asarray(value), np.asarray(depth)), slope, atol=0.02)
+    assert float(slope.min()) >= 0 and float(slope.max()) < 1.6
+    assert float(covered(jnp.asarray(0.0), 0.5)) == 0 and float(covered(jnp.asarray(0.6), 0.5)) == 1
