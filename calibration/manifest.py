@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
+from calibration.tracked_point import missing_angles
 from jaxhydro.files import campaign_file
 from jaxhydro.problems import (
     Faults,
@@ -163,6 +164,7 @@ class Manifest(Schema):
     wave_channel: WaveChannel | None = None
     noise: dict[str, Positive] = Field(default_factory=dict)
     zero: Zero | None = None
+    tracked_point: tuple[Number, Number, Number] | None = None      # m at the scale of the files, body axes
     tests: tuple[Test, ...]
     calibrate: Calibrate = Calibrate()
 
@@ -245,6 +247,9 @@ def _test_problems(manifest: Manifest) -> Iterator[Problem]:
                           repr(test.degree_of_freedom))
         if test.kind in IN_WAVES and test.use != "ignore" and manifest.wave_channel is None:
             yield Problem(f"{at}.kind", "a wave_channel in the manifest, since waves drive this test", "none")
+        if manifest.tracked_point is not None:
+            yield from (Problem(f"{at}, {p.where}", p.expected, p.found, p.hint)
+                        for p in missing_angles(manifest.tracked_point, present))
         for problem in _ordered(test.window) if test.window is not None else ():
             yield Problem(f"{at}.window", problem.expected, problem.found)
 

@@ -19,6 +19,7 @@ from calibration.manifest import IN_WAVES, SI, WAVE, Channel, Manifest, Test, qu
 from calibration.readers import read_table
 from calibration.release import FreeMotion, free_motion
 from calibration.signals import missing_code, noise_level, resolution
+from calibration.tracked_point import at_reference, noise_at_reference
 from jaxhydro.problems import InputError, Problem, suggest
 
 _LEAST_NOISE = 1e-6                              # m at the scale of the file, or rad: finer than any basin's sensor
@@ -224,6 +225,10 @@ def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Reco
     noise = {name: manifest.noise[name] * abs(stated[name]) if name in manifest.noise
              else max(noise_level(time, column), floor[name]) for name, column in values.items()}
     wave = values.pop(WAVE, None)
+    if manifest.tracked_point is not None:
+        x, y, z = manifest.tracked_point
+        point = (manifest.scale * x, manifest.scale * y, manifest.scale * z)
+        values, noise = at_reference(values, point), noise_at_reference(noise, point)
     x, y = (manifest.wave_channel.position if manifest.wave_channel else None) or (0.0, 0.0)
     return Record(id=test.id, kind=test.kind, use=test.use, degree_of_freedom=test.degree_of_freedom, time=time,
                   values=values, wave=wave, noise=noise, noise_declared=set(noise) <= set(manifest.noise), test=test,
