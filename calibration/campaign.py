@@ -12,6 +12,7 @@ from calibration.manifest import IN_WAVES, Manifest, platform_source, read_manif
 from calibration.plausible import check_plausible
 from calibration.records import Record, read_series, records_of
 from calibration.table_findings import check_tables, of_platform
+from calibration.wave_band import wave_band
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
@@ -96,7 +97,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
         doubtful = check_plausible(records, model, manifest.zero is not None, manifest.scale)
     except EquilibriumError as error:
         raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
-    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model), *doubtful)
+    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model, wave_band(manifest, model)), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, grave)
     return replace(campaign, findings=(*findings, *doubtful))

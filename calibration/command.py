@@ -26,7 +26,7 @@ from calibration.sea_laws_outputs import laws_table, sentence, states_table, wri
 from calibration.sea_residuals import Objective
 from calibration.search import SearchInterrupted, search
 from calibration.searches import Budget
-from calibration.seas import Diverged, Options, compare, unusual
+from calibration.seas import Diverged, Options, compare, options_of, unusual
 from calibration.seas_outputs import write_comparison
 from calibration.summary import calibration_sentence, summary_of
 from jaxhydro.console import complain, progress, say, table
@@ -224,7 +224,7 @@ def simulate_campaign(
     seas = used.seas if used is not None and used.campaign == loaded.manifest.name else None
     if seas is not None and "order" in asked:  # with all of theory's second order, then
         seas = replace(seas, **{name: getattr(Options(), name) for name in ("kinds", "highest_difference", "acting")})
-    options = replace(seas or Options(), **asked)
+    options = replace(seas or options_of(loaded), **asked)
     if not options.cutoff > options.low:
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])

@@ -15,7 +15,7 @@ from calibration.manifest import IN_WAVES
 from calibration.result import Calibration
 from calibration.sea_fit import tests_in_waves
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
-from calibration.seas import Options, Seas, moving_channels, sea_step, seas_of, with_diffraction
+from calibration.seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction
 from calibration.statements import listed
 from calibration.still import pose_offsets, pose_periods
 from jaxhydro.environment import DOFS
@@ -49,7 +49,7 @@ def calibrate_jointly(
     reached.
     """
     begun = clock.monotonic()
-    options = Options() if options is None else options
+    options = options_of(campaign) if options is None else options
     source = str(campaign.folder / "campaign.yaml")
     if unknown := [kind for kind in kinds if kind not in get_args(Kind)]:
         raise ValueError(f"kinds: expected some of {', '.join(get_args(Kind))}, found {unknown[0]!r}")

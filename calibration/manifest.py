@@ -162,6 +162,7 @@ class Manifest(Schema):
     density_ratio: Annotated[Positive, Field(le=100)] = 1.0
     channels: dict[str, Channel]
     wave_channel: WaveChannel | None = None
+    wave_band: tuple[Positive, Positive] | None = None              # Hz on the files' time axis
     noise: dict[str, Positive] = Field(default_factory=dict)
     zero: Zero | None = None
     tracked_point: tuple[Number, Number, Number] | None = None      # m at the scale of the files, body axes
@@ -268,6 +269,8 @@ def _other_problems(manifest: Manifest) -> Iterator[Problem]:
     pairs = {f"calibrate.bounds.{label}": pair for label, pair in manifest.calibrate.bounds.items()}
     if zero is not None and zero.window is not None:
         pairs["zero.window"] = zero.window
+    if manifest.wave_band is not None:
+        pairs["wave_band"] = manifest.wave_band
     for where, pair in pairs.items():
         for problem in _ordered(pair):
             yield Problem(where, problem.expected, problem.found)

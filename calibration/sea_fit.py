@@ -17,7 +17,7 @@ from calibration.result import BandError, Calibration, TestFit
 from calibration.sea_descent import SeaFit
 from calibration.sea_remarks import sea_remarks
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
-from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, sea_step, seas_of, with_diffraction
+from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, options_of, sea_step, seas_of, with_diffraction
 from calibration.seas_results import in_bands
 from calibration.shooting_fit import ShootingFit
 from jaxhydro.environment import DOFS
@@ -62,7 +62,7 @@ def calibrate_in_waves(
     """
     begun = clock.monotonic()
     source = str(campaign.folder / "campaign.yaml")
-    options = Options() if options is None else options
+    options = options_of(campaign) if options is None else options
     records = [record for record in campaign.used("fit") if record.kind in IN_WAVES]
     if not records:
         found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"

@@ -13,7 +13,7 @@ from calibration.fit import Progress
 from calibration.laws import LAWS, Law, base_of, of_law
 from calibration.result import Calibration, error_of_energies
 from calibration.sea_fit import calibrate_in_waves
-from calibration.seas import Options, Seas, seas_of
+from calibration.seas import Options, Seas, options_of, seas_of
 from calibration.stretches import sea_state
 from jaxhydro.body_schema import KeuleganCarpenter
 from jaxhydro.drag_laws import drag_laws_of, parameter_label, surface_number
@@ -122,7 +122,7 @@ def choose_law(
     start where the constants ended, whose values also are the middle of the priors sea by sea. Raises InputError where there
     are too few tests to judge, Interrupted where the user stops it before a law is fitted.
     """
-    options = Options() if options is None else options
+    options = options_of(campaign) if options is None else options
     source = str(campaign.folder / "campaign.yaml")
     fitted, held = ([r.id for r in campaign.used(use) if r.kind == "irregular"] for use in ("fit", "holdout"))
     if len(fitted) < (2 if held else 3):

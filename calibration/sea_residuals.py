@@ -35,7 +35,8 @@ from jaxhydro.waves.support_sea import SupportSea
 Objective = Literal["bands", "spectrum", "motion", "both", "blocks"]
 OF_ENERGY = ("bands", "spectrum", "both")
 CELLS, CYCLES, LEAST = 8, 10.0, 0.01  # of a spectrum: cells of a band, their least width times the record, least energy
-MARGIN = 30.0  # m that a motion may go beyond that of the declared model before its sea has to be prepared anew
+# m, for a hull of the size of VolturnUS-S: that a motion may go beyond that of the declared model in one prepared sea
+MARGIN = 30.0
 
 
 class Energies(eqx.Module):
@@ -180,7 +181,8 @@ def pose_in_waves(
         last = max((i for i, records in enumerate(fitted) if records), default=-1)
         if len(parts) == 1 and last == 0:  # no further than what is fitted
             parts = (parts[0]._replace(end=max(int(run.samples(record)[-1]) for record in fitted[0])),)
-        for (part, taken, start), records in zip(walk(model, run, parts[: last + 1], sea.sea, step, MARGIN), fitted):
+        margin = MARGIN * float(model.size)
+        for (part, taken, start), records in zip(walk(model, run, parts[: last + 1], sea.sea, step, margin), fitted):
             if records:
                 pieces = tuple(piece for r in records for piece in _pieces(run, r, scale, part.begin, objective == "spectrum"))
                 times = jnp.asarray(run.time[part.begin : part.end + 1])

@@ -19,6 +19,7 @@ from calibration.records import Record
 from calibration.result import Series, TestFit
 from calibration.runs import Run, runs
 from calibration.stretches import stretches, walk, window
+from calibration.wave_band import wave_band
 from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.model import Model
@@ -54,6 +55,12 @@ class Options:
     kinds: tuple[Kind, ...] = KINDS
     highest_difference: float | None = None
     acting: Acting = "everywhere"
+
+
+def options_of(campaign: Campaign) -> Options:
+    """The options of a campaign's seas where nothing is said: with its own band of frequencies."""
+    low, cutoff = wave_band(campaign.manifest, campaign.model)
+    return Options(low=low, cutoff=cutoff)
 
 
 def unusual(options: Options, asked: Collection[str] = ()) -> str:
@@ -131,7 +138,8 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
         notes.append(f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
                      "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it")  # fmt: skip
     if inside < INSIDE:
-        notes.append(f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}")
+        notes.append(f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}; "
+                     "`wave_band` in campaign.yaml sets another band")  # fmt: skip
     return RunSea(sea, found.mismatch, found.rounds, inside, tuple(notes))
 
 

@@ -12,8 +12,6 @@ from jaxhydro.analysis import power_spectrum
 from jaxhydro.model import Model
 from jaxhydro.table_ranges import TableRange, table_ranges
 
-LOW, CUTOFF = 0.03, 0.3  # Hz, full scale: the first order of a sea by default, as in `calibration.seas.Options`
-
 
 class PlatformFinding(Finding):
     """A finding on the platform file, which no test has."""
@@ -29,8 +27,10 @@ def of_platform(model: Model, file: str) -> tuple[Finding, ...]:
     return tuple(PlatformFinding("warning", file, "", "", None, remark.text) for remark in told)
 
 
-def check_tables(records: Sequence[Record], model: Model) -> tuple[Finding, ...]:
+def check_tables(records: Sequence[Record], model: Model, band: tuple[float, float]) -> tuple[Finding, ...]:
     """Findings on tests in waves that are outside a table of the model, one that a diagnosis may let in included.
+
+    `band` (Hz) has the first-order waves.
 
     An irregular sea with more than 1 % of its energy outside is warned of. A regular wave outside is an error; a warning where
     the table is a candidate's.
@@ -40,16 +40,18 @@ def check_tables(records: Sequence[Record], model: Model) -> tuple[Finding, ...]
         finding
         for record in records
         if ranges and record.kind in IN_WAVES and record.wave is not None and record.use != "ignore"
-        for finding in _of_record(record, ranges, acting)
+        for finding in _of_record(record, ranges, acting, band)
     )
 
 
-def _of_record(record: Record, ranges: tuple[TableRange, ...], acting: tuple[TableRange, ...]) -> Iterator[Finding]:
+def _of_record(
+    record: Record, ranges: tuple[TableRange, ...], acting: tuple[TableRange, ...], limits: tuple[float, float]
+) -> Iterator[Finding]:
     assert record.wave is not None
     kept = record.time >= record.time[0] + record.transient
     time = np.linspace(record.time[kept][0], record.time[-1], int(kept.sum()))
     spectrum = power_spectrum(time, np.interp(time, record.time, record.wave))
-    band = (spectrum.frequency >= LOW) & (spectrum.frequency <= CUTOFF)
+    band = (spectrum.frequency >= limits[0]) & (spectrum.frequency <= limits[1])
     if not band.any() or not spectrum.density[band].sum() > 0:
         return
     omega, density = 2 * math.pi * spectrum.frequency[band], spectrum.density[band]

@@ -3,6 +3,7 @@
 import copy
 import math
 from functools import cache
+from types import SimpleNamespace
 
 import equinox as eqx
 import jax
@@ -12,6 +13,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import jaxhydro as jh
+from calibration import calibrate
+from calibration.manifest import Manifest
+from calibration.records import load_records
 from jaxhydro.loads import Hysteresis
 from jaxhydro.model import Model
 from jaxhydro.platform import build as built
@@ -198,3 +202,35 @@ def test_what_has_entered() -> None:
     assert_allclose(np.gradient(np.asarray(value), np.asarray(depth)), slope, atol=0.02)
     assert float(slope.min()) >= 0 and float(slope.max()) < 1.6
     assert float(covered(jnp.asarray(0.0), 0.5)) == 0 and float(covered(jnp.asarray(0.6), 0.5)) == 1
+
+
+@pytest.mark.slow
+def test_a_calibration(tmp_path) -> None:
+    """Coefficients fitted to a decay, begun from wrong ones: the same numbers, and damping by its power of the length."""
+    found = []
+    for size in (1.0, SMALL):
+        model, folder = barge(size), tmp_path / f"{size:g}"
+        folder.mkdir()
+        period = natural_modes(model).of("heave")
+        times = np.linspace(0.0, 8 * period, 500)
+        heave = np.asarray(jh.free_decay(model, {"heave": 1.5 * size}, times, step=period / 60)["heave"])
+        lines = (f"{t:.15g},{z:.15g}" for t, z in zip(times, heave))
+        (folder / "heave.csv").write_text("\n".join(["t,heave", *lines]) + "\n")
+        manifest = {
+            "name": "barge", "platform": "volturnus-s", "noise": {"heave": 1e-4 * size},
+            "channels": {"time": {"column": "t", "unit": "s"}, "heave": {"column": "heave", "unit": "m"}},
+            "tests": [{"id": "heave", "kind": "decay", "degree_of_freedom": "heave", "file": "heave.csv"}],
+        }  # fmt: skip
+        records = load_records(Manifest.model_validate(manifest), folder)
+        declared = model.with_values({"hull.Ca_z": 0.8, "hull.Cd_z": 2.0})
+        campaign = SimpleNamespace(
+            manifest=Manifest.model_validate(manifest), folder=folder, records=records, findings=(), model=declared,
+            platform=SimpleNamespace(name="barge"), used=lambda use, records=records: [r for r in records if r.use == use],
+        )  # fmt: skip
+        result = calibrate(campaign, free=["hull.Ca_z", "hull.Cd_z"])
+        assert result.converged
+        found.append({label: (one.value, one.standard_deviation) for label, one in result.parameters.items()})
+    large, small = found
+    assert large["hull.Ca_z"][0] == pytest.approx(0.5, rel=1e-3) and large["hull.Cd_z"][0] == pytest.approx(1.2, rel=1e-2)
+    for label in large:
+        assert small[label] == pytest.approx(large[label], rel=1e-6)

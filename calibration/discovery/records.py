@@ -9,7 +9,7 @@ from scipy.ndimage import uniform_filter1d
 from calibration.campaign import Campaign
 from calibration.manifest import IN_WAVES
 from calibration.runs import Run
-from calibration.seas import Options, Seas, sea_of
+from calibration.seas import Options, Seas, options_of, sea_of
 from jaxhydro.environment import Environment
 from jaxhydro.waves.irregular_sea import IrregularSea
 
@@ -26,7 +26,7 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
     Theory's sums and differences of a record's first-order waves are compared with what the record has at those frequencies
     where there are no first-order waves: a numerical tank's record may hold differences only, or be linear.
     """
-    options = Options() if options is None else options
+    options = options_of(campaign) if options is None else options
     if not any(r.kind in IN_WAVES and r.use != "ignore" for r in campaign.records):
         return options, ()
     from calibration.runs import runs

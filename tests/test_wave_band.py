@@ -1,0 +1,42 @@
+"""The band of a campaign's first-order waves: stated, or by the size of the hull."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from calibration import load_campaign
+from calibration.manifest import Manifest, read_manifest
+from calibration.seas import options_of
+from calibration.wave_band import wave_band
+from jaxhydro.problems import InputError
+
+
+def manifest(**changes) -> Manifest:
+    channels = {"time": {"column": "t", "unit": "s"}, "surge": {"column": "x", "unit": "m"}}
+    tests = [{"id": "a", "kind": "decay", "degree_of_freedom": "surge", "file": "a.csv"}]
+    return Manifest.model_validate({"name": "n", "platform": "volturnus-s", "channels": channels, "tests": tests, **changes})
+
+
+def test_by_the_size_of_the_hull() -> None:
+    """0.03 to 0.3 Hz at full scale; ten times that for a hull a hundredth as long, whatever the scale of its files."""
+    for scale in (1.0, 50.0):
+        assert wave_band(manifest(scale=scale), SimpleNamespace(pace=1.0)) == (0.03, 0.3)
+    assert wave_band(manifest(), SimpleNamespace(pace=0.1)) == (0.3, 3.0)
+
+
+def test_as_stated() -> None:
+    """In Hz on the files' time axis, 50 times as long a hull having the root of 50 slower waves."""
+    low, cutoff = wave_band(manifest(scale=50.0, wave_band=[0.25, 2.5]), SimpleNamespace(pace=1.0))
+    assert (low, cutoff) == pytest.approx((0.25 / 50**0.5, 2.5 / 50**0.5))
+
+
+def test_of_a_campaign(tmp_path) -> None:
+    document = manifest(wave_band=[0.05, 0.2]).model_dump(mode="json", exclude_unset=True)
+    (tmp_path / "campaign.yaml").write_text(json.dumps(document))
+    (tmp_path / "a.csv").write_text("t,x\n" + "\n".join(f"{0.5 * i},{8 * 0.999**i * (-1) ** (i // 130)}" for i in range(900)))
+    options = options_of(load_campaign(tmp_path))
+    assert (options.low, options.cutoff) == (0.05, 0.2)
+    (tmp_path / "campaign.yaml").write_text(json.dumps({**document, "wave_band": [0.2, 0.05]}))
+    with pytest.raises(InputError, match="wave_band: expected two numbers, the first less than the second"):
+        read_manifest(tmp_path)
