@@ -1,6 +1,7 @@
 """Set up for all tests: `import jaxhydro` switches float64 and the compilation cache on."""
 
 import gc
+import os
 import sys
 from pathlib import Path
 
@@ -15,6 +16,8 @@ for folder in (Path(__file__).resolve().parents[1], Path(__file__).resolve().par
         sys.path.insert(0, str(folder))
 
 import jaxhydro  # noqa: E402, F401
+
+os.environ.pop("COLUMNS", None)  # of a pytest worker: tables are as wide as where there is no terminal
 
 jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)  # tests compile thousands of small programs
 

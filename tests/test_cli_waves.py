@@ -261,4 +261,4 @@ def test_a_campaign_is_handed_on(tmp_path, monkeypatch) -> None:
     assert calls == [(DEMO, tmp_path, usual), (DEMO / "campaign.yaml", tmp_path, asked)]
     for option in ("--hs", "--wave-height", "--duration", "--transient", "--wave", "--elements", "--heading", "--dt"):
         text = run("simulate", DEMO, option, 3, "--out", tmp_path, status=2)
-        assert f"{option}: a campaign's tests and platform file say this" in text
+        assert f"{option}: it goes with a platform, not with a campaign" in text
