@@ -566,6 +566,7 @@ def test_nothing_free_is_told(ship_campaign: Campaign) -> None:
 # measured data
 
 
+@pytest.mark.slow
 @measured
 def test_the_measured_roll_of_kvlcc2() -> None:
     result = calibrate(load_campaign(MEASURED / "kvlcc2"))

@@ -150,6 +150,7 @@ def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
 
 
 # a body that rolls in 2.58 s: off its period, near it, where it makes two modes of one, and heavy enough for that further off
+@pytest.mark.slow
 @pytest.mark.parametrize(("inertia", "period"), [(0.4, 2.35), (0.42, 2.7), (2.8, 3.1)], ids=["off", "near", "heavy"])
 def test_what_swings_in_a_rolling_body(tmp_path, inertia, period):
     """Named, with its period, which no coarse search would meet: a resonance is some hundredths of it wide."""
@@ -212,6 +213,7 @@ class Sine(AbstractLoad):
         return Action(force=jnp.zeros(6).at[3].set(torque))
 
 
+@pytest.mark.slow
 def test_a_law_of_ones_own_takes_part(tmp_path):
     """What no candidate of the catalogue follows as well is found by one's own, and the model has it afterwards."""
     own = Candidate(

@@ -255,6 +255,7 @@ def test_stretched_draws_have_the_sandwichs_covariance(which: str, request) -> N
     np.testing.assert_allclose(np.sqrt(np.diag(wide)[:3]), likely.deviation(), rtol=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("least", [1, 10**6])
 def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) -> None:
     """What all chains have is kept where it is enough; else the stop goes on up."""
