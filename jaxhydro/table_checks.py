@@ -15,7 +15,7 @@ from jaxhydro.retardation import Realisation, realise
 ASYMMETRIC = 0.1  # of the geometric mean of two motions' own coefficients
 LONG_HEAVE = (0.5, 1.3)  # heave force of the longest wave over C33, where that wave is long
 NO_HEAVE, ALL_HEAVE = 0.5, (0.7, 1.3)  # the same of the longest and the shortest wave, where the column is turned around
-LONG_SURGE = (0.5, 5.0)  # horizontal force of a long wave over mass times the water's acceleration: 1 + Ca
+LONG_SURGE = (0.25, 5.0)  # horizontal force of a long wave over mass times acceleration: 1 + Ca; less by tables of deeper water
 NO_SURGE = (0.25, 8.0)  # outside: no body in long waves
 VARIES = 0.05  # of added mass: what varies less says nothing about its damping
 UNRELATED, RELATED = 0.8, 0.4  # misfit of added mass and damping by Kramers and Kronig, over its variation

@@ -355,6 +355,18 @@ def test_a_column_that_is_another_is_told(tmp_path: Path, true: str, declared: s
         assert "the first column is probably" in said[0] and said[0].endswith(f"See `excitation.by`: {true}")
 
 
+def test_a_column_by_frequency_of_deeper_water() -> None:
+    """Forces of deep water, k = omega^2 / g, for a platform in 50 m, whose long waves are shorter and push more."""
+    omega = np.linspace(0.2, 6.0, 30)
+    k = omega**2 / G
+    force = np.zeros((6, 30), complex)
+    force[0], force[2] = 1j * k * RHO * G * VOLUME * np.exp(-k), RHO * G * AREA * np.exp(-k * DRAUGHT)
+    as_read = 2 * np.pi / omega
+    hull = LongWaves(RHO * G * AREA, RHO * VOLUME, 50.0, G)
+    (said,) = excitation_column(as_read, force, "period", "hull.3", hull)
+    assert said.endswith("See `excitation.by`: rad/s")
+
+
 def test_a_wrong_column_leads_the_output(tmp_path: Path) -> None:
     """The warning comes before everything else; with the key there is none, and heave is right."""
     wamit_files(tmp_path, "rad/s")
