@@ -19,6 +19,7 @@ from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Estimate, Series, TestFit
 from calibration.statements import listed
+from calibration.unit_hints import unit_hints
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.response import decay_cycles
@@ -134,4 +135,4 @@ def remarks(
     if vague:
         ends = "its value is no result" if len(vague) == 1 else "their values are not results"
         said.append(f"these records do not determine {', '.join(vague)}: {ends}")
-    return (*said, *found.sentences())
+    return (*said, *unit_hints(parameters.values()), *found.sentences())
