@@ -21,7 +21,7 @@ def unit_hints(parameters: Iterable[Estimate]) -> Iterator[str]:
             continue
         ratio = one.value / one.start
         if abs(math.log(abs(ratio))) < NEAR and ratio < 0:
-            yield f"{one.label} has the declared size and the other sign: is an axis reversed, in a record or the platform file?"
+            yield f"{one.label} has the declared size and the other sign: is an axis reversed in a record or the platform file?"
         for factor, units in RATIOS.items():
             if ratio > 0 and abs(abs(math.log(ratio)) - math.log(factor)) < NEAR:
                 times = f"{ratio:.3g} times" if ratio > 1 else f"1/{1 / ratio:.3g} of"
