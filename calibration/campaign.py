@@ -97,7 +97,8 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
         doubtful = check_plausible(records, model, manifest.zero is not None, manifest.scale)
     except EquilibriumError as error:
         raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
-    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model, wave_band(manifest, model)), *doubtful)
+    band = wave_band(manifest, model, records)
+    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, grave)
     return replace(campaign, findings=(*findings, *doubtful))

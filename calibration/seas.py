@@ -59,7 +59,7 @@ class Options:
 
 def options_of(campaign: Campaign) -> Options:
     """The options of a campaign's seas where nothing is said: with its own band of frequencies."""
-    low, cutoff = wave_band(campaign.manifest, campaign.model)
+    low, cutoff = wave_band(campaign.manifest, campaign.model, campaign.records)
     return Options(low=low, cutoff=cutoff)
 
 

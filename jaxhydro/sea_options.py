@@ -22,8 +22,16 @@ OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
+MOST = 0.95  # of a record's variance, that a band has to have to be its own
 STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
+
+
+def share_within(elevation: np.ndarray, step: float, low: float, high: float) -> float:
+    """Share of the variance of a record, sampled every `step` (s), between two frequencies (Hz)."""
+    power = np.abs(np.fft.rfft(elevation - elevation.mean())) ** 2
+    frequency = np.fft.rfftfreq(len(elevation), step)
+    return float(power[(frequency >= low) & (frequency <= high)].sum() / max(power.sum(), 1e-300))
 
 
 def usual_transient(duration: float, pace: float = 1.0) -> float:
@@ -46,7 +54,7 @@ class Record:
 class Asked:
     """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
 
-    low and cutoff None: those of the platform's size, see `for_platform`.
+    low and cutoff None: 0.03 and 0.3 Hz where the sea lies between them, else those of the platform's size (`for_platform`).
     """
 
     hs: float | None
@@ -72,9 +80,17 @@ class Asked:
 
     def band(self, pace: float) -> tuple[float, float]:
         """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave to three digits."""
-        usual = (float(f"{one / pace:.3g}") for one in (LOW, CUTOFF))
+        usual = (float(f"{one / (1.0 if self.oceanic else pace):.3g}") for one in (LOW, CUTOFF))
         low, cutoff = (by_size if given is None else given for given, by_size in zip((self.low, self.cutoff), usual))
         return low, cutoff
+
+    @property
+    def oceanic(self) -> bool:
+        """Whether the sea lies from 0.03 to 0.3 Hz, whatever the size of the platform."""
+        if self.record is not None:
+            step = float(np.median(np.diff(self.record.times)))
+            return share_within(self.record.elevation, step, LOW, CUTOFF) >= MOST
+        return self.tp is not None and LOW <= 1 / self.tp <= 0.8 * CUTOFF
 
     def start(self, duration: float, pace: float = 1.0) -> float:
         """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""

@@ -3,6 +3,7 @@
 import json
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from calibration import load_campaign
@@ -18,16 +19,23 @@ def manifest(**changes) -> Manifest:
     return Manifest.model_validate({"name": "n", "platform": "volturnus-s", "channels": channels, "tests": tests, **changes})
 
 
-def test_by_the_size_of_the_hull() -> None:
-    """0.03 to 0.3 Hz at full scale; ten times that for a hull a hundredth as long, whatever the scale of its files."""
-    for scale in (1.0, 50.0):
-        assert wave_band(manifest(scale=scale), SimpleNamespace(pace=1.0)) == (0.03, 0.3)
-    assert wave_band(manifest(), SimpleNamespace(pace=0.1)) == (0.3, 3.0)
+def waves(frequency: float) -> SimpleNamespace:
+    """A record of regular waves (Hz)."""
+    time = np.arange(0.0, 200.0 / frequency, 0.05 / frequency)
+    return SimpleNamespace(kind="regular", use="fit", time=time, wave=np.sin(2 * np.pi * frequency * time))
+
+
+def test_by_the_records_and_the_size_of_the_hull() -> None:
+    """0.03 to 0.3 Hz for waves of an ocean, a small buoy's, too; ten times that for waves of a flume and a hull in it."""
+    for pace in (1.0, 0.1, 0.5):
+        assert wave_band(manifest(), SimpleNamespace(pace=pace), [waves(0.12)]) == (0.03, 0.3)
+    assert wave_band(manifest(), SimpleNamespace(pace=0.1), [waves(1.2)]) == (0.3, 3.0)
+    assert wave_band(manifest(), SimpleNamespace(pace=0.1), [waves(50.0)]) == (0.03, 0.3)  # in neither
 
 
 def test_as_stated() -> None:
     """In Hz on the files' time axis, 50 times as long a hull having the root of 50 slower waves."""
-    low, cutoff = wave_band(manifest(scale=50.0, wave_band=[0.25, 2.5]), SimpleNamespace(pace=1.0))
+    low, cutoff = wave_band(manifest(scale=50.0, wave_band=[0.25, 2.5]), SimpleNamespace(pace=1.0), ())
     assert (low, cutoff) == pytest.approx((0.25 / 50**0.5, 2.5 / 50**0.5))
 
 

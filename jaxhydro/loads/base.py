@@ -26,12 +26,13 @@ class Parameter(NamedTuple):
     lower: float = float("-inf")
     upper: float = float("inf")
     null: float = 0.0
+    of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not those of instruments
 
     def sized(self, size: float, pace: float) -> "Parameter":
         """With the bounds of a platform of other `size` and `pace` (-, `scales`), where they are lengths or times."""
         factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
         lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
-        return self if factor == 1.0 else self._replace(lower=lower, upper=upper)
+        return self if factor == 1.0 or not self.of_hull else self._replace(lower=lower, upper=upper)
 
 
 class StripShape(NamedTuple):

@@ -31,7 +31,8 @@ class WaveGaugePosition(AbstractLoad):
         return cls({"wave_gauge_position.distance": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
-        return Parameter("m", "how much further along the waves the gauge stood than was said", -FARTHEST, FARTHEST)
+        words = "how much further along the waves the gauge stood than was said"
+        return Parameter("m", words, -FARTHEST, FARTHEST, of_hull=False)
 
     def through(self, sea: AbstractSea) -> AbstractSea:
         return sea.moved(jnp.asarray(self.values["wave_gauge_position.distance"]))
