@@ -30,6 +30,7 @@ from jaxhydro.waves.irregular_sea import IrregularSea
 
 BANDS = 14
 EXCURSIONS = 1.5  # of `excursion_of` the model: how far a sea is prepared for
+WAVES = 1.7  # lengths of the sea's shortest wave: the same, at least
 OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
 TAPERED = 0.1  # of a test in waves, at its two ends together
 FIRST = 0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
@@ -197,7 +198,9 @@ def _sea_record(
     count = int(np.ceil((times[-1] - times[0]) / dt - 1e-9))
     instants = clock("ab4", float(times[0]), dt, count)
     hull, computed = (model.hull.extremities(), model.cylinders), (model.transfer, model.excitation)
-    sea = made.prepared(*hull, instants, EXCURSIONS * excursion_of(model), *computed)
+    # a gauge that stood elsewhere shifts the waves, whatever the size of the hull
+    shortest = 2 * np.pi * model.environment.gravity / float(np.max(np.asarray(made.components.omega))) ** 2
+    sea = made.prepared(*hull, instants, max(EXCURSIONS * excursion_of(model), WAVES * shortest), *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
     n = min(len(w) for w in windows)
