@@ -199,7 +199,7 @@ def _sea_record(
     instants = clock("ab4", float(times[0]), dt, count)
     hull, computed = (model.hull.extremities(), model.cylinders), (model.transfer, model.excitation)
     # a gauge that stood elsewhere shifts the waves, whatever the size of the hull
-    shortest = 2 * np.pi * model.environment.gravity / float(np.max(np.asarray(made.components.omega))) ** 2
+    shortest = 2 * np.pi * float(model.environment.gravity) / float(np.max(np.asarray(made.components.omega))) ** 2
     sea = made.prepared(*hull, instants, max(EXCURSIONS * excursion_of(model), WAVES * shortest), *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
