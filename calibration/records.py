@@ -39,7 +39,7 @@ class Series:
     rows: np.ndarray                             # (n,) index in the file, 0 for the first sample
     still: dict[str, np.ndarray] = field(default_factory=dict)      # in the manifest's zero window of this file
     units: dict[str, str] = field(default_factory=dict)             # channel -> the unit that the file states, if any
-    free: FreeMotion | None = None               # of a decay: what of its window moves freely, which alone is here
+    free: FreeMotion | None = None               # of a decay: the free motion in its window; all else is cut off
 
     @property
     def good(self) -> np.ndarray:

@@ -25,6 +25,7 @@ from jaxhydro.environment import DOFS, Environment
 from jaxhydro.model import Model
 from jaxhydro.observe import observe
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.sea_options import share_within
 from jaxhydro.simulate import largest_step
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular import separated_record
@@ -117,10 +118,7 @@ class Compared(NamedTuple):
 
 def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     """The sea of a run's whole record. Raises InputError where the band or the record do not do."""
-    centred = run.wave - run.wave.mean()
-    frequency = np.fft.rfftfreq(len(centred), run.step)
-    power = np.abs(np.fft.rfft(centred)) ** 2
-    inside = float(power[(frequency >= options.low) & (frequency <= options.cutoff)].sum() / max(power.sum(), 1e-300))
+    inside = share_within(run.wave, run.step, options.low, options.cutoff)
     try:
         found = separated_record(run.time, run.wave, environment, position=run.position, heading=run.heading,
                                  low=options.low, cutoff=options.cutoff, order=options.order, kinds=options.kinds,

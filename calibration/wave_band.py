@@ -9,7 +9,7 @@ from calibration.records import Record
 from jaxhydro.model import Model
 from jaxhydro.sea_options import CUTOFF, LOW, MOST, share_within
 
-HALF = 0.5  # of a record's variance, below which a band is not its own
+HALF = 0.5  # least share of a record's variance in the band of the hull's size, for that band to be taken
 
 
 def wave_band(manifest: Manifest, model: Model, records: Sequence[Record]) -> tuple[float, float]:

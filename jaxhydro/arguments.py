@@ -194,11 +194,11 @@ Gauge = Annotated[
 ]
 Low = Annotated[
     float | None,
-    _option("--low", HOW, "Lowest frequency of the first-order waves, Hz; as VolturnUS-S, by Froude.", f"{LOW:g}"),
+    _option("--low", HOW, "Lowest first-order frequency, Hz; scaled to the hull for a sea outside 0.03 to 0.3 Hz.", f"{LOW:g}"),
 ]
 Cutoff = Annotated[
     float | None,
-    _option("--cutoff", HOW, "Highest, Hz; likewise. In high seas take less: a note says so.", f"{CUTOFF:g}"),
+    _option("--cutoff", HOW, "Highest frequency, Hz; scaled likewise. In high seas take less: a note says so.", f"{CUTOFF:g}"),
 ]
 Order = Annotated[
     int | None, _option("--order", HOW, "2: with the waves that they bind (Sharma and Dean).", str(ORDER), min=1, max=2)

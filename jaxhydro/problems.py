@@ -112,7 +112,7 @@ def suggest_path(path: str | PathLike[str]) -> str:
     try:
         while not missing.parent.exists():
             missing = missing.parent
-        # by stems, since all files of a kind end alike; of those with one stem that with the same ending
+        # compare names without endings; among equal names, prefer the same ending
         entries = sorted(missing.parent.iterdir(), key=lambda entry: (entry.suffix == missing.suffix, entry.name))
         stems = {entry.stem: entry for entry in entries}
         near = nearest(missing.stem, stems)

@@ -12,7 +12,7 @@ from jaxhydro.options import finite, positive, wrong
 from jaxhydro.problems import InputError, Problem, suggest
 from jaxhydro.waves.irregular import sampling_interval
 
-LOW, CUTOFF = 0.03, 0.3  # Hz over the pace of the platform (`jaxhydro.scales`)
+LOW, CUTOFF = 0.03, 0.3  # Hz; for seas elsewhere, over the pace of the platform (`jaxhydro.scales`)
 TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
 LEAST = 100  # samples after the transient
 ORDER, SEED = 2, 0
@@ -22,7 +22,7 @@ OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
-MOST = 0.95  # of a record's variance, that a band has to have to be its own
+MOST = 0.95  # least share of a record's variance for the record to lie in a band
 STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 

@@ -16,7 +16,7 @@ from jaxhydro.waves.sea import StillWater
 CLOSE = 1e-12  # of the position: the last step
 ITERATIONS = 64
 UNCOUPLED = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
-ARM = 10.0  # m times the platform's size, of what is out of balance
+ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
 SUNK = 20.0  # the same: heave in which a platform does not float, if it is not less deep
 WIDTH = 50.0  # the same: VolturnUS-S's half width, by which modes compare rotations with displacements
 FREE = 1e-12  # of the stiffest motion's restoring: what is below is none

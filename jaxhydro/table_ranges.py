@@ -55,7 +55,7 @@ class TableRange(NamedTuple):
 
 
 def table_ranges(model: Model, candidates: bool = False) -> tuple[TableRange, ...]:
-    """Ranges of the tables that act in a model; with `candidates` also of those at a share of 0, which diagnoses may let in."""
+    """Ranges of the tables that act in a model; with `candidates` also of tables that a diagnosis may add."""
     found = []
     for load in model.loads:
         covers = load.covers()

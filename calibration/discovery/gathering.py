@@ -30,7 +30,7 @@ from jaxhydro.waves.irregular_sea import IrregularSea
 
 BANDS = 14
 EXCURSIONS = 1.5  # of `excursion_of` the model: how far a sea is prepared for
-WAVES = 1.7  # lengths of the sea's shortest wave: the same, at least
+MIN_EXCURSION = 1.7  # lengths of the sea's shortest wave: a sea is prepared at least this far
 OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
 TAPERED = 0.1  # of a test in waves, at its two ends together
 FIRST = 0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
@@ -200,7 +200,7 @@ def _sea_record(
     hull, computed = (model.hull.extremities(), model.cylinders), (model.transfer, model.excitation)
     # a gauge that stood elsewhere shifts the waves, whatever the size of the hull
     shortest = 2 * np.pi * float(model.environment.gravity) / float(np.max(np.asarray(made.components.omega))) ** 2
-    sea = made.prepared(*hull, instants, max(EXCURSIONS * excursion_of(model), WAVES * shortest), *computed)
+    sea = made.prepared(*hull, instants, max(EXCURSIONS * excursion_of(model), MIN_EXCURSION * shortest), *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [window(run, r) for r in tests]
     n = min(len(w) for w in windows)

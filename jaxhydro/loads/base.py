@@ -26,7 +26,7 @@ class Parameter(NamedTuple):
     lower: float = float("-inf")
     upper: float = float("inf")
     null: float = 0.0
-    of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not those of instruments
+    of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not where a wave gauge may have stood
 
     def sized(self, size: float, pace: float) -> "Parameter":
         """With the bounds of a platform of other `size` and `pace` (-, `scales`), where they are lengths or times."""
