@@ -9,14 +9,14 @@ import numpy as np
 
 from calibration.directions import Identifiability, active_of, errors_of, weak_directions
 from calibration.fit import STEPS_PER_PERIOD, Fit
-from calibration.formatting import percent
+from calibration.formatting import listed, percent
 from calibration.information import eliminated, within
 from calibration.manifest import Test
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import Problem, Unknowns, gather
 from calibration.result import TestFit
-from calibration.statements import Direction, Parameters, listed
+from calibration.statements import Direction, Parameters
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.simulate import free_decay, memory_step

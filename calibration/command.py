@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from calibration import seas_results, tables
+from calibration import sea_errors, sea_tables, seas_results, tables
 from calibration.applied import Applied, applied
 from calibration.campaign import Campaign, load_campaign
 from calibration.fit import Interrupted, calibrate
@@ -22,7 +22,8 @@ from calibration.result import Calibration
 from calibration.saved import Saved, read_saved
 from calibration.sea_fit import calibrate_in_waves
 from calibration.sea_laws import SeaLaws, choose_law
-from calibration.sea_laws_outputs import laws_table, sentence, states_table, write_laws
+from calibration.sea_laws_outputs import write_laws
+from calibration.sea_laws_tables import laws_table, sentence, states_table
 from calibration.sea_residuals import Objective
 from calibration.search import SearchInterrupted, search
 from calibration.searches import Budget
@@ -212,7 +213,7 @@ def simulate_campaign(
     the order is asked for. Raises InputError, EquilibriumError.
     """
     begun = clock.monotonic()
-    loaded = load(campaign, out, seas_results.counted)
+    loaded = load(campaign, out, sea_tables.counted)
     model, used = loaded.model, None
     if calibration is not None:
         used = applied(calibration, model, loaded.platform.name)
@@ -241,10 +242,10 @@ def simulate_campaign(
     write_comparison(found, seas_results.document(found, options, about, used), out, figures)
     for note in found.notes:
         complain(f"warning: {note}")
-    table("Waves", *seas_results.seas_table(found), left=3)
-    table("Motions", *seas_results.motions_table(found), left=2)
-    say(f"Spectra: {seas_results.WELCH}")
-    table("Energy in bands", *seas_results.bands_table(found), left=3)
+    table("Waves", *sea_tables.seas_table(found), left=3)
+    table("Motions", *sea_tables.motions_table(found), left=2)
+    say(f"Spectra: {sea_errors.WELCH}")
+    table("Energy in bands", *sea_tables.bands_table(found), left=3)
     say(f"Results are in {out}, after {clock.monotonic() - begun:.0f} s")
     return True
 

@@ -11,14 +11,14 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.directions import Identifiability, family
-from calibration.formatting import percent_span
+from calibration.formatting import listed, percent_span
 from calibration.grouped import grouped
-from calibration.identifiability import CLEAR, Spread
+from calibration.identifiability import Spread
+from calibration.information import CLEAR
 from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Estimate, Series, TestFit
-from calibration.statements import listed
 from calibration.unit_hints import unit_hints
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model

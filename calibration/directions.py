@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.formatting import number, percent
-from calibration.identifiability import CLEAR, VAGUE, Spread, memory, spread
-from calibration.information import collinearity, deviations, eliminated, inverse, principal, varimax, within
+from calibration.formatting import listed, number, percent
+from calibration.identifiability import Spread, memory, spread
+from calibration.information import CLEAR, VAGUE, collinearity, deviations, eliminated, inverse, principal, varimax, within
 from calibration.parameters import ParameterSpace, slopes
 from calibration.result import TestFit
-from calibration.statements import Collinear, Combination, Direction, Fix, Parameters, listed
+from calibration.statements import Collinear, Combination, Direction, Fix, Parameters
 from jaxhydro.drag_laws import coefficient_label
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent

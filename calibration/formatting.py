@@ -85,3 +85,33 @@ def counted(count: int, noun: str) -> str:
 
 def _raised(exponent: int) -> str:
     return str(exponent).translate(_RAISED)
+
+
+def listed(words: Sequence[str]) -> str:
+    """a, b and c."""
+    return words[0] if len(words) == 1 else " and ".join(x for x in (", ".join(words[:-1]), *words[-1:]) if x)
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+
+
+def quantity(value: float, deviation: float | None, unit: str) -> str:
+    """A value with its standard deviation in a unit that people read: `81.0 ± 2.1 kN`, degrees for radians."""
+    largest = max(abs(value), deviation or 0.0)
+    factor, unit = _readable(largest, unit)
+    sure = deviation is not None and math.isfinite(deviation) and deviation > 0
+    text = with_deviation(value / factor, deviation / factor) if sure and deviation else number(value / factor, 3)
+    text = f"({text})" if unit and "±" in text and "(" not in text else text
+    return f"{text} {unit}".strip()
+
+
+def _readable(largest: float, unit: str) -> tuple[float, str]:
+    """What values are divided by, and the unit then."""
+    if unit in ("-", "1"):
+        return 1.0, ""
+    if unit in ("rad", "rad/s"):
+        return math.radians(1.0), unit.replace("rad", "deg")
+    if re.match(r"N\b", unit):
+        size, prefix = next(((size, prefix) for size, prefix in PREFIXES if largest >= size), (1.0, ""))
+        return size, prefix + readable_unit(unit)
+    if re.match(r"kg\b", unit) and largest >= 1e3:
+        return 1e3, readable_unit("t" + unit[2:])
+    return 1.0, readable_unit(unit)

@@ -8,8 +8,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from calibration.checks import Finding
-from calibration.formatting import counted
-from calibration.statements import listed
+from calibration.formatting import counted, listed
 
 NUMBER = re.compile(r"(?<![\w.-])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
 NAMED = 3  # tests that are named; of more the number is given

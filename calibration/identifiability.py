@@ -4,9 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-CLEAR = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
-VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
-
 
 class Spread(NamedTuple):
     """Covariance of the coordinates of all unknowns: the shared parameters first, then every record's own."""

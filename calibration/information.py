@@ -74,3 +74,5 @@ def varimax(axes: np.ndarray) -> np.ndarray:
         u, _, v = np.linalg.svd(axes.T @ (axes @ turn) ** 3)
         turn = u @ v
     return axes @ turn
+CLEAR = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
+VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way

@@ -9,14 +9,13 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, strays
 from calibration.fit import Interrupted, Progress, held_out, labels_of, prepare, run, space_of
-from calibration.formatting import number, percent, with_deviation
+from calibration.formatting import listed, number, percent, with_deviation
 from calibration.joint_fit import JointFit, Kind, Loss, Sources
 from calibration.manifest import IN_WAVES
 from calibration.result import Calibration
 from calibration.sea_fit import tests_in_waves
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction
-from calibration.statements import listed
 from calibration.still import pose_offsets, pose_periods
 from jaxhydro.environment import DOFS
 from jaxhydro.interrupts import stopping

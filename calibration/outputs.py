@@ -18,7 +18,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.loads.sea_state_law import reference_of
 from jaxhydro.model import Model
-from jaxhydro.plot import for_people, unit_of
+from jaxhydro.units import for_people, unit_of
 
 _EVEN = 1e-3  # of a step: times that differ by less are the same
 

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.identifiability import VAGUE
+from calibration.information import VAGUE
 from calibration.transforms import AbstractTransform, Interval, LogInterval, Scaled
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent

@@ -11,8 +11,8 @@ from calibration.residuals import characteristic_length
 from calibration.signals import dominant_period, peak_frequency, wave_height
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.plot import for_people, unit_of
 from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.units import for_people, unit_of
 
 ODD, WRONG = 3.0, 20.0  # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
 HEAVE = (0.5, 3.0)  # motions that are odd or wrong: of the radius of gyration

@@ -14,8 +14,9 @@ from calibration.result import Calibration, Estimate, Series, TestFit
 from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS
 from jaxhydro.files import safe_name
-from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WIDTH, for_people, header, stack, unit_of
+from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WIDTH, header, stack
 from jaxhydro.response import Cycles, decay_cycles
+from jaxhydro.units import for_people, unit_of
 
 _USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
 HIGHEST, DECADES = 0.2, 4.5  # Hz that spectra are drawn to, and of their largest value downwards

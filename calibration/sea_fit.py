@@ -15,10 +15,10 @@ from calibration.laws import PLAIN, Drag, Over, of_law, reference_of, with_drag,
 from calibration.manifest import IN_WAVES
 from calibration.result import BandError, Calibration, TestFit
 from calibration.sea_descent import SeaFit
+from calibration.sea_errors import in_bands
 from calibration.sea_remarks import sea_remarks
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, options_of, sea_step, seas_of, with_diffraction
-from calibration.seas_results import in_bands
 from calibration.shooting_fit import ShootingFit
 from jaxhydro.environment import DOFS
 from jaxhydro.interrupts import stopping

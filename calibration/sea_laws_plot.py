@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from calibration.formatting import readable_unit
 from calibration.sea_laws import LawFit, SeaLaws
-from calibration.sea_laws_outputs import NAMES
+from calibration.sea_laws_tables import NAMES
 from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WAVE, header, stack
 from jaxhydro.waves.sea_state import SeaState
 

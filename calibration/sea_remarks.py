@@ -3,9 +3,8 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from calibration.formatting import number
+from calibration.formatting import listed, number
 from calibration.result import TestFit, error_of_energies
-from calibration.statements import listed
 from jaxhydro.drag_laws import drag_laws_of
 from jaxhydro.model import Model
 from jaxhydro.statics import natural_modes

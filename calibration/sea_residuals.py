@@ -19,8 +19,8 @@ from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from calibration.residuals import group_products
 from calibration.runs import Run
+from calibration.sea_errors import bands_of
 from calibration.seas import Options, Seas, moving_channels, peak_period
-from calibration.seas_results import bands_of
 from calibration.stretches import stretches, walk, window
 from jaxhydro.analysis import SEGMENT, band_weights
 from jaxhydro.environment import DOFS

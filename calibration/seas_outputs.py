@@ -10,11 +10,11 @@ import xarray as xr
 import jaxhydro
 from calibration.folder import COMPARISON, draw, outdated, write_json, write_motion
 from calibration.outputs import common_axis
+from calibration.sea_errors import channels
 from calibration.seas import Compared, SeaTest
-from calibration.seas_results import channels
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
-from jaxhydro.plot import unit_of
+from jaxhydro.units import unit_of
 
 
 def write_comparison(

@@ -7,11 +7,12 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from calibration.formatting import number
+from calibration.sea_errors import bands_of, channels, density, moving
 from calibration.seas import SeaTest
-from calibration.seas_results import bands_of, channels, density, moving
 from calibration.signals import wave_height
 from jaxhydro.files import safe_name
-from jaxhydro.plot import MEASURED, SIMULATED, header, stack, unit_of
+from jaxhydro.plot import MEASURED, SIMULATED, header, stack
+from jaxhydro.units import unit_of
 
 HIGHEST = 0.2  # Hz, that spectra are drawn to; of waves shorter than 10 s 2.5 times their peak
 DECADES = 4.5  # of a spectrum, under its largest value

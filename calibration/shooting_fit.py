@@ -9,14 +9,13 @@ from jaxtyping import Array, Float
 
 from calibration.descent import Reached, descend
 from calibration.directions import Identifiability, stated
-from calibration.formatting import percent
+from calibration.formatting import listed, percent
 from calibration.identifiability import Spread, assemble, memory
 from calibration.information import inverse
 from calibration.residuals import Unknowns, condensed
 from calibration.sea_descent import TOLERANCE, SeaFit
 from calibration.sea_residuals import SeaProblem
 from calibration.shooting import BlockProblem, pose_blocks, shoot, slowest
-from calibration.statements import listed
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 

@@ -1,12 +1,11 @@
 """What is said of identifiability, as values and in words: directions, combinations that are known, what to fix."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from calibration.formatting import number, percent, readable_unit, with_deviation
-from calibration.identifiability import VAGUE
+from calibration.formatting import listed, number, percent, readable_unit, with_deviation
+from calibration.information import VAGUE
 
 SMALL = 0.005  # weight of a combination, the largest 1, that is not told
 
@@ -92,6 +91,3 @@ class Collinear(NamedTuple):
     gamma: float
 
 
-def listed(words: Sequence[str]) -> str:
-    """a, b and c."""
-    return words[0] if len(words) == 1 else " and ".join(x for x in (", ".join(words[:-1]), *words[-1:]) if x)

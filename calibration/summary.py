@@ -5,9 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from calibration.conclusion import LOST
-from calibration.formatting import counted, percent, percent_span
+from calibration.formatting import counted, listed, percent, percent_span
 from calibration.saved import Error, Parameter, Saved
-from calibration.statements import listed
 
 KINDS = {"decay": "decay", "regular": "test", "irregular": "test"}
 WATERS = {"regular": " in regular waves", "irregular": " in irregular waves"}

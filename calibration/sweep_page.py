@@ -8,8 +8,8 @@ from typing import NamedTuple
 from pydantic import Field
 
 from calibration.formatting import counted, number, percent
+from calibration.formatting import listed as joined
 from calibration.saved import Open, Reference
-from calibration.statements import listed as joined
 from calibration.web_page import embedded, figures, framed, listed, result_box, table, warning_box
 from jaxhydro.environment import DOFS
 from jaxhydro.problems import Number

@@ -11,13 +11,9 @@ from calibration.grouped import grouped
 from calibration.manifest import IN_WAVES
 from calibration.result import Calibration
 from calibration.saved import Error, Parameter, Saved
+from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
-Rows = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
-USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
-KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
-UNDETERMINED = "not determined"
 CLASSICAL = "Classical analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
-BANDS = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
 SURE = 2.0  # standard deviations within which a value agrees with the true one
 
 

@@ -4,10 +4,9 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from calibration.formatting import counted, interval, number, percent_span, readable_unit, to_width
+from calibration.formatting import counted, interval, listed, number, percent_span, readable_unit, to_width
 from calibration.saved import Drawn, Open, Parameter
-from calibration.statements import listed
-from calibration.tables import UNDETERMINED, Rows
+from calibration.vocabulary import UNDETERMINED, Rows
 from jaxhydro.problems import Number
 
 WAYS = {"profile": "Profile", "blocks": "Bootstrap, blocks", "repeats": "Bootstrap, repeats", "nuts": "NUTS"}

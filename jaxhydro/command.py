@@ -19,7 +19,6 @@ from jaxhydro.loads import Buoyancy
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
-from jaxhydro.plot import for_people, unit_of
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.rotations import rotation
@@ -27,6 +26,7 @@ from jaxhydro.simulate import default_step, free_decay
 from jaxhydro.statics import equilibrium, natural_modes, stable_modes
 from jaxhydro.strips import COLUMN_SLOPE
 from jaxhydro.table_ranges import regular_fault
+from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
 from jaxhydro.waves.sea_state import SeaState
 

@@ -11,8 +11,9 @@ import xarray as xr
 from jaxhydro import sea_plot
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
-from jaxhydro.plot import for_people, motion_figure, save, style, unit_of
+from jaxhydro.plot import motion_figure, save, style
 from jaxhydro.sea_results import in_order
+from jaxhydro.units import for_people, unit_of
 
 STATISTICS = "statistics.json"
 OF_SEAS = (STATISTICS, "figures/motion.png", "figures/window.png", "figures/spectra.png")

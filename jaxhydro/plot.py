@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-from jaxhydro.environment import DOFS
+from jaxhydro.units import unit_of
 
 WIDTH = 3.35  # inches: half a page, where the text is 8 points
 MEASURED, SIMULATED, BEFORE, WAVE, GREY = "#30343b", "#d1495b", "#8fb4d9", "#2f7f86", "#8a9099"
@@ -53,16 +53,6 @@ STYLE: Any = {
     "lines.solid_capstyle": "round",
     "savefig.dpi": 300,
 }
-
-
-def unit_of(channel: str) -> str:
-    """The unit in which people read a channel: m or deg."""
-    return "deg" if channel in DOFS[3:] else "m"
-
-
-def for_people(channel: str, values: np.ndarray | float) -> np.ndarray:
-    """SI values of a channel in the unit in which people read them."""
-    return np.rad2deg(values) if unit_of(channel) == "deg" else np.asarray(values)
 
 
 def stack(heights: list[float], shared: bool = True) -> tuple[Figure, list[Axes]]:

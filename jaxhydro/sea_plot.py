@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from jaxhydro.analysis import SEGMENT, power_spectrum
-from jaxhydro.plot import GREY, MEASURED, SIMULATED, WAVE, header, stack, unit_of
+from jaxhydro.plot import GREY, MEASURED, SIMULATED, WAVE, header, stack
 from jaxhydro.sea_results import bands_of
+from jaxhydro.units import unit_of
 
 WINDOW = 200.0  # s, of which the waves can be told apart at half a page
 SHORTEST = 400.0  # s, of the segments of a spectrum

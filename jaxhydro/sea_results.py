@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxhydro.analysis import band_integral, bands, power_spectrum, statistics
 from jaxhydro.environment import DOFS
-from jaxhydro.plot import unit_of
+from jaxhydro.units import unit_of
 
 STILL = 1e-9  # m, deg: what moves less does not move
 SHOWN = ("mean", "standard_deviation", "minimum", "maximum", "significant_double_amplitude", "zero_crossing_period")

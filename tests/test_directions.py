@@ -15,8 +15,8 @@ from calibration.candidates import decay_information, effective_noise, expected_
 from calibration.conclusion import series_of
 from calibration.directions import TOLD, Identifiability, identifiability, identifiability_of
 from calibration.fit import Fit, pose, run
-from calibration.identifiability import CLEAR, VAGUE, spread
-from calibration.information import collinearity, eliminated, varimax
+from calibration.identifiability import spread
+from calibration.information import CLEAR, VAGUE, collinearity, eliminated, varimax
 from calibration.manifest import Test
 from calibration.parameters import parameter_space
 from calibration.records import Record

@@ -13,9 +13,9 @@ from test_seas import made  # noqa: F401  (a fixture: a run of the NumPy model)
 from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaign
 from calibration.outputs import document, write_calibration
 from calibration.parameters import parameter_space
+from calibration.sea_errors import in_bands
 from calibration.sea_residuals import CELLS, LEAST, energies_of, joined, pose_in_waves
 from calibration.seas import Options, compare, seas_of, with_diffraction
-from calibration.seas_results import in_bands
 from jaxhydro.analysis import band_integral, band_weights, power_spectrum
 from jaxhydro.environment import DOFS
 from jaxhydro.platform import build

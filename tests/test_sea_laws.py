@@ -16,8 +16,9 @@ from calibration.fit import Interrupted, Progress
 from calibration.laws import base_of, of_law, reference_of, with_drag, with_laws
 from calibration.outputs import write_calibration
 from calibration.sea_laws import LawFit, SeaLaws, choose_law, error, with_uses
-from calibration.sea_laws_outputs import NAMES, laws_table, sentence, states_table, write_laws
 from calibration.sea_laws_outputs import document as document_of_laws
+from calibration.sea_laws_outputs import write_laws
+from calibration.sea_laws_tables import NAMES, laws_table, sentence, states_table
 from calibration.seas import Options, compare, seas_of, with_diffraction
 from calibration.stretches import sea_state, stretches, walk
 from jaxhydro.command import with_calibration

@@ -15,8 +15,8 @@ from calibration.campaign import load_campaign
 from calibration.command import simulate_campaign
 from calibration.fit import calibrate
 from calibration.runs import Run, evenly, runs
+from calibration.sea_errors import bands_of
 from calibration.seas import MISMATCH, Options, sea_of
-from calibration.seas_results import bands_of
 from jaxhydro.environment import Environment
 from jaxhydro.options import results_folder
 from jaxhydro.platform import load_model

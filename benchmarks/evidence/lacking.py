@@ -118,7 +118,8 @@ def draw(name: str, path: Path) -> None:
 
     from calibration.campaign import load_campaign
     from jaxhydro.analysis import bands
-    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style, unit_of
+    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style
+    from jaxhydro.units import unit_of
 
     campaign = load_campaign(campaign_of(name))
     held = next(test for test in campaign.manifest.tests if test.use == "holdout" and test.kind == "irregular")

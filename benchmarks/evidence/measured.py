@@ -22,8 +22,9 @@ def work(name: str, figures: Path) -> dict[str, Any]:
     from calibration.fit import calibrate
     from calibration.plot import decay_figure, test_figure
     from jaxhydro import natural_modes
-    from jaxhydro.plot import for_people, save, style
+    from jaxhydro.plot import save, style
     from jaxhydro.response import decay_cycles
+    from jaxhydro.units import for_people
 
     result = calibrate(load_campaign(FOLDER / name))
     test = result.tests[0]

@@ -49,8 +49,8 @@ def fitted() -> dict[str, Any]:
 def case(key: str, name: str) -> dict[str, Any]:
     """One set of coefficients and options against all three seas."""
     from calibration.campaign import load_campaign
+    from calibration.sea_errors import in_bands
     from calibration.seas import Options, compare
-    from calibration.seas_results import in_bands
     from jaxhydro.platform import build
     from jaxhydro.statics import natural_modes
 
@@ -80,7 +80,7 @@ def case(key: str, name: str) -> dict[str, Any]:
 def lower(test: Any) -> dict[str, Any]:
     """Simulated surge `KEEL` above still water: band integrals, mean, transfer function; and what the point that was measured
     does in pitch's resonance, surge over pitch and sway over roll (m/rad, the real part), with coherence."""
-    from calibration.seas_results import channels, density
+    from calibration.sea_errors import channels, density
     from jaxhydro.analysis import band_integral, bands, transfer_function
 
     time, both = test.fit.time, channels(test)
@@ -105,7 +105,7 @@ def lower(test: Any) -> dict[str, Any]:
 
 def spectra(test: Any) -> dict[str, Any]:
     """Of measured and simulated: mean, standard deviation, spectra, and transfer functions from the measured wave."""
-    from calibration.seas_results import channels, density
+    from calibration.sea_errors import channels, density
     from jaxhydro.analysis import transfer_function
 
     found: dict[str, Any] = {"mean": {}, "deviation": {}, "density": {}, "response": {}}
@@ -188,8 +188,8 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    from calibration.sea_errors import bands_of
     from calibration.seas_plot import LOW_BAND, WAVE_BAND
-    from calibration.seas_results import bands_of
     from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, style
 
     with style():

@@ -106,7 +106,7 @@ def errors_of(found: Any) -> dict[str, Any]:
 
 def errors_in_waves(tests: Any) -> dict[str, Any]:
     """The same of tests that `compare` simulated."""
-    from calibration.seas_results import in_bands
+    from calibration.sea_errors import in_bands
 
     found = {}
     for test in tests:

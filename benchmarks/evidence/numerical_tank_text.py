@@ -6,9 +6,10 @@ from typing import Any
 from benchmarks.evidence.common import TRUE, table
 from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT, setup
 from benchmarks.evidence.numerical_tank_truth import REACH
+from calibration.discovery.effect_names import called
 from calibration.discovery.judgement import LOST, TIMES
-from calibration.discovery.words import called, plain, quantity, several
-from calibration.formatting import number, percent
+from calibration.discovery.words import plain, several
+from calibration.formatting import number, percent, quantity
 
 HALVES = {FITTED: "fitted", HELD: "held out"}
 BANDS = {"low_frequency": "low", "wave_frequency": "wave"}

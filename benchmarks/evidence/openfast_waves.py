@@ -198,7 +198,8 @@ def run(figures: Path) -> Section:
 
 def draw(found: dict[str, Any], path: Path) -> None:
     """Spectra of ss1_c3 by OpenFAST and here, in its conventions and the default ones."""
-    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style, unit_of
+    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style
+    from jaxhydro.units import unit_of
 
     looks = {"OpenFAST": (MEASURED, 2.0), "base": (BEFORE, 1.0), DEFAULT: (SIMULATED, 1.0)}
     names = {"OpenFAST": "OpenFAST", "base": "the same here", DEFAULT: "default here"}

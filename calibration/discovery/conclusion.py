@@ -13,14 +13,14 @@ from calibration.conclusion import strays
 from calibration.discovery.anatomy import anatomy, signature
 from calibration.discovery.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.doubts import doubts_of, in_doubt
+from calibration.discovery.effect_names import called
 from calibration.discovery.latent import latent_of
 from calibration.discovery.linear import predict
 from calibration.discovery.result import Diagnosis, Effect, Evidence, Finding
-from calibration.discovery.words import called
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from calibration.runs import runs
+from calibration.sea_errors import bands_of
 from calibration.seas import peak_period
-from calibration.seas_results import bands_of
 from jaxhydro.analysis import band_weights
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calibration.discovery.candidates import Candidate
+from calibration.discovery.effect_names import called
 from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding
-from calibration.discovery.words import called, several
-from calibration.formatting import number, percent
+from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 
@@ -74,7 +74,7 @@ def risen(before: float | None, after: float | None) -> bool:
 
 def like(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
     """In words, that what was found does not make the model follow."""
-    names, worst = several([called(one.effect, one.dof) for one in chosen]), more[0]
+    names, worst = listed([called(one.effect, one.dof) for one in chosen]), more[0]
     return (
         f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
         "not only, what was found, and sizes are less sure than their deviations say"
@@ -94,7 +94,7 @@ def in_motion(search: Search, state: State) -> list[str]:
     if not said:
         return []
     return [
-        f"{several(said)} {'begin' if len(said) > 1 else 'begins'} in motion, and {several(names)} as if what has a memory "
+        f"{listed(said)} {'begin' if len(said) > 1 else 'begins'} in motion, and {listed(names)} as if what has a memory "
         "had been at rest until then: where that is not so sizes are wrong; let records begin at the release"
     ]
 

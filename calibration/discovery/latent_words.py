@@ -11,9 +11,8 @@ from scipy import signal
 
 from calibration.discovery.latent_law import LAGGED, LAGS, columns_of, squared_envelope
 from calibration.discovery.result import Followed, LatentForce, Law, LawTerm, Shown
-from calibration.discovery.words import quantity, several
-from calibration.formatting import number, percent, readable_unit
-from calibration.seas_results import bands_of
+from calibration.formatting import listed, number, percent, quantity, readable_unit
+from calibration.sea_errors import bands_of
 from calibration.signals import SEGMENT, peak_frequency, wave_height
 from jaxhydro.environment import DOFS
 
@@ -193,7 +192,7 @@ def sentence(one: LatentForce) -> str:
     main = max(one.shares["waves"].items(), key=lambda row: row[1])[0] if "waves" in one.shares else ""
     told = {name: p for name, p in one.growth.items() if name in ("amplitude", f"significant_height.{main}")}
     grows = [f"it grows as the power {number(p, 2)} of the {_size(name)}" for name, p in told.items()]
-    parts = [f"{one.motion.capitalize()}: the model lacks a {'moment' if one.unit == 'N m' else 'force'} of {several(said)}"]
+    parts = [f"{one.motion.capitalize()}: the model lacks a {'moment' if one.unit == 'N m' else 'force'} of {listed(said)}"]
     parts += [", ".join(with_what)] if with_what else []
     return "; ".join([*parts, *grows, law_in_words(one.law, one.unit)]) + "."
 

@@ -15,7 +15,7 @@ from calibration.folder import DIAGNOSIS, draw, or_null, outdated, write_json, w
 from calibration.outputs import NotFinite, dataset
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from jaxhydro.files import staged
-from jaxhydro.plot import for_people, unit_of
+from jaxhydro.units import for_people, unit_of
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: bool = True) -> Path:

@@ -9,7 +9,7 @@ from calibration.discovery import tables, words
 from calibration.discovery.saved import Found, SavedDiagnosis
 from calibration.folder import DIAGNOSIS
 from calibration.formatting import number
-from calibration.tables import KINDS, USE
+from calibration.vocabulary import KINDS, USE
 from calibration.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
 
 _ANATOMY = """<p>The residual of the declared model after its coefficients are fitted, the largest first: its root mean

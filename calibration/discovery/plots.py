@@ -9,17 +9,18 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from calibration.discovery.effect_names import called
 from calibration.discovery.result import Diagnosis, Effect
 from calibration.discovery.search_plots import LEAST, anatomy_figure, latent_figure, scores_figure
-from calibration.discovery.words import called
 from calibration.formatting import percent
 from calibration.plot import BAND_COLOURS, DECADES, HIGHEST
 from calibration.result import Calibration, Series, TestFit
-from calibration.tables import USE
+from calibration.vocabulary import USE
 from jaxhydro.analysis import power_spectrum
 from jaxhydro.environment import DOFS
 from jaxhydro.files import safe_name
-from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, WIDTH, for_people, header, stack, unit_of
+from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, WIDTH, header, stack
+from jaxhydro.units import for_people, unit_of
 
 EXCERPT = {"surge": 1200.0, "sway": 1200.0, "yaw": 1200.0}  # s of a record in waves that are shown
 SHORT = 600.0  # of the other motions

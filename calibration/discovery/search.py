@@ -7,13 +7,14 @@ import numpy as np
 
 from calibration.campaign import Campaign
 from calibration.discovery.candidates import Candidate
+from calibration.discovery.effect_names import called
 from calibration.discovery.fits import Order
 from calibration.discovery.judgement import LEAST_BIC, LEAST_CLEAR, LEAST_NET, LEAST_TOGETHER, SLIGHT, Left, State
 from calibration.discovery.linear import away, likelihoods, predict
 from calibration.discovery.pose import Posed
 from calibration.discovery.scoring import ITERATIONS, Scoring
 from calibration.discovery.trials import Found, Scored, Tried, in_order
-from calibration.discovery.words import called, several
+from calibration.formatting import listed
 
 ROUNDS = 10  # effects at most
 SHORTLIST = 5
@@ -194,7 +195,7 @@ class Search(Scoring):
                 self.found[one.name] = self.found[one.name]._replace(verdict=verdict)
         for one in spared:
             later = state.chosen[state.chosen.index(one) + 1 :]
-            self.notes.append(SHARED.format(first=called(one.name), later=several([called(other.name) for other in later])))
+            self.notes.append(SHARED.format(first=called(one.name), later=listed([called(other.name) for other in later])))
         return state
 
     def weighed(self, state: State) -> State:

@@ -12,8 +12,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
 from calibration.discovery.result import Diagnosis, Finding, LatentForce, Score
-from calibration.discovery.words import PREFIXES
-from jaxhydro.plot import GREY, MEASURED, SIMULATED, WAVE, WIDTH, for_people, header, stack, unit_of
+from calibration.formatting import PREFIXES
+from jaxhydro.plot import GREY, MEASURED, SIMULATED, WAVE, WIDTH, header, stack
+from jaxhydro.units import for_people, unit_of
 
 MOST, FEW = 8, 5  # candidates shown of a round; of more than two rounds
 LEAST = 1.0  # of -2 ln L: what gains less is not worth a bar

@@ -15,10 +15,10 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.discovery.conclusion import tests_of
 from calibration.discovery.result import Effect, Evidence
-from calibration.discovery.words import several
+from calibration.formatting import listed
 from calibration.manifest import IN_WAVES, WAVE
 from calibration.result import Estimate
-from calibration.seas_results import bands_of
+from calibration.sea_errors import bands_of
 from calibration.signals import peak_frequency
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def in_words(channels: Sequence[str]) -> str:
     are, signs = ("is", "its sign") if len(channels) == 1 else ("are", "their signs")
     other = " It is as if the waves came from the other side." if {"surge", "pitch"} <= set(channels) else ""
     return (
-        f"{several(list(channels))} {are} recorded with the other sign, and {are} turned round for all that follows.{other} "
+        f"{listed(list(channels))} {are} recorded with the other sign, and {are} turned round for all that follows.{other} "
         f"Mend {signs} in campaign.yaml (sign: -1, or 1 where it is -1)"
     )
 

@@ -1,11 +1,12 @@
 """Heads and rows of the tables of a diagnosis, for the terminal and the page."""
 
+from calibration.discovery.effect_names import called
 from calibration.discovery.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.discovery.saved import SavedDiagnosis
-from calibration.discovery.words import by_certainty, called, checked_on, determined, plain, quantity, strength
-from calibration.formatting import number, percent, readable_unit, with_deviation
+from calibration.discovery.words import by_certainty, checked_on, determined, plain, strength
+from calibration.formatting import number, percent, quantity, readable_unit, with_deviation
 from calibration.saved import Parameter
-from calibration.tables import BANDS, KINDS, UNDETERMINED, USE, Rows
+from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
 ORDER = list(USE)
 STILL = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything

@@ -1,81 +1,20 @@
 """A diagnosis in words and readable numbers, for the terminal and the page."""
 
-import math
-import re
 from collections.abc import Mapping
 
+from calibration.discovery.effect_names import called, capital
 from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER
 from calibration.discovery.saved import Found, Grounds, SavedDiagnosis
-from calibration.formatting import number, percent, readable_unit, with_deviation
+from calibration.formatting import listed, number, percent, quantity
 from calibration.saved import Parameter
-from calibration.tables import UNDETERMINED
+from calibration.vocabulary import UNDETERMINED
 
-NAMES = {
-    "coulomb_friction": "Coulomb friction",
-    "mass_properties": "wrong mass properties",
-    "mooring_nonlinearity": "a nonlinear mooring",
-    "static_offset": "a static offset (a force, or a sensor's zero)",
-    "umbilical": "an umbilical",
-    "current": "a current",
-    "hidden_oscillator": "a hidden oscillator",
-    "sensor_reference": "a wrong sensor reference",
-    "sea_state_dependent_drag": "drag apart for slow motion",
-    "sensor_lag": "a sensor lag",
-    "sensor_sign": "a wrong sign",
-    "wave_gauge_position": "a wrong wave gauge position",
-    "wave_reflection": "waves that come back",
-    "wave_excitation": "another wave excitation",
-    "potential_flow": "what the platform's tables of potential flow have",
-}
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
 UNFINISHED = "The search did not come to its end: until then nothing was found that the declared model lacks."
 WHERE = "in the motion and at the frequencies where the error falls most"
 CLEAR = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
 SMALL = 0.25  # of the value it began from: a deviation below is small, whatever the value
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 STRENGTHS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "positive"), (0.0, "weak"))  # Kass and Raftery 1995, table in 3.2
-
-
-def called(effect: str, motion: str | None = None) -> str:
-    """An effect as people say it: `coulomb_friction (surge)`, or its name and motion apart, is "Coulomb friction in surge"."""
-    name, _, inside = effect.removesuffix(")").partition(" (")
-    words = NAMES.get(name, name.replace("_", " "))
-    motion = motion or inside
-    return f"{words} in {motion}" if motion else words
-
-
-def capital(words: str) -> str:
-    """With a capital first letter."""
-    return f"{words[:1].upper()}{words[1:]}"
-
-
-def several(words: list[str]) -> str:
-    """a, b and c."""
-    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
-
-
-def quantity(value: float, deviation: float | None, unit: str) -> str:
-    """A value with its standard deviation in a unit that people read: `81.0 ± 2.1 kN`, degrees for radians."""
-    largest = max(abs(value), deviation or 0.0)
-    factor, unit = _readable(largest, unit)
-    sure = deviation is not None and math.isfinite(deviation) and deviation > 0
-    text = with_deviation(value / factor, deviation / factor) if sure and deviation else number(value / factor, 3)
-    text = f"({text})" if unit and "±" in text and "(" not in text else text
-    return f"{text} {unit}".strip()
-
-
-def _readable(largest: float, unit: str) -> tuple[float, str]:
-    """What values are divided by, and the unit then."""
-    if unit in ("-", "1"):
-        return 1.0, ""
-    if unit in ("rad", "rad/s"):
-        return math.radians(1.0), unit.replace("rad", "deg")
-    if re.match(r"N\b", unit):
-        size, prefix = next(((size, prefix) for size, prefix in PREFIXES if largest >= size), (1.0, ""))
-        return size, prefix + readable_unit(unit)
-    if re.match(r"kg\b", unit) and largest >= 1e3:
-        return 1e3, readable_unit("t" + unit[2:])
-    return 1.0, readable_unit(unit)
 
 
 def plain(name: str) -> str:
@@ -115,7 +54,7 @@ def verdict(saved: SavedDiagnosis) -> str:
     """What a project lead has to know, in one sentence."""
     missing = saved.missing
     named = [(called(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
-    names, doubted = (several([name for name, sure in named if sure is kind]) for kind in (True, False))
+    names, doubted = (listed([name for name, sure in named if sure is kind]) for kind in (True, False))
     if not saved.complete and not named:
         return UNFINISHED
     if missing.verdict == "found":
@@ -189,7 +128,7 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
 
 def alternatives(one: Found) -> str:
     """What else it could be, and the test that would tell."""
-    names = several([called(other) for other in one.indistinguishable_from])
+    names = listed([called(other) for other in one.indistinguishable_from])
     said = f"These records cannot tell it from {names}." if names else ""
     if one.in_doubt == SECOND_ORDER:
         said += (

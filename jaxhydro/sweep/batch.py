@@ -17,7 +17,6 @@ from jaxhydro.environment import DOFS
 from jaxhydro.loads import MooringLines
 from jaxhydro.model import Model
 from jaxhydro.platform_schema import load_platform
-from jaxhydro.plot import for_people
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.rotations import rotation
 from jaxhydro.sea_command import build_sea
@@ -27,6 +26,7 @@ from jaxhydro.statics import EquilibriumError
 from jaxhydro.sweep.at_once import in_halves, shared_by
 from jaxhydro.sweep.cases import Plan, Run
 from jaxhydro.sweep.statistics import Kept, kept_of
+from jaxhydro.units import for_people
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.support_sea import SupportSea

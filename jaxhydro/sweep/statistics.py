@@ -10,8 +10,8 @@ from jaxtyping import Float
 
 from jaxhydro.analysis import Statistics, band_integral, power_spectrum, statistics
 from jaxhydro.environment import DOFS
-from jaxhydro.plot import unit_of
 from jaxhydro.sea_results import bands_of, still
+from jaxhydro.units import unit_of
 
 STATISTICS = Statistics._fields
 BANDS = ("low_frequency", "wave_frequency")

@@ -1,0 +1,32 @@
+"""Effects as people call them."""
+
+NAMES = {
+    "coulomb_friction": "Coulomb friction",
+    "mass_properties": "wrong mass properties",
+    "mooring_nonlinearity": "a nonlinear mooring",
+    "static_offset": "a static offset (a force, or a sensor's zero)",
+    "umbilical": "an umbilical",
+    "current": "a current",
+    "hidden_oscillator": "a hidden oscillator",
+    "sensor_reference": "a wrong sensor reference",
+    "sea_state_dependent_drag": "drag apart for slow motion",
+    "sensor_lag": "a sensor lag",
+    "sensor_sign": "a wrong sign",
+    "wave_gauge_position": "a wrong wave gauge position",
+    "wave_reflection": "waves that come back",
+    "wave_excitation": "another wave excitation",
+    "potential_flow": "what the platform's tables of potential flow have",
+}
+
+
+def called(effect: str, motion: str | None = None) -> str:
+    """An effect as people say it: `coulomb_friction (surge)`, or its name and motion apart, is "Coulomb friction in surge"."""
+    name, _, inside = effect.removesuffix(")").partition(" (")
+    words = NAMES.get(name, name.replace("_", " "))
+    motion = motion or inside
+    return f"{words} in {motion}" if motion else words
+
+
+def capital(words: str) -> str:
+    """With a capital first letter."""
+    return f"{words[:1].upper()}{words[1:]}"

@@ -1,0 +1,9 @@
+"""Words that tables, pages and figures share."""
+
+from collections.abc import Sequence
+
+Rows = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
+USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
+KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
+UNDETERMINED = "not determined"
+BANDS = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
