@@ -5,11 +5,12 @@ from calibration.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
 from calibration.campaign import Campaign, load_campaign
 from calibration.candidates import decay_information, effective_noise, expected_information, rank_tests
 from calibration.classical import classical, equivalent_damping
-from calibration.directions import Identifiability, identifiability_of
+from calibration.directions import Identifiability
 from calibration.discovery.candidates import Candidate
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.result import Diagnosis
 from calibration.fit import Interrupted, Progress, calibrate
+from calibration.fit_uncertainty import identifiability_of
 from calibration.joint import calibrate_jointly
 from calibration.likelihood import Likelihood, likelihood
 from calibration.model_damping import drag_coefficient, model_damping, motion_shape

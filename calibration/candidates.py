@@ -7,8 +7,9 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.directions import Identifiability, active_of, errors_of, weak_directions
+from calibration.directions import Identifiability, active_of, weak_directions
 from calibration.fit import STEPS_PER_PERIOD, Fit
+from calibration.fit_uncertainty import errors_of
 from calibration.formatting import listed, percent
 from calibration.information import eliminated, within
 from calibration.manifest import Test

@@ -10,24 +10,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import jax.numpy as jnp
 import numpy as np
 
 from calibration.formatting import listed, number, percent
-from calibration.identifiability import Spread, memory, spread
+from calibration.identifiability import Spread, spread
 from calibration.information import CLEAR, VAGUE, collinearity, deviations, eliminated, inverse, principal, varimax, within
 from calibration.parameters import ParameterSpace, slopes
-from calibration.result import TestFit
 from calibration.statements import Collinear, Combination, Direction, Fix, Parameters
 from jaxhydro.drag_laws import coefficient_label
-from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
-
-if TYPE_CHECKING:
-    from calibration.fit import Fit
 
 Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # products, weight, variance, inflation: see `spread`
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
@@ -154,35 +148,6 @@ def weak_directions(parameters: Parameters, information: np.ndarray, active: Seq
         movement = {parameters.labels[active[i]]: float(c) for i, c in zip(mine, change, strict=True)}
         found.append(Direction(movement, float(deviation[k]), known))
     return tuple(found)
-
-
-def errors_of(fit: Fit, tests: Sequence[TestFit]) -> tuple[np.ndarray, np.ndarray]:
-    """Variance of the residuals and how many of their samples count as one, by record and channel of a finished fit."""
-    data, products = fit.problem.data, fit.products
-    assert products is not None, "nothing has been minimised yet"
-    samples = np.maximum(np.asarray(data.present).sum(axis=-1), 1)
-    inflation = np.ones(samples.shape)
-    for i, test in enumerate(tests[: len(fit.records)]):
-        for series in test.series:
-            inflation[i, data.dofs.index(DOFS.index(series.channel))] = memory(series.simulated - series.measured)
-    own = (products.shape[-1] - 1) / len(data.dofs)
-    return products[..., -1, -1] / np.maximum(samples - own, 1), inflation
-
-
-def identifiability_of(fit: Fit, tests: Sequence[TestFit]) -> Identifiability:
-    """The statement on a finished fit; `tests` are its records as `series_of` gives them."""
-    return uncertainty_of(fit, tests)[1]
-
-
-def uncertainty_of(fit: Fit, tests: Sequence[TestFit]) -> tuple[Spread, Identifiability]:
-    """`identifiability_of`, and the covariance of all unknowns that it rests on."""
-    assert fit.products is not None, "nothing has been minimised yet"
-    parts = (fit.products, fit.weight, *errors_of(fit, tests))
-    released = [str(record.degree_of_freedom) for record in fit.records]
-    counts = [(dof, released.count(dof)) for dof in dict.fromkeys(released)]
-    source = listed([f"{n} {dof} decay{'' if n == 1 else 's'}" for dof, n in counts])
-    x, ridge, width = np.asarray(fit.unknowns.shared), np.asarray(fit.ridge), 1 / np.asarray(fit.prior[1])
-    return stated(fit.problem.space, fit.problem.model, x, parts, ridge, width, source)
 
 
 def stated(

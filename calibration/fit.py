@@ -10,7 +10,7 @@ import numpy as np
 from calibration.campaign import Campaign
 from calibration.conclusion import estimates, remarks, series_of, strays
 from calibration.descent import descend
-from calibration.directions import uncertainty_of
+from calibration.fit_uncertainty import uncertainty_of
 from calibration.manifest import IN_WAVES
 from calibration.parameters import ParameterSpace, choose, parameter_space
 from calibration.records import Record

@@ -13,8 +13,9 @@ from ruamel.yaml import YAML
 import jaxhydro as jh
 from calibration.candidates import decay_information, effective_noise, expected_information, rank_tests
 from calibration.conclusion import series_of
-from calibration.directions import TOLD, Identifiability, identifiability, identifiability_of
+from calibration.directions import TOLD, Identifiability, identifiability
 from calibration.fit import Fit, pose, run
+from calibration.fit_uncertainty import identifiability_of
 from calibration.identifiability import spread
 from calibration.information import CLEAR, VAGUE, collinearity, eliminated, varimax
 from calibration.manifest import Test
