@@ -16,8 +16,8 @@ import numpy as np
 
 from calibration.formatting import listed, number, percent
 from calibration.identifiability import Spread, spread
-from calibration.information import CLEAR, VAGUE, collinearity, deviations, eliminated, inverse, principal, varimax, within
-from calibration.parameters import ParameterSpace, slopes
+from calibration.information import CLEAR, collinearity, deviations, eliminated, inverse, principal, varimax, within
+from calibration.parameters import VAGUE, ParameterSpace, slopes
 from calibration.statements import Collinear, Combination, Direction, Fix, Parameters
 from jaxhydro.drag_laws import coefficient_label
 from jaxhydro.loads.sea_state_law import is_exponent

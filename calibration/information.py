@@ -4,6 +4,8 @@ import numpy as np
 
 LEAST_VARIANCE = 1e-20  # m2, rad2: a record made without noise is not known to better than a sensor's last digit
 
+CLEAR = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
+
 
 def eliminated(
     products: np.ndarray, weight: np.ndarray, variance: np.ndarray, inflation: np.ndarray, shared: int
@@ -74,5 +76,3 @@ def varimax(axes: np.ndarray) -> np.ndarray:
         u, _, v = np.linalg.svd(axes.T @ (axes @ turn) ** 3)
         turn = u @ v
     return axes @ turn
-CLEAR = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
-VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way

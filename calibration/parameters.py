@@ -10,13 +10,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.information import VAGUE
 from calibration.transforms import AbstractTransform, Interval, LogInterval, Scaled
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
 from jaxhydro.problems import InputError, Problem, suggest
 
+VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
 RANGE = 1000.0  # a positive parameter may move by this factor from where it starts, within what its load allows
 NEVER = ("mooring.", "stiffness.")  # what a decay cannot tell from inertia is left alone unless asked for
 

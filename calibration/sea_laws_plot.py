@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from calibration.formatting import readable_unit
 from calibration.sea_laws import LawFit, SeaLaws
-from calibration.sea_laws_tables import NAMES
+from calibration.vocabulary import LAW_NAMES
 from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WAVE, header, stack
 from jaxhydro.waves.sea_state import SeaState
 
@@ -48,7 +48,7 @@ def coefficient(found: SeaLaws, label: str) -> Figure:
 
 
 def _name(law: LawFit, found: SeaLaws) -> str:
-    return f"{NAMES[law.name]}{', chosen' if law is found.chosen else ''}"
+    return f"{LAW_NAMES[law.name]}{', chosen' if law is found.chosen else ''}"
 
 
 def _states(found: SeaLaws, heights: np.ndarray) -> list[SeaState]:

@@ -4,19 +4,14 @@ from collections.abc import Iterator
 
 from calibration.formatting import number, percent, with_deviation
 from calibration.sea_laws import SeaLaws
-from calibration.vocabulary import Rows
+from calibration.vocabulary import LAW_NAMES, Rows
 from jaxhydro.waves.sea_state import SeaState
-
-NAMES = {
-    "constant": "constant", "significant_height": "power of Hs", "peak_period": "power of Tp", "both": "powers of Hs and Tp",
-    "keulegan_carpenter": "power of KC", "high_pass": "slow motion apart",
-}  # fmt: skip
 
 
 def laws_table(found: SeaLaws) -> Rows:
     """Errors of every law, the chosen one marked."""
     rows = [
-        (NAMES[law.name], str(len(law.added())), number(law.fitted, 3), number(law.held_out, 3),
+        (LAW_NAMES[law.name], str(len(law.added())), number(law.fitted, 3), number(law.held_out, 3),
          "chosen" if law is found.chosen else "") for law in found.laws
     ]  # fmt: skip
     judged = "left out in turn" if found.left_out else "held out"
@@ -46,9 +41,9 @@ def sentence(found: SeaLaws) -> str:
     """Which law, and what it gains."""
     chosen, plain = found.chosen, found.laws[0]
     if not found.finished:
-        return f"Stopped by the user: of {', '.join(NAMES[law.name] for law in found.laws)} the best is {NAMES[chosen.name]}"
+        return f"Stopped by the user: of {', '.join(LAW_NAMES[law.name] for law in found.laws)} the best is {LAW_NAMES[chosen.name]}"
     by = f"{', '.join(found.judged_by)} {'left out in turn' if found.left_out else 'held out'}"
     if chosen is plain:
-        return f"No law does better than {NAMES[plain.name]} coefficients on {by} (error {number(plain.held_out, 3)})"
-    gain = f"error {number(plain.held_out, 3)} of {NAMES[plain.name]} coefficients to {number(chosen.held_out, 3)}"
-    return f"Chosen by {by}: {NAMES[chosen.name]}, {gain}"
+        return f"No law does better than {LAW_NAMES[plain.name]} coefficients on {by} (error {number(plain.held_out, 3)})"
+    gain = f"error {number(plain.held_out, 3)} of {LAW_NAMES[plain.name]} coefficients to {number(chosen.held_out, 3)}"
+    return f"Chosen by {by}: {LAW_NAMES[chosen.name]}, {gain}"

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.formatting import listed, number, percent, readable_unit, with_deviation
-from calibration.information import VAGUE
+from calibration.parameters import VAGUE
 
 SMALL = 0.005  # weight of a combination, the largest 1, that is not told
 

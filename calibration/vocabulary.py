@@ -7,3 +7,7 @@ USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
 KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regular waves"}
 UNDETERMINED = "not determined"
 BANDS = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
+LAW_NAMES = {
+    "constant": "constant", "significant_height": "power of Hs", "peak_period": "power of Tp", "both": "powers of Hs and Tp",
+    "keulegan_carpenter": "power of KC", "high_pass": "slow motion apart",
+}  # fmt: skip

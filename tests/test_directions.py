@@ -17,9 +17,9 @@ from calibration.directions import TOLD, Identifiability, identifiability
 from calibration.fit import Fit, pose, run
 from calibration.fit_uncertainty import identifiability_of
 from calibration.identifiability import spread
-from calibration.information import CLEAR, VAGUE, collinearity, eliminated, varimax
+from calibration.information import CLEAR, collinearity, eliminated, varimax
 from calibration.manifest import Test
-from calibration.parameters import parameter_space
+from calibration.parameters import VAGUE, parameter_space
 from calibration.records import Record
 from calibration.residuals import Unknowns, first_guess
 from calibration.statements import Parameters

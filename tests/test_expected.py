@@ -19,8 +19,7 @@ from calibration.discovery.looks import Prior, Series
 from calibration.discovery.pose import ANCHORED, ANCHORED_DAMPING, Posed, width_of
 from calibration.discovery.search import Search
 from calibration.discovery.study import Study
-from calibration.information import VAGUE
-from calibration.parameters import Free, ParameterSpace
+from calibration.parameters import VAGUE, Free, ParameterSpace
 from calibration.transforms import Scaled
 from jaxhydro.waves.support_sea import Clock
 

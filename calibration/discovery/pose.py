@@ -15,9 +15,8 @@ from calibration.discovery.looks import Prior
 from calibration.discovery.nearly_known import PRETENSION, STIFFNESS
 from calibration.discovery.study import Study
 from calibration.fit import labels_of, space_of
-from calibration.information import VAGUE
 from calibration.manifest import IN_WAVES
-from calibration.parameters import Free, ParameterSpace
+from calibration.parameters import VAGUE, Free, ParameterSpace
 from calibration.seas import Options, moving_channels, sea_step, with_diffraction
 from calibration.transforms import LogInterval, Scaled
 from jaxhydro.environment import DOFS
