@@ -41,7 +41,8 @@ def sentence(found: SeaLaws) -> str:
     """Which law, and what it gains."""
     chosen, plain = found.chosen, found.laws[0]
     if not found.finished:
-        return f"Stopped by the user: of {', '.join(LAW_NAMES[law.name] for law in found.laws)} the best is {LAW_NAMES[chosen.name]}"
+        tried = ", ".join(LAW_NAMES[law.name] for law in found.laws)
+        return f"Stopped by the user: of {tried} the best is {LAW_NAMES[chosen.name]}"
     by = f"{', '.join(found.judged_by)} {'left out in turn' if found.left_out else 'held out'}"
     if chosen is plain:
         return f"No law does better than {LAW_NAMES[plain.name]} coefficients on {by} (error {number(plain.held_out, 3)})"

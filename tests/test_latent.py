@@ -17,8 +17,9 @@ from scipy.signal import hilbert
 from test_discovery import NOISE, PLATFORM
 
 from calibration.discovery.gathering import highest_of
-from calibration.discovery.latent import Force, Moved, forces_of, latent_forces, latent_of
+from calibration.discovery.latent import forces_of, latent_forces, latent_of
 from calibration.discovery.latent_law import IN_STILL_WATER, LAGGED, Part, best, law_of
+from calibration.discovery.latent_record import Force, Moved
 from calibration.discovery.latent_words import described, law_in_words
 from calibration.discovery.outputs import write_diagnosis
 from calibration.discovery.result import Law, LawTerm

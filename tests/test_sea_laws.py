@@ -18,9 +18,10 @@ from calibration.outputs import write_calibration
 from calibration.sea_laws import LawFit, SeaLaws, choose_law, error, with_uses
 from calibration.sea_laws_outputs import document as document_of_laws
 from calibration.sea_laws_outputs import write_laws
-from calibration.sea_laws_tables import NAMES, laws_table, sentence, states_table
+from calibration.sea_laws_tables import laws_table, sentence, states_table
 from calibration.seas import Options, compare, seas_of, with_diffraction
 from calibration.stretches import sea_state, stretches, walk
+from calibration.vocabulary import LAW_NAMES
 from jaxhydro.command import with_calibration
 from jaxhydro.drag_laws import drag_laws_of, surface_number
 from jaxhydro.environment import DOFS
@@ -356,7 +357,7 @@ def test_a_coefficient_by_laws_of_drag(fitted, drag) -> None:
     there = drag_laws_of(changed)["column.Cd_t"]
     ratio = (number**2 + 0.01) / (there.reference**2 + 0.01) if name == "keulegan_carpenter" else 1.0
     assert value == pytest.approx(plain * ratio**-0.25)
-    assert laws_table(SeaLaws((law,), (), ("sea-2",), False))[1][0][0] == NAMES[name]
+    assert laws_table(SeaLaws((law,), (), ("sea-2",), False))[1][0][0] == LAW_NAMES[name]
 
 
 @pytest.mark.validate

@@ -17,8 +17,8 @@ motions that were not measured too, and sensors are taken to read the motion.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import equinox as eqx
 import jax
@@ -30,6 +30,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from calibration.discovery.gathering import highest_of
 from calibration.discovery.latent_law import law_of
+from calibration.discovery.latent_record import Force, Moved, filtered
 from calibration.discovery.latent_words import described
 from calibration.discovery.result import LatentForce
 from calibration.result import Calibration
@@ -45,67 +46,8 @@ LINES = 5  # of the periodogram that are averaged
 HARMONICS = 6.0  # times a decay's own frequency: what is faster moves the body little, and is not looked at
 OVER = 3.0  # times the noise, that is taken off it
 DAMPING = 0.03  # of critical
-VISIBLE = 20.0  # times the noise, in power, that the highest peak of a force has: without it there is none
 TAPERED = 0.1  # of the record at each end, at most
 CHUNK = 512  # instants at a time
-
-
-class Moved(NamedTuple):
-    """A test on an even clock (s): motions (m, rad) measured and simulated, noise, the sea that it was in, and its wave (m)."""
-
-    id: str
-    use: str
-    kind: str
-    time: np.ndarray
-    measured: Mapping[str, np.ndarray]
-    simulated: Mapping[str, np.ndarray]
-    noise: Mapping[str, float]
-    sea: AbstractSea
-    wave: np.ndarray | None = None
-
-    @property
-    def step(self) -> float:
-        """s"""
-        return float(self.time[1] - self.time[0])
-
-
-class Force(NamedTuple):
-    """The latent force (N, N m) of one motion of a test; motion (m, rad; /s; /s2) and force all along its clock, and the
-    `simulated` motion and its rate without it. Of these `inside` is to be believed. `gain` by Fourier line and `taper` in time
-    are what the force was seen through, `noise` (N, N m) what the sensor's noise leaves in it, `peak` by how much its spectrum
-    is above that at most, in power."""
-
-    test: Moved
-    motion: str
-    force: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
-    simulated: tuple[np.ndarray, np.ndarray]
-    gain: np.ndarray
-    taper: np.ndarray
-    inside: slice
-    noise: float
-    peak: float
-
-    def seen(self, values: np.ndarray) -> np.ndarray:
-        """What the reconstruction would have left of a force."""
-        return filtered(values * self.taper, self.gain)
-
-    @property
-    def root_mean_square(self) -> float:
-        """N, N m"""
-        return float(np.sqrt(np.mean(self.force[self.inside] ** 2)))
-
-    @property
-    def visible(self) -> bool:
-        """Whether it is more than noise."""
-        return self.peak > VISIBLE and self.root_mean_square > 0
-
-
-def filtered(values: np.ndarray, gain: np.ndarray) -> np.ndarray:
-    """A series (n,) with its Fourier lines times a gain."""
-    return np.fft.irfft(gain * np.fft.rfft(values), len(values))
 
 
 def peak_of(values: np.ndarray) -> int:

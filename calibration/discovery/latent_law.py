@@ -14,16 +14,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import hilbert
 
+from calibration.discovery.latent_record import Force
 from calibration.discovery.result import Law, LawTerm
 from jaxhydro.environment import DOFS
-
-if TYPE_CHECKING:
-    from calibration.discovery.latent import Force
 
 MOST = 3  # terms
 BETTER = 0.03  # by which the held-out share has to rise for another term

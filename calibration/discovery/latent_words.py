@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import signal
 
 from calibration.discovery.latent_law import LAGGED, LAGS, columns_of, squared_envelope
+from calibration.discovery.latent_record import Force
 from calibration.discovery.result import Followed, LatentForce, Law, LawTerm, Shown
 from calibration.formatting import listed, number, percent, quantity, readable_unit
 from calibration.sea_errors import bands_of
 from calibration.signals import SEGMENT, peak_frequency, wave_height
 from jaxhydro.environment import DOFS
-
-if TYPE_CHECKING:
-    from calibration.discovery.latent import Force
 
 CYCLES = 4.0  # of a decay's own period in a segment
 FEWEST = 4  # segments, and cycles
