@@ -18,7 +18,7 @@ from jaxhydro.waves.sea_state import SeaState
 
 OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in one basin, not to the hull
     "mooring.", "stiffness.", "mooring_nonlinearity.", "umbilical.", "current.", "static_offset.", "mass_properties.",
-    "sensor_reference.", "sensor_lag.", "wave_gauge_position.", "wave_reflection.",
+    "guided_masses.", "sensor_reference.", "sensor_lag.", "wave_gauge_position.", "wave_reflection.",
 )  # fmt: skip
 
 

@@ -168,7 +168,7 @@ def family(label: str) -> str:
     if is_exponent(label) or coefficient_label(label) is not None:
         return "exponent"
     head, _, name = label.rpartition(".")
-    if head == "added_mass" or name.startswith("Ca"):
+    if head == "added_mass" or head.startswith("guided_masses.") or name.startswith("Ca"):
         return "inertia"
     return "damping" if head.endswith("damping") or name.startswith("Cd") else "restoring"
 

@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from calibration.transforms import AbstractTransform, Interval, LogInterval, Scaled
+from jaxhydro.coefficient_labels import shared_hint
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.model import Model
@@ -18,7 +19,7 @@ from jaxhydro.problems import InputError, Problem, suggest
 
 VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
 RANGE = 1000.0  # a positive parameter may move by this factor from where it starts, within what its load allows
-NEVER = ("mooring.", "stiffness.")  # what a decay cannot tell from inertia is left alone unless asked for
+NEVER = ("mooring.", "stiffness.", "guided_masses.")  # what a decay cannot tell from inertia is left alone unless asked for
 
 
 class Free(NamedTuple):
@@ -92,7 +93,7 @@ def choose(
     """Labels of the free parameters, from patterns such as `column.*`. Raises InputError for a pattern that fits none."""
     known = tuple(model.values)
     problems = [
-        Problem(f"calibrate.{key}", f"a parameter of this platform ({', '.join(known)})", pattern, suggest(pattern, known))
+        Problem(f"calibrate.{key}", f"a parameter of this platform ({', '.join(known)})", pattern, _hint(pattern, known, model))
         for key, patterns in (("free", free or ()), ("fixed", fixed))
         for pattern in patterns
         if not fnmatch.filter(known, pattern)
@@ -119,7 +120,9 @@ def parameter_space(
     bounds, priors, free, problems = bounds or {}, priors or {}, [], []
     for key, given in (("bounds", bounds), ("priors", priors)):
         problems += [
-            Problem(f"calibrate.{key}.{label}", f"a free parameter ({', '.join(labels)})", "another", suggest(label, labels))
+            Problem(
+                f"calibrate.{key}.{label}", f"a free parameter ({', '.join(labels)})", "another", _hint(label, labels, model)
+            )
             for label in given
             if label not in labels
         ]
@@ -158,6 +161,10 @@ def parameter_space(
     if problems:
         raise InputError(source, problems)
     return ParameterSpace(tuple(free))
+
+
+def _hint(label: str, known: Sequence[str], model: Model) -> str:
+    return shared_hint(label, model.hull.elements.shares) or suggest(label, known)
 
 
 def slopes(space: ParameterSpace, x: np.ndarray) -> np.ndarray:

@@ -190,6 +190,10 @@ class Member(Consistent):
 
 
 Share = Annotated[float, Field(strict=True, ge=0, le=1)]
+Coefficient = Annotated[
+    Annotated[NonNegative, Tag("number")] | Annotated[Text, Tag("group")],
+    Discriminator(lambda value: "group" if isinstance(value, str) else "number"),
+]
 
 
 class ConstantDrag(Schema):
@@ -230,13 +234,18 @@ class SuctionSide(Schema):
     suction: Share = 1.0
 
 
-class Coefficients(Schema):
-    """Added mass and drag of a group of members: t transverse, z vertical of a pontoon or axial at a column's end."""
+COEFFICIENTS = ("Ca_t", "Ca_z", "Cd_t", "Cd_z")
 
-    Ca_t: NonNegative = 0.0
-    Ca_z: NonNegative = 0.0
-    Cd_t: NonNegative = 0.0
-    Cd_z: NonNegative = 0.0
+
+class Coefficients(Schema):
+    """Added mass and drag of a group of members: t transverse, z vertical of a pontoon or axial at a column's end.
+
+    A coefficient is a number, or the name of another group whose coefficient it is."""
+
+    Ca_t: Coefficient = 0.0
+    Ca_z: Coefficient = 0.0
+    Cd_t: Coefficient = 0.0
+    Cd_z: Coefficient = 0.0
     drag_t: ConstantDrag | HighPass | KeuleganCarpenter = Field(
         default=ConstantDrag(),
         discriminator="law",
@@ -249,5 +258,9 @@ class Coefficients(Schema):
     )
 
     def numbers(self) -> dict[str, float]:
-        """The coefficients by name."""
-        return {"Ca_t": self.Ca_t, "Ca_z": self.Ca_z, "Cd_t": self.Cd_t, "Cd_z": self.Cd_z}
+        """The group's own coefficients by name."""
+        return {name: value for name in COEFFICIENTS if not isinstance(value := getattr(self, name), str)}
+
+    def shared(self) -> dict[str, str]:
+        """The groups whose coefficients it shares, by the coefficient's name."""
+        return {name: value for name in COEFFICIENTS if isinstance(value := getattr(self, name), str)}

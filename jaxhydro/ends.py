@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.coefficient_labels import Shares, parameter_labels, shares_of
 from jaxhydro.strips import Member, Strips
 from jaxhydro.waterplane import wet_section
 
@@ -30,6 +31,11 @@ class Ends(eqx.Module):
     label: tuple[int, ...] = eqx.field(static=True)
     labels: tuple[str, ...] = eqx.field(static=True)
     strip: tuple[int, ...] = eqx.field(static=True)  # the strip of every face
+    shares: Shares = eqx.field(static=True, default=())
+
+    def parameters(self, symbol: str) -> list[str]:
+        """Labels of a parameter, such as column.Cd_z of `symbol` Cd, in the order of `labels`."""
+        return parameter_labels([(group, "z") for group in self.labels], symbol, self.shares)
 
 
 class _End(NamedTuple):
@@ -84,7 +90,8 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     vectors = [np.array(column, float).reshape(-1, 3).T for column in columns[:3]]
     numbers = [np.array(column, float) for column in columns[3:-1]]
     fields: dict[str, Any] = dict(zip(_End._fields, map(jnp.asarray, (*vectors, *numbers))))
-    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of))
+    shares = shares_of((member.group, member.shared) for member in members)
+    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of), shares=shares)
 
 
 def _free(rows: Sequence[_End]) -> list[_End]:

@@ -9,6 +9,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.coefficient_labels import sharing
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, EndShape, Instant, Lines, Parameter, StripShape
@@ -130,7 +131,9 @@ class Model(eqx.Module):
         """
         for load in self.loads:
             if label in load.values:
-                return load.about(label).sized(float(self.size), float(self.pace))
+                found = load.about(label).sized(float(self.size), float(self.pace))
+                others = sharing(label, self.hull.elements.shares)
+                return found._replace(meaning=f"{found.meaning}; shared by {', '.join(others)}") if others else found
         raise KeyError(f"no parameter {label!r}; there are: {', '.join(sorted(self.values))}")
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":

@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro import platform_schema as schema
+from jaxhydro.coefficient_labels import shared_hint, shares_of
 from jaxhydro.computed import tables_of
 from jaxhydro.computed_hydrostatics import with_hydrostatics
 from jaxhydro.drag_laws import DragLaw, plain_drag, with_drag_laws
@@ -22,6 +23,7 @@ from jaxhydro.loads import (
     Buoyancy,
     EndDrag,
     EndInertia,
+    GuidedMasses,
     LinearDamping,
     MooringLines,
     QuadraticDamping,
@@ -74,6 +76,7 @@ def build(platform: schema.Platform) -> Model:
         letter = "A" if name == "added_mass" else "B"
         if values := _entries(f"{name}.{letter}", matrix):
             loads.append(load(values))
+    loads += _guided(platform)
     computed, said = tables_of(platform, declared)
     loads += computed
     if values := _entries("stiffness.C", platform.stiffness.matrix()):
@@ -84,8 +87,8 @@ def build(platform: schema.Platform) -> Model:
             for group, row in platform.coefficients.items()
             for name, value in row.numbers().items()
         }
-        of_strips = {kind: {f"{g}.{kind}_{t}" for g, t in hull.elements.labels} for kind in ("Ca", "Cd")}
-        of_ends = {kind: {f"{g}.{kind}_z" for g in hull.ends.labels} for kind in ("Ca", "Cd")}
+        of_strips = {symbol: set(hull.elements.parameters(symbol)) for symbol in ("Ca", "Cd")}
+        of_ends = {symbol: set(hull.ends.parameters(symbol)) for symbol in ("Ca", "Cd")}
 
         def pick(labels: set[str]) -> dict:
             return {label: value for label, value in coefficients.items() if label in labels}
@@ -131,7 +134,8 @@ def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tupl
     if unknown := [label for label in declared.exponents if label not in known]:
         where = f"sea_state_laws.exponents.{unknown[0]}"
         known = [label for label in known if not label.startswith(("mooring.", "stiffness."))]
-        expected, hint = f"a coefficient ({', '.join(known)})", suggest(unknown[0], known)
+        shares = shares_of((group, row.shared()) for group, row in platform.coefficients.items())
+        expected, hint = f"a coefficient ({', '.join(known)})", shared_hint(unknown[0], shares) or suggest(unknown[0], known)
         raise InputError(platform.name, [Problem(where, expected, repr(unknown[0]), hint)])
     exponents = {
         exponent_label(label, over): value
@@ -146,7 +150,7 @@ def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
     problems = [
         Problem(f"coefficients.{group}.drag_z", "no suction side, which the ends of columns have", "a group of pontoons")
         for group, row in platform.coefficients.items()
-        if group not in model.hull.ends.labels and getattr(row.drag_z, "suction", None) is not None
+        if f"{group}.Cd_z" not in model.hull.ends.parameters("Cd") and getattr(row.drag_z, "suction", None) is not None
     ]
     if problems:
         raise InputError(platform.name, problems)
@@ -177,6 +181,7 @@ def members_of(platform: schema.Platform) -> list[Member]:
                     elements=member.elements,
                     maccamy_fuchs=member.maccamy_fuchs,
                     points=member.points,
+                    shared=platform.coefficients[member.group].shared(),
                 )
             )
     return members
@@ -184,6 +189,13 @@ def members_of(platform: schema.Platform) -> list[Member]:
 
 def _entries(prefix: str, matrix: np.ndarray) -> dict:
     return {f"{prefix}{i + 1}{j + 1}": jnp.asarray(matrix[i, j]) for i in range(6) for j in range(6) if matrix[i, j] != 0.0}
+
+
+def _guided(platform: schema.Platform) -> list[AbstractLoad]:
+    if not (masses := platform.guided_masses):
+        return []
+    points, along = np.array([mass.point for mass in masses], float), tuple(mass.axes() for mass in masses)
+    return [GuidedMasses.of({mass.name: mass.mass for mass in masses}, points, along, tuple(mass.weight for mass in masses))]
 
 
 def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
@@ -205,7 +217,7 @@ def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
 def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:
     """Buoyancy with what the platform file declares in place of what the members give.
 
-    Without members the volume is that which balances the mass and the mooring's pull at the reference position.
+    Without members the volume is that which balances the weight and the mooring's pull at the reference position.
     """
     declared, water = platform.hydrostatics, platform.water
     weight_density = water.density * water.gravity
@@ -213,7 +225,8 @@ def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: floa
     volume = declared.displaced_volume
     if volume is None:
         pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else _line_pull(m) for m in _mooring(platform))
-        volume = own["displaced_volume"] if platform.members else mass / water.density - pull / weight_density
+        borne = mass + sum(guided.mass for guided in platform.guided_masses if guided.weight)
+        volume = own["displaced_volume"] if platform.members else borne / water.density - pull / weight_density
     force = weight_density * (volume - own["displaced_volume"])
     weight_share = mass * water.gravity * centre  # of C44 and C55, with the sign of -m g z_G
     stiffness = []

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Discriminator, Field, RootModel, Tag, model
 
 from jaxhydro.body_schema import Coefficients, Inertia, Member, Part, RigidBody
 from jaxhydro.environment import STANDARD_GRAVITY
+from jaxhydro.guided_mass_schema import GuidedMass, twice_named
 from jaxhydro.interop.tables import By, same_heading
 from jaxhydro.problems import (
     Consistent,
@@ -30,6 +31,7 @@ from jaxhydro.problems import (
     suggest,
     validate,
 )
+from jaxhydro.shared_coefficients import owners, sharing_faults
 
 __all__ = ["Coefficients", "Inertia", "Member", "Part", "Platform", "RigidBody", "builtin_platforms", "load_platform"]
 
@@ -326,6 +328,7 @@ class Platform(Consistent):
     name: Text
     water: Water
     rigid_body: RigidBody
+    guided_masses: tuple[GuidedMass, ...] = ()
     members: tuple[Member, ...] = ()
     coefficients: dict[Text, Coefficients] = {}
     linear_damping: LinearDamping = LinearDamping()
@@ -364,8 +367,11 @@ class Platform(Consistent):
             for end in ("rA", "rB"):
                 if (z := getattr(member, end)[2]) < bed:
                     yield Problem(f"members[{i}].{end}", f"a point above the sea bed, z = {bed:g} m", f"z = {z:g} m")
+        yield from twice_named(self.guided_masses)
         groups = {member.group for member in self.members}
-        missing, unused = sorted(groups - set(self.coefficients)), [g for g in self.coefficients if g not in groups]
+        yield from sharing_faults(self.coefficients, groups)
+        missing = sorted(groups - set(self.coefficients))
+        unused = [g for g in self.coefficients if g not in groups | owners(self.coefficients)]
         for group in missing:
             i = next(i for i, member in enumerate(self.members) if member.group == group)
             known, hint = ", ".join(self.coefficients) or "none", suggest(group, self.coefficients)

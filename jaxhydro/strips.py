@@ -14,7 +14,7 @@ exact, forces are smooth in the motion, and no strip is spent on what is dry.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -23,6 +23,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.coefficient_labels import Shares, parameter_labels, shares_of
 from jaxhydro.waterplane import wet_section
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
@@ -40,7 +41,8 @@ class Member(NamedTuple):
     """One straight member: ends a, b (m), station sizes along it, and the group whose coefficients it uses.
 
     `stations` are fractions 0..1 of the length, `sizes` (station, 2) the extents (m) along direction 1 and 2: a diameter twice,
-    or width and height. `twist` (rad) turns the directions about the axis.
+    or width and height. `twist` (rad) turns the directions about the axis. `shared` names the groups whose coefficients
+    it uses in place of its own group's, by the coefficient's name, such as Ca_t.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Member(NamedTuple):
     elements: int | None = None
     maccamy_fuchs: bool | None = None  # None: where it is vertical, circular and pierces the surface
     points: int = 2  # strips of each of `elements`; 1: lumped at its middle
+    shared: Mapping[str, str] = {}
 
     @property
     def axis(self) -> np.ndarray:
@@ -208,6 +211,11 @@ class Elements(eqx.Module):
     circle: Float[Array, " e"]  # 1: wet by the segment of a circle (a cylinder that lies at the surface), 0: evenly
     label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and element
     labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
+    shares: Shares = eqx.field(static=True, default=())
+
+    def parameters(self, symbol: str) -> list[str]:
+        """Labels of a parameter, such as column.Cd_t of `symbol` Cd, in the order of `labels`."""
+        return parameter_labels(self.labels, symbol, self.shares)
 
 
 _STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")
@@ -272,4 +280,5 @@ def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]
     strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
     names = ("start", "axis", "length", "thickness", "gauge", "circle")
     of_elements: dict[str, Any] = dict(zip(names, map(jnp.asarray, whole), strict=True))
-    return Elements(**of_elements, label=label_of, labels=tuple(labels)), strips
+    shares = shares_of((member.group, member.shared) for member in members)
+    return Elements(**of_elements, label=label_of, labels=tuple(labels), shares=shares), strips

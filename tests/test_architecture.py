@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.excitation", "jaxhydro.remarks"),
-    ("jaxhydro.scales",),
+    ("jaxhydro.scales", "jaxhydro.coefficient_labels"),
     ("jaxhydro.waterplane",),
     ("jaxhydro.waves.transfer", "jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta", "jaxhydro.waves.continuation"),
     ("jaxhydro.ends", "jaxhydro.adams_bashforth"),
@@ -34,11 +34,12 @@ LAYERS = (  # a module imports from layers below its own
     # files in, files out: the edge
     ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start", "jaxhydro.interrupts"),
     ("jaxhydro.problems",),
-    ("jaxhydro.body_schema", "jaxhydro.files", "jaxhydro.interop.coefficients", "jaxhydro.interop.tables"),
+    ("jaxhydro.body_schema", "jaxhydro.guided_mass_schema", "jaxhydro.files"),
+    ("jaxhydro.interop.coefficients", "jaxhydro.interop.tables"),
     ("jaxhydro.interop.wamit", "jaxhydro.interop.capytaine", "jaxhydro.retardation"),
     ("jaxhydro.interop.quadratic_transfer", "jaxhydro.interop.excitation", "jaxhydro.interop.hydrostatics"),
     ("jaxhydro.interop.capytaine_waves",),
-    ("jaxhydro.interop",),
+    ("jaxhydro.interop", "jaxhydro.shared_coefficients"),
     ("jaxhydro.platform_schema", "jaxhydro.drag_laws", "jaxhydro.table_checks"),
     ("jaxhydro.computed_hydrostatics",),
     ("jaxhydro.computed",),

@@ -97,6 +97,10 @@ EVERYTHING = {
     "linear_damping": {"B11": 4e4, "B33": 1e5, "B55": 3e8, "B15": 1e5},
     "quadratic_damping": {"B22": 3e5, "B44": 1e9},
     "added_mass": {"A33": 2e6, "A15": 1e6},
+    "guided_masses": [
+        {"name": "rod", "mass": 2e5, "point": [2.0, -3.0, 5.0], "moves": ["z"], "weight": True},
+        {"name": "carriage", "mass": 5e5, "point": [4.0, 1.0, -6.0], "moves": ["x", "y"]},
+    ],
     "stiffness": {"C11": 2e4, "C35": 4e5},
     "mooring": SPRINGS,
 }

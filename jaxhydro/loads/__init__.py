@@ -13,6 +13,7 @@ from jaxhydro.loads.current import Current
 from jaxhydro.loads.drift_transfer import DriftTransfer
 from jaxhydro.loads.end_drag import EndDrag
 from jaxhydro.loads.end_inertia import EndInertia
+from jaxhydro.loads.guided_masses import GuidedMasses
 from jaxhydro.loads.hidden_oscillator import HiddenOscillator
 from jaxhydro.loads.high_pass_drag import HighPassDrag
 from jaxhydro.loads.hydrostatic_coupling import HydrostaticCoupling
@@ -52,6 +53,7 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "linear_damping": LinearDamping,
     "quadratic_damping": QuadraticDamping,
     "added_mass": AddedMass,
+    "guided_masses": GuidedMasses,
     "strip_inertia": StripInertia,
     "strip_drag": StripDrag,
     "end_inertia": EndInertia,

@@ -74,13 +74,13 @@ def end_area(now: Instant, values: Values) -> Float[Array, " m"]:
 def lines_of(hull: Hull, labels: Iterable[str], both: bool = False) -> tuple[int, ...]:
     """Lines whose drag coefficient is among `labels`, in order; `both`: and the other directions of their strips."""
     known, elements = set(labels), hull.elements
-    names = [f"{group}.Cd_{kind}" for group, kind in elements.labels]
+    names, of_ends = elements.parameters("Cd"), hull.ends.parameters("Cd")
     strips = np.array([[names[row[e]] in known for e in hull.strips.element] for row in elements.label], bool)
     strips = strips.reshape(2, len(hull.strips.element))
     if both:
         strips = strips | strips[::-1]
     wide = np.asarray(hull.ends.radius) > 0
-    ends = [bool(wide[i]) and f"{hull.ends.labels[k]}.Cd_z" in known for i, k in enumerate(hull.ends.label)]
+    ends = [bool(wide[i]) and of_ends[k] in known for i, k in enumerate(hull.ends.label)]
     return tuple(map(int, np.flatnonzero(np.concatenate([strips.reshape(-1), np.array(ends, bool)]))))
 
 

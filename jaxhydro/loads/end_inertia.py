@@ -16,7 +16,7 @@ def spread_ends(
     """Coefficients `group.symbol_z` by end; `missing` where there is none. KeyError if that is None."""
     if not ends.labels:
         return jnp.zeros(len(ends.label))
-    labels = [f"{group}.{symbol}_z" for group in ends.labels]
+    labels = ends.parameters(symbol)
     stacked = jnp.stack([jnp.asarray(values[x] if missing is None else values.get(x, missing)) for x in labels])
     return stacked[jnp.asarray(ends.label)]
 

@@ -96,12 +96,15 @@ def with_exponents(
     loads: tuple[AbstractLoad, ...], exponents: Mapping[str, Any], reference: SeaState
 ) -> tuple[AbstractLoad, ...]:
     """Loads, those with coefficients that have exponents replaced by their laws; a law's own are kept, as long as its
-    reference is the same. Raises KeyError for an exponent of no load's coefficient, ValueError for another reference."""
-    left, found = dict(exponents), []
+    reference is the same. Several loads may have one coefficient.
+
+    Raises KeyError for an exponent of no load's coefficient, ValueError for another reference."""
+    left, found = set(exponents), []
     if not all(math.isfinite(x) and x > 0 for x in reference):
         raise ValueError(f"reference: expected a significant height and a peak period above 0, found {reference}")
     for load in loads:
-        mine = {label: left.pop(label) for label in list(left) if split(label)[0] in load.values}
+        mine = {label: value for label, value in exponents.items() if split(label)[0] in load.values}
+        left -= mine.keys()
         if not mine:
             found.append(load)
         elif not isinstance(load, SeaStateLaw):
@@ -114,5 +117,6 @@ def with_exponents(
             found.append(SeaStateLaw.of(base, kept | mine, reference))
     if left:
         known = ", ".join(label for load in loads for label in load.values)
-        raise KeyError(f"no coefficient {split(next(iter(left)))[0]!r}; there are: {known}")
+        lost = next(label for label in exponents if label in left)
+        raise KeyError(f"no coefficient {split(lost)[0]!r}; there are: {known}")
     return tuple(found)

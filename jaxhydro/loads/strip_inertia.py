@@ -17,7 +17,7 @@ def spread(
     that is None."""
     if not elements.labels:
         return jnp.zeros((2, 0))
-    labels = [f"{group}.{symbol}_{kind}" for group, kind in elements.labels]
+    labels = elements.parameters(symbol)
     stacked = jnp.stack([jnp.asarray(values[x] if missing is None else values.get(x, missing)) for x in labels])
     return stacked[jnp.asarray(elements.label)]
 

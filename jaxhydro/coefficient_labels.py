@@ -1,0 +1,48 @@
+"""Labels of members' coefficients, such as column.Cd_t, where groups may share one."""
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+OF_ADDED_MASS = ("Ca", "Cp")  # symbols of what goes with Ca; all others go with Cd
+
+
+class Share(NamedTuple):
+    """A coefficient, Ca_t for example, that a group has from the group `owner`."""
+
+    group: str
+    name: str
+    owner: str
+
+
+Shares = tuple[Share, ...]
+
+
+def shares_of(groups: Iterable[tuple[str, Mapping[str, str]]]) -> Shares:
+    """What groups share, from each group's mapping of a coefficient's name to its owner."""
+    return tuple(dict.fromkeys(Share(group, name, owner) for group, row in groups for name, owner in row.items()))
+
+
+def coefficient_of(symbol: str, kind: str) -> str:
+    """The coefficient that a parameter `symbol` (Cp, drag_exponent) of a `kind` (t, z) goes with."""
+    return f"{'Ca' if symbol in OF_ADDED_MASS else 'Cd'}_{kind}"
+
+
+def parameter_labels(rows: Iterable[tuple[str, str]], symbol: str, shares: Shares) -> list[str]:
+    """Labels of a parameter `symbol` (Ca, Cd, Cp, drag_exponent) for each group and kind (t, z)."""
+    owner = {(one.group, one.name): one.owner for one in shares}
+    return [f"{owner.get((group, coefficient_of(symbol, kind)), group)}.{symbol}_{kind}" for group, kind in rows]
+
+
+def sharing(label: str, shares: Shares) -> tuple[str, ...]:
+    """Groups that share the coefficient of a label with its owner; none where it is nobody else's."""
+    owner, _, parameter = label.rpartition(".")
+    symbol, _, kind = parameter.rpartition("_")
+    return tuple(one.group for one in shares if (one.owner, one.name) == (owner, coefficient_of(symbol, kind)))
+
+
+def shared_hint(label: str, shares: Shares) -> str:
+    """A hint for the label of a coefficient that is another group's: where it is; nothing for one that is not shared."""
+    group, _, parameter = label.rpartition(".")
+    symbol, _, kind = parameter.rpartition("_")
+    owners = [one.owner for one in shares if (one.group, one.name) == (group, coefficient_of(symbol, kind))]
+    return f"It is shared: {owners[0]}.{parameter}." if owners else ""

@@ -1,0 +1,73 @@
+"""Masses that follow a point of the platform in some directions only: a carriage on rails, a heave rod."""
+
+from typing import Any, ClassVar, Self
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.rotations import cross
+
+EFFECT = "guided_masses"
+
+
+class GuidedMasses(AbstractLoad):
+    """F = -m (e . a_P) e at the point P of the body, for every earth axis e along which the mass m follows P.
+
+    A guide keeps the mass from moving in the other directions, and takes what that needs, without friction. The force is
+    what d'Alembert's principle has of a particle that is constrained to e: it does the virtual work -m (e . a_P)(e . dP)
+    (Goldstein, Poole and Safko 2002, Classical Mechanics, 3rd edition, eq. 1.45). So its inertia about the reference point
+    is m g g^T, g = (e, r x e) in body axes, r the point's place in the body. The centripetal acceleration of P along e is part
+    of a_P: exact for any finite rotation.
+
+    A mass of which `weighs` is true also hangs on the platform: its weight -m g along z acts at P. Labels are
+    `guided_masses.NAME.mass`.
+
+    Attributes:
+        values: Masses, kg, by label.
+        names: Of every mass, in the order of what follows.
+        points: Place of P of every mass from the reference point, m, body axes.
+        along: Earth axes, 0 to 2 for x, y, z, of every mass.
+        weighs: Whether the platform carries the weight of every mass.
+    """
+
+    values: dict[str, Float[Array, ""]]
+    names: tuple[str, ...] = eqx.field(static=True)
+    points: Float[Array, "k 3"]
+    along: tuple[tuple[int, ...], ...] = eqx.field(static=True)
+    weighs: tuple[bool, ...] = eqx.field(static=True)
+    source: ClassVar[str] = "Goldstein, Poole and Safko 2002, Classical Mechanics, eq. 1.45 (d'Alembert's principle)"
+
+    @classmethod
+    def of(
+        cls,
+        masses: dict[str, float],
+        points: Float[np.ndarray, "k 3"],
+        along: tuple[tuple[int, ...], ...],
+        weighs: tuple[bool, ...],
+    ) -> Self:
+        """Masses (kg) by name; the rest in their order, see the attributes."""
+        values = {f"{EFFECT}.{name}.mass": jnp.asarray(mass, float) for name, mass in masses.items()}
+        return cls(values, tuple(masses), jnp.asarray(points, float).reshape(-1, 3), along, weighs)
+
+    def about(self, label: str) -> Parameter:
+        name = label.removeprefix(f"{EFFECT}.").removesuffix(".mass")
+        axes = " and ".join("xyz"[axis] for axis in self.along[self.names.index(name)])
+        return Parameter("kg", f"mass of {name}, which follows the platform along {axes}", 0.0)
+
+    def act(self, now: Instant, memory: Any) -> Action:
+        spin, force, inertia = now.velocity[3:], jnp.zeros(6), jnp.zeros((6, 6))
+        for name, point, axes, weighs in zip(self.names, self.points, self.along, self.weighs, strict=True):
+            mass = self.values[f"{EFFECT}.{name}.mass"]
+            inward = cross(spin, cross(spin, point))
+            for axis in axes:
+                direction = now.rotation[axis]  # the earth axis in body axes
+                lever = jnp.concatenate([direction, cross(point, direction)])
+                inertia = inertia + mass * lever[:, None] * lever
+                force = force - mass * (direction @ inward) * lever
+            if weighs:
+                down = -now.environment.gravity * now.rotation[2]
+                force = force + mass * jnp.concatenate([down, cross(point, down)])
+        return Action(body_force=force, added_mass=inertia)
