@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 PACKAGES = ("jaxhydro", "calibration")
-LIBRARIES = ("jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "lineax")
+LIBRARIES = ("jaxhydro", "jax", "jaxlib", "numpy", "scipy", "equinox", "diffrax", "optimistix", "lineax")
 
 
 @functools.cache  # as imported: what is changed on disk later is not what computes
@@ -32,7 +32,7 @@ def sources() -> str:
 
 
 def computed_with() -> dict[str, str]:
-    """What computes here: hash of the packages' sources, versions of Python and of the libraries, precision."""
+    """What computes here: hash of the packages' sources, versions of Python, this package and the libraries, precision."""
     import jax
 
     found = {"source code": sources(), "Python": f"{sys.version_info.major}.{sys.version_info.minor}"}
@@ -45,14 +45,19 @@ def computed_with() -> dict[str, str]:
 
 
 def fingerprint(*inputs: Any) -> str:
-    """Hash of `computed_with` and of inputs: numbers, text, arrays, files, and what is made of them.
+    """Hash of `computed_with` and of inputs, as in `content_hash`."""
+    return content_hash(computed_with(), *inputs)
+
+
+def content_hash(*inputs: Any) -> str:
+    """Hash of numbers, text, arrays, files, and what is made of them.
 
     A path stands for the content of its file, wherever that is. Of classes and functions that are not the packages' own the
     source is taken, too. Raises TypeError for what has no content that can be told.
     """
     digest = hashlib.sha256()
     own: dict[str, None] = {}  # files that classes and functions from elsewhere are written in
-    for part in _content((computed_with(), inputs), own, ()):
+    for part in _content(inputs, own, ()):
         digest.update(part + b"\0")
     for path in own:
         digest.update(Path(path).read_bytes() + b"\0")
