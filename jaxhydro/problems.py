@@ -54,6 +54,10 @@ class PlatformWarning(UserWarning):
     """A platform that can be simulated, of which something is most likely not meant."""
 
 
+class CheckpointWarning(UserWarning):
+    """What an earlier run reached cannot be gone on from: it is of other inputs or of another program, or damaged."""
+
+
 class InputError(Exception):
     """A file that cannot be used. `source` names it, `problems` holds every mistake in it."""
 

@@ -32,7 +32,7 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response", "jaxhydro.table_ranges"),
     ("jaxhydro.observe", "jaxhydro.simulate"),
     # files in, files out: the edge
-    ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start", "jaxhydro.interrupts"),
+    ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start", "jaxhydro.interrupts", "jaxhydro.fingerprint"),
     ("jaxhydro.problems",),
     ("jaxhydro.body_schema", "jaxhydro.guided_mass_schema", "jaxhydro.files"),
     ("jaxhydro.interop.coefficients", "jaxhydro.interop.tables"),

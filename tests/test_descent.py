@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
 from calibration.discovery.bands import Rows, bands_of
-from calibration.discovery.descent import fit, mended
+from calibration.discovery.descent import LEAST, fit, mended
 from calibration.discovery.linear import cost_of, likelihoods, linearly, predict
 from calibration.discovery.looks import Look, Place, Prior, Series
 from calibration.discovery.study import Study
@@ -139,3 +139,21 @@ def test_a_prediction_is_exact_where_the_model_is_linear(study):
         now = likelihoods(study, look.residual) - likelihoods(study, reached.look.residual)
         assert now[used].sum() > 10
         assert_allclose(gain, now[used].sum(), rtol=0.01)
+
+
+@pytest.mark.parametrize("far", [1.0, 1e2, 1e4, 1e6])
+def test_a_fit_is_converged_to_the_tolerance_of_where_it_ends(study, far):
+    """However large what is minimised was at first: releases may begin far off. The least is SciPy's, from near the truth."""
+    begin = Place(np.array([1.25, 0.1]), far * np.array([[0.9, 0.3], [-1.8, 0.3], [0.4, 0.0]]))
+    costs = []
+    reached = fit(
+        study, study.look(begin, (0, 1)), study.used, PRIOR, iterations=200, looks=20, tolerance=1e-6,
+        say=lambda _, cost: costs.append(cost),
+    )  # fmt: skip
+    near = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
+    expected = best(study, near)
+    z = np.concatenate([reached.look.place.x, reached.look.place.own[:2].ravel()])
+    place = Place(expected[:2], np.vstack([expected[2:].reshape(2, 2), begin.own[2:]]))
+    least = cost_of(study, reached.look, study.residual(place), place, study.used, PRIOR)
+    assert reached.settled and costs[-1] - least < 2 * LEAST * abs(least)
+    assert_allclose(z, expected, atol=2e-3)

@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,11 +16,13 @@ import jax
 import numpy as np
 import pytest
 import xarray as xr
+import zarr
 from fake_sweep import BREAKING, PLATFORM, SWEEP, written
 from typer.testing import CliRunner
 
 import jaxhydro as jh
 from jaxhydro import cli
+from jaxhydro import fingerprint as fingerprints
 from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
 from jaxhydro.sweep.batch import outcome, outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
@@ -324,6 +327,28 @@ def test_another_platform_is_not_mixed_in(whole, tmp_path) -> None:
     file = written(tmp_path)
     (tmp_path / "buoy.yaml").write_text((tmp_path / "buoy.yaml").read_text().replace("Cd_t: 1.0", "Cd_t: 1.1"))
     assert "the platform file of the runs that are there, found another" in command("sweep", file, "--out", whole, status=2)
+
+
+def test_another_program_is_not_mixed_in(file, whole, monkeypatch) -> None:
+    """Other source code of either package, or another version of what computes."""
+    before, known = chunks(whole), fingerprints.version
+    with monkeypatch.context() as other:
+        other.setattr(fingerprints, "sources", lambda: "of a load that was changed")
+        text = command("sweep", file, "--out", whole, status=2)
+        assert "source code: expected that which made the runs that are there, found another. Another --out" in text
+    monkeypatch.setattr(fingerprints, "version", lambda name: "99.0" if name == "diffrax" else known(name))
+    text = command("sweep", file, "--out", whole, status=2)
+    assert f"diffrax: expected {known('diffrax')}, which made the runs that are there, found 99.0" in text
+    assert chunks(whole) == before
+
+
+def test_a_store_of_an_earlier_format_is_refused(file, whole, tmp_path) -> None:
+    """Only zarr version 3 is read: version 2 knows a codec that reads pickles."""
+    made, out = prepared(load_sweep(file), "sweep"), tmp_path / "o"
+    assert not opened(out, made)
+    shutil.rmtree(out / RESULTS)
+    zarr.open_group(out / RESULTS, mode="w", zarr_format=2)
+    assert "source code" in command("sweep", file, "--out", out, status=2)
 
 
 @pytest.mark.parametrize(

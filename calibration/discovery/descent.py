@@ -16,7 +16,7 @@ from calibration.discovery.study import LOST, Study
 from jaxhydro.interrupts import stop_if_asked
 
 LONGEST = 0.7  # largest step of a coordinate that is a logarithm
-LEAST = 1e-4  # of what is minimised: a step that gains less is one too many, however many samples there are
+LEAST = 1e-4  # of what is minimised where a step begins: one that gains less is one too many, however many samples there are
 POOR = 0.25  # of what was predicted: slopes that give no more are stale
 
 
@@ -77,8 +77,8 @@ def fit(
     say: Callable[[int, float], None] = lambda *_: None,
 ) -> Reached:
     """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
-    `tolerance`; slopes are taken anew at most `looks` times, and once more at the end. It stays where
-    a simulation diverges."""
+    `tolerance`, or than `LEAST` of what is minimised there; slopes are taken anew at most `looks` times, and once more at the
+    end. It stays where a simulation diverges."""
     logarithmic = study.logarithmic[list(look.active)]
     directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
@@ -96,13 +96,13 @@ def fit(
         cost = cost_of(study, look, residual, there, used, prior)
         expected = now - cost_of(study, look, linearly(study, look, step, own), there, used, prior)
         gain = -np.inf if lost(residual) else now - cost
-        tolerance = max(tolerance, LEAST * abs(now))
-        known, little = fresh or not left, 0 <= gain < tolerance or expected < tolerance
+        least = max(tolerance, LEAST * abs(now))  # of what is minimised here, however large it was before
+        known, little = fresh or not left, 0 <= gain < least or expected < least
         if gain > 0:
             look, now, fresh = mended(study, look, there, residual, step, own), cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
             say(taken, now)
-        if gain >= max(tolerance, POOR * expected):
+        if gain >= max(least, POOR * expected):
             continue
         if known and little:
             settled = True

@@ -2,6 +2,7 @@
 
 import math
 import time as clock
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from calibration.grouped import grouped
 from calibration.seas import NO_ZERO, Options
 from jaxhydro.interrupts import stopping
 from jaxhydro.model import Model
+from jaxhydro.problems import CheckpointWarning
 
 ABSOLUTE = f"{NO_ZERO}, so that a sensor's zero elsewhere is taken for ballast, or for a force"
 
@@ -38,7 +40,8 @@ def diagnose(
     """What a model of a campaign (that declared: `campaign.model`) lacks: found, added, judged by the tests marked `holdout`.
 
     `candidates` of one's own take part beside the catalogue's. `kept` is a file that has what was reached by round; where it is
-    there, of the same campaign, the search goes on from it. Raises InputError where a campaign has nothing to diagnose,
+    there, of the same campaign, options, program and libraries, the search goes on from it; where it is of others or damaged,
+    a CheckpointWarning says so and the search starts anew. Raises InputError where a campaign has nothing to diagnose,
     and KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
     """
     begun, campaign = clock.monotonic(), campaign.with_model(model)
@@ -48,6 +51,7 @@ def diagnose(
             progress(Progress(stage, 0, math.nan, fraction, "-2 ln L"))
 
     states: list[State] = []
+    unusable: list[str] = []  # why what an earlier run reached is left alone
 
     def spent() -> float:
         return search.earlier + clock.monotonic() - begun
@@ -64,7 +68,7 @@ def diagnose(
         taken = conventions_of(campaign, say) if by_a_program(how) else Conventions(campaign)
         search = Search(taken.campaign, pose(taken.campaign, how, candidates), say)
         search.plain, search.strips, notes = taken.fit, taken.strips, (*notes, *taken.notes)
-        states.extend([] if kept is None else resumed(kept, search))
+        states.extend([] if kept is None else resumed(kept, search, unusable.append))
         return search, notes
 
     search, notes = begun_with(campaign)
@@ -75,6 +79,8 @@ def diagnose(
     if states:
         say(f"going on from what was reached before: round {len(states)}", 0.15)
     else:
+        if unusable:
+            warnings.warn(unusable[-1], CheckpointWarning, stacklevel=2)
         reach(search.declared())
 
     def concluded() -> Diagnosis:

@@ -1,7 +1,8 @@
 """Capytaine's datasets (https://capytaine.org, `assemble_dataset`) in NetCDF: added mass and radiation damping."""
 
 from os import PathLike
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -11,6 +12,7 @@ from jaxhydro.interop.coefficients import RadiationCoefficients
 from jaxhydro.problems import InputError, Problem, shown, suggest
 
 FEWEST = 4  # frequencies
+HDF5 = b"\x89HDF\r\n\x1a\n"  # how a file of NetCDF-4 begins
 PAIR = ("radiating_dof", "influenced_dof")
 BETWEEN = "__"  # a body's name and its motion, in datasets of several bodies: buoy__Heave
 BODY = ("body", "body_name")  # dimensions along which datasets of several bodies may be put together
@@ -72,7 +74,9 @@ def open_capytaine(path: str | PathLike[str], needed: tuple[str, ...], body: str
         return InputError(source, [Problem(where, expected, found, hint)])
 
     try:
-        with xr.open_dataset(path) as opened:
+        with Path(path).open("rb") as file:
+            engine: Literal["h5netcdf", "scipy"] = "h5netcdf" if file.read(8) == HDF5 else "scipy"
+        with xr.open_dataset(path, engine=engine) as opened:  # else xarray would take a folder for a zarr store, too
             data = opened.load()
     except FileNotFoundError:
         raise wrong("", "a NetCDF file of Capytaine", "no such file") from None

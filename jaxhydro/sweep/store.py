@@ -4,7 +4,6 @@ One chunk of every variable per run: writers never share one. A run's numbers ar
 by renaming a finished file, so that a process killed at any moment leaves a run that is done or one to be done again.
 """
 
-import hashlib
 import json
 import shutil
 import warnings
@@ -21,6 +20,7 @@ from jaxtyping import Float
 
 import jaxhydro
 from jaxhydro.files import staged
+from jaxhydro.fingerprint import computed_with, content_hash, fingerprint
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
@@ -28,6 +28,7 @@ from jaxhydro.sweep.statistics import BANDS, STATISTICS, Kept, bands_in, frequen
 
 RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2
+SHORT = 16  # characters of a fingerprint in files
 KEPT = {  # variable: its dimensions after case and seed, and what it is
     "statistics": (("channel", "statistic"), "in units of the channel; skewness and kurtosis 1, zero_crossing_period s"),
     "density": (("channel", "frequency"), "one-sided power spectral density, unit of the channel squared per Hz"),
@@ -46,8 +47,8 @@ class Inputs(NamedTuple):
 
     @property
     def fingerprint(self) -> str:
-        """One hash of it all."""
-        return _hash("\n".join((self.plan.to_json(), self.platform, self.calibration or "")))
+        """One hash of it all, and of what computes it."""
+        return fingerprint(self.plan.to_json(), self.platform, self.calibration)[:SHORT]
 
 
 @contextmanager
@@ -117,9 +118,17 @@ def check_same(folder: Path, inputs: Inputs) -> None:
     for name, what in (("platform", "platform file"), ("calibration", "calibration")):
         if getattr(old, name) != getattr(inputs, name):
             problems.append(Problem(name, f"the {what} of the runs that are there", "another", WAYS))
-    made_by = str(zarr.open_group(folder / RESULTS, mode="r", use_consolidated=False).attrs.get("source"))
-    if made_by != (mine := f"jaxhydro {jaxhydro.__version__}"):
-        problems.append(Problem("", f"{made_by}, which made the runs that are there", mine, WAYS))
+    try:
+        group = zarr.open_group(folder / RESULTS, mode="r", zarr_format=3, use_consolidated=False)
+        made_by: Any = group.attrs.get("computed_with")
+    except (OSError, ValueError, KeyError):  # of another format
+        made_by = None
+    for name, now in computed_with().items():
+        before = made_by.get(name) if isinstance(made_by, dict) else None
+        if before != now:
+            told = "another" if name == "source code" else now
+            were = "that" if name == "source code" else f"{before or 'that'},"
+            problems.append(Problem(name, f"{were} which made the runs that are there", told, WAYS))
     if problems:
         raise InputError(f"--out {folder}", problems[:1])
 
@@ -131,7 +140,7 @@ class Store:
     """An open store, to write runs to."""
 
     def __init__(self, folder: Path) -> None:
-        self.group = zarr.open_group(folder / RESULTS, mode="r+", use_consolidated=False)
+        self.group = zarr.open_group(folder / RESULTS, mode="r+", zarr_format=3, use_consolidated=False)
         self.arrays: dict[str, Any] = {name: array for name, array in self.group.arrays()}
 
     def status(self) -> np.ndarray:
@@ -157,7 +166,7 @@ class Store:
 
 def open_results(folder: Path) -> xr.Dataset:
     """The results of a sweep; variables are loaded from disk where they are used."""
-    data = xr.open_zarr(folder / RESULTS, chunks=None)
+    data = xr.open_zarr(folder / RESULTS, chunks=None, zarr_format=3)
     return data.assign_coords({name: coordinate.load() for name, coordinate in data.coords.items()})
 
 
@@ -232,12 +241,10 @@ def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
     return options | about | {
         "source": f"jaxhydro {jaxhydro.__version__}",
         "fingerprint": inputs.fingerprint,
-        "fingerprint_platform": _hash(inputs.platform),
-        "fingerprint_calibration": _hash(inputs.calibration) if inputs.calibration is not None else "",
+        "fingerprint_platform": content_hash(inputs.platform)[:SHORT],
+        "fingerprint_calibration": content_hash(inputs.calibration)[:SHORT] if inputs.calibration is not None else "",
+        "computed_with": computed_with(),
         "units": "m, s, Hz, deg, N",
         "coordinates": coordinates,
     }  # fmt: skip
 
-
-def _hash(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
