@@ -30,6 +30,7 @@ from calibration.searches import Budget
 from calibration.seas import Diverged, Options, compare, options_of, unusual
 from calibration.seas_outputs import write_comparison
 from calibration.summary import calibration_sentence, summary_of
+from calibration.wave_band import band_sentence
 from jaxhydro.console import complain, progress, say, table
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.statics import stable_modes
@@ -49,6 +50,8 @@ def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.test
             found = f"{str(out)!r}, where {MOTION} is the data of test {test.id}"
             raise InputError("--out", [Problem("", "another folder", found)])
     say(f"{campaign.manifest.name}: {counted(campaign)}")
+    if (band := band_sentence(campaign.manifest, campaign.model, campaign.records)) is not None:
+        say(f"{band[0].upper()}{band[1:]}")
     if campaign.findings:
         table("Warnings", *tables.findings(campaign.findings), left=4, stderr=True)
     return campaign

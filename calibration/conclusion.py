@@ -15,11 +15,13 @@ from calibration.formatting import listed, percent_span
 from calibration.grouped import grouped
 from calibration.identifiability import Spread
 from calibration.information import CLEAR
+from calibration.manifest import IN_WAVES
 from calibration.parameters import ParameterSpace, slopes
 from calibration.records import Record
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Estimate, Series, TestFit
 from calibration.unit_hints import unit_hints
+from calibration.wave_band import band_sentence
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
 from jaxhydro.response import decay_cycles
@@ -131,6 +133,8 @@ def remarks(
         said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
     if campaign.used("fit") and not any(family(label) == "damping" for label in parameters):
         said.append("no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out")
+    band = band_sentence(campaign.manifest, campaign.model, campaign.records) if set(IN_WAVES) & set(kinds) else None
+    said += [] if band is None else [band]
     vague = [label for label, p in parameters.items() if not p.identifiable]
     if vague:
         ends = "its value is no result" if len(vague) == 1 else "their values are not results"

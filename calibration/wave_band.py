@@ -6,28 +6,27 @@ import numpy as np
 
 from calibration.manifest import IN_WAVES, Manifest
 from calibration.records import Record
+from jaxhydro import wave_bands
 from jaxhydro.model import Model
-from jaxhydro.sea_options import CUTOFF, LOW, MOST, share_within
 
-HALF = 0.5  # least share of a record's variance in the band of the hull's size, for that band to be taken
+
+def band_sentence(manifest: Manifest, model: Model, records: Sequence[Record]) -> str | None:
+    """Return the band of first-order waves in words, and what it comes from; None for a campaign without tests in waves."""
+    if not any(record.kind in IN_WAVES and record.use != "ignore" for record in records):
+        return None
+    band = wave_band(manifest, model, records)
+    source = "as `wave_band` states" if manifest.wave_band is not None else "`wave_band` in campaign.yaml sets another band"
+    return f"first-order waves are from {band[0]:.3g} to {band[1]:.3g} Hz at full scale: {source}"
 
 
 def wave_band(manifest: Manifest, model: Model, records: Sequence[Record]) -> tuple[float, float]:
-    """Lowest and highest frequency (Hz, full scale) of the first-order waves.
+    """Return the lowest and highest frequency (Hz, full scale) of the first-order waves.
 
-    The manifest's `wave_band`. Else 0.03 to 0.3 Hz, unless the wave records lie elsewhere, and most of them in a band of the
-    hull's size, by Froude's similarity with VolturnUS-S.
+    The manifest's `wave_band`, else what `jaxhydro.wave_bands` finds for the wave records that are used.
     """
     if manifest.wave_band is not None:
         low, cutoff = manifest.wave_band
         return low / manifest.scale**0.5, cutoff / manifest.scale**0.5
-    low, cutoff = (float(f"{one / float(model.pace):.3g}") for one in (LOW, CUTOFF))
-    ocean, own = (_share(records, *band) for band in ((LOW, CUTOFF), (low, cutoff)))
-    return (low, cutoff) if ocean < MOST and own > max(ocean, HALF) else (LOW, CUTOFF)
-
-
-def _share(records: Sequence[Record], low: float, cutoff: float) -> float:
-    """Smallest share of a wave record's variance in a band; 1 where there are none."""
-    waves = [r for r in records if r.kind in IN_WAVES and r.use != "ignore" and r.wave is not None]
-    shares = [share_within(np.asarray(r.wave), float(np.median(np.diff(r.time))), low, cutoff) for r in waves]
-    return min(shares, default=1.0)
+    waves = [record for record in records if record.kind in IN_WAVES and record.use != "ignore" and record.wave is not None]
+    steps = [float(np.median(np.diff(record.time))) for record in waves]
+    return wave_bands.of_records([(np.asarray(r.wave), step) for r, step in zip(waves, steps)], float(model.pace))

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from jaxhydro.sea_options import CUTOFF, LOW, ORDER, SEED, TIME_COLUMN, TRANSIENT, WAVE_COLUMN
+from jaxhydro.sea_options import ORDER, SEED, TIME_COLUMN, TRANSIENT, WAVE_COLUMN
+from jaxhydro.wave_bands import CUTOFF, LOW
 
 SEA, RECORD, HOW = "Irregular waves from a spectrum", "Irregular waves from a record", "How waves act"
 OTHER = "Regular waves and free decays"
@@ -194,11 +195,11 @@ Gauge = Annotated[
 ]
 Low = Annotated[
     float | None,
-    _option("--low", HOW, "Lowest first-order frequency, Hz; scaled to the hull for a sea outside 0.03 to 0.3 Hz.", f"{LOW:g}"),
+    _option("--low", HOW, "Lowest first-order frequency, Hz; found from the sea if it is outside 0.03 to 0.3 Hz.", f"{LOW:g}"),
 ]
 Cutoff = Annotated[
     float | None,
-    _option("--cutoff", HOW, "Highest frequency, Hz; scaled likewise. In high seas take less: a note says so.", f"{CUTOFF:g}"),
+    _option("--cutoff", HOW, "Highest frequency, Hz; found likewise. In high seas take less: a note says so.", f"{CUTOFF:g}"),
 ]
 Order = Annotated[
     int | None, _option("--order", HOW, "2: with the waves that they bind (Sharma and Dean).", str(ORDER), min=1, max=2)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from scipy import signal
 
+from jaxhydro import wave_bands
 from jaxhydro.options import finite, positive, wrong
 from jaxhydro.problems import InputError, Problem, suggest
 from jaxhydro.waves.irregular import sampling_interval
 
-LOW, CUTOFF = 0.03, 0.3  # Hz; for seas elsewhere, over the pace of the platform (`jaxhydro.scales`)
 TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
 LEAST = 100  # samples after the transient
 ORDER, SEED = 2, 0
@@ -22,7 +22,6 @@ OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
-MOST = 0.95  # least share of a record's variance for the record to lie in a band
 STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
@@ -54,7 +53,7 @@ class Record:
 class Asked:
     """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
 
-    low and cutoff None: 0.03 and 0.3 Hz where the sea lies between them, else those of the platform's size (`for_platform`).
+    low and cutoff None: those that `jaxhydro.wave_bands` finds for the platform (`for_platform`).
     """
 
     hs: float | None
@@ -79,18 +78,16 @@ class Asked:
         return replace(self, low=low, cutoff=cutoff)
 
     def band(self, pace: float) -> tuple[float, float]:
-        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave to three digits."""
-        usual = (float(f"{one / (1.0 if self.oceanic else pace):.3g}") for one in (LOW, CUTOFF))
-        low, cutoff = (by_size if given is None else given for given, by_size in zip((self.low, self.cutoff), usual))
-        return low, cutoff
-
-    @property
-    def oceanic(self) -> bool:
-        """Whether the sea lies from 0.03 to 0.3 Hz, whatever the size of the platform."""
+        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave by `jaxhydro.wave_bands`."""
+        if self.low is not None and self.cutoff is not None:
+            return self.low, self.cutoff
         if self.record is not None:
             step = float(np.median(np.diff(self.record.times)))
-            return share_within(self.record.elevation, step, LOW, CUTOFF) >= MOST
-        return self.tp is not None and LOW <= 1 / self.tp <= 0.8 * CUTOFF
+            usual = wave_bands.of_records([(self.record.elevation, step)], pace)
+        else:
+            usual = wave_bands.at_pace(pace) if self.tp is None else wave_bands.of_spectra([self.tp], pace)
+        low, cutoff = (found if given is None else given for given, found in zip((self.low, self.cutoff), usual))
+        return low, cutoff
 
     def start(self, duration: float, pace: float = 1.0) -> float:
         """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""

@@ -30,7 +30,7 @@ def test_by_the_records_and_the_size_of_the_hull() -> None:
     for pace in (1.0, 0.1, 0.5):
         assert wave_band(manifest(), SimpleNamespace(pace=pace), [waves(0.12)]) == (0.03, 0.3)
     assert wave_band(manifest(), SimpleNamespace(pace=0.1), [waves(1.2)]) == (0.3, 3.0)
-    assert wave_band(manifest(), SimpleNamespace(pace=0.1), [waves(50.0)]) == (0.03, 0.3)  # in neither
+    assert wave_band(manifest(), SimpleNamespace(pace=0.1), [waves(50.0)]) == (0.3, 3.0)  # such a hull feels no such waves
 
 
 def test_as_stated() -> None:

@@ -65,6 +65,11 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
     return Setup(plan, model, times, limit, used)
 
 
+def pace_of_platform(platform: str | Path) -> float:
+    """The pace (`jaxhydro.scales`) of a platform by name or file. Raises InputError."""
+    return float(model_of(load_platform(platform)).pace)
+
+
 def setup_in(inputs: Path) -> Setup:
     """From a sweep's folder of inputs; kept for as long as it stays as it is."""
     return _setup_in(inputs, (inputs / PLAN).stat().st_mtime_ns)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 from jaxhydro.problems import InputError, Problem, shown
 from jaxhydro.sweep.schema import Grid, SeaState, Sweep
+from jaxhydro.wave_bands import of_spectra
 
 State: TypeAlias = tuple[float, float, float | None]
 
@@ -142,8 +143,10 @@ def _short(value: Any) -> str:
     return shown(list(value) if isinstance(value, tuple) else value)
 
 
-def plan_of(sweep: Sweep, source: str) -> tuple[Plan, list[str]]:
-    """The plan of a sweep whose files are read, and what is to be known of how it was made.
+def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[str]]:
+    """The plan of a sweep whose files are read, for a platform of a `pace`, and what is to be known of how it was made.
+
+    Where the sweep has no band, it is that of its sea states by `jaxhydro.wave_bands`, by Hs^2 and share of the time.
 
     Shares of sea states and of headings multiply, and are divided by their sum; those of a sea state that is in the table more
     than once add up. Raises InputError that names `source` where none is above 0.
@@ -172,7 +175,11 @@ def plan_of(sweep: Sweep, source: str) -> tuple[Plan, list[str]]:
         notes.append(f"{left_out} case{'s' * (left_out > 1)} of probability 0 {'are' if left_out > 1 else 'is'} left out")
     seeds = tuple(range(sweep.seeds)) if isinstance(sweep.seeds, int) else sweep.seeds
     same: tuple[str, ...] = ("spectrum", "amplitudes", "duration", "start", "time_step", "step", "order", "stretching",
-    "diffraction", "low", "cutoff", "motions", "time_series")  # fmt: skip
+    "diffraction", "motions", "time_series")  # fmt: skip
+    usual = of_spectra([case.tp for case in cases], pace, [case.probability * case.hs**2 for case in cases])
+    low, cutoff = (found if given is None else given for given, found in zip((sweep.low, sweep.cutoff), usual))
+    if not cutoff > low:
+        raise InputError(source, [Problem("cutoff", f"a number above low, {low:g} Hz", f"{cutoff:g}")])
     fatigue: dict[str, Any] = {"exponents": sweep.fatigue.exponents, "equivalent_frequency": sweep.fatigue.equivalent_frequency}
     options: dict[str, Any] = {name: getattr(sweep, name) for name in same}
-    return Plan(cases, seeds, **options, **fatigue), notes
+    return Plan(cases, seeds, low=low, cutoff=cutoff, **options, **fatigue), notes

@@ -20,7 +20,7 @@ from jaxhydro.platform_schema import builtin_platforms, load_platform
 from jaxhydro.problems import InputError, Problem, read_yaml
 from jaxhydro.remarks import Remark
 from jaxhydro.statics import stable_modes
-from jaxhydro.sweep.batch import Setup, setup_of
+from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of
 from jaxhydro.sweep.cases import named, plan_of
 from jaxhydro.sweep.load import load_sweep
 from jaxhydro.sweep.local import simulated
@@ -82,7 +82,11 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
 
     Raises InputError, EquilibriumError.
     """
-    plan, known = plan_of(sweep, source)
+    try:
+        pace = pace_of_platform(sweep.platform)
+    except InputError as error:
+        raise InputError(f"{source}: platform: {error.source}", error.problems) from None
+    plan, known = plan_of(sweep, source, pace)
     calibration = None if sweep.calibration is None else calibration_file(sweep.calibration)
     try:
         setup = setup_of(plan, sweep.platform, calibration)

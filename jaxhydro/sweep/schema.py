@@ -111,14 +111,14 @@ class Sweep(Consistent):
     order: Literal[1, 2] = 2
     stretching: Stretching = "vertical"
     diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
-    low: NonNegative = 0.03
-    cutoff: Positive = 0.3
+    low: NonNegative | None = None
+    cutoff: Positive | None = None
     motions: Annotated[tuple[Dof, ...], Field(min_length=1)] = DOFS  # type: ignore[assignment]
     time_series: Flag = False
     fatigue: Fatigue = Fatigue()
 
     def _faults(self) -> Iterator[Problem]:
-        if self.cutoff <= self.low:
+        if self.low is not None and self.cutoff is not None and self.cutoff <= self.low:
             yield Problem("cutoff", f"a number above low, {self.low:g} Hz", f"{self.cutoff:g}")
         if self.transient is not None and self.transient >= self.duration:
             yield Problem("transient", f"less than the duration, {self.duration:g} s", f"{self.transient:g}")

@@ -15,7 +15,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
 from jaxhydro.statics import equilibrium
-from jaxhydro.sweep.batch import prepared_for, sea_of, setup_of
+from jaxhydro.sweep.batch import pace_of_platform, prepared_for, sea_of, setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.waves.sea_state import SeaState, state_of
@@ -42,7 +42,7 @@ def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge"
     Raises KeyError for an unknown label or motion, InputError, EquilibriumError, ValueError for a sea that cannot be or a
     platform that leaves the box that its sea was prepared for.
     """
-    plan, _ = plan_of(sweep, "sweep")
+    plan, _ = plan_of(sweep, "sweep", pace_of_platform(sweep.platform))
     setup = setup_of(plan, sweep.platform, None if sweep.calibration is None else Path(sweep.calibration))
     for label in labels:
         setup.model.about(label)
