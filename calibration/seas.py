@@ -25,7 +25,7 @@ from jaxhydro.environment import DOFS, Environment
 from jaxhydro.model import Model
 from jaxhydro.observe import observe
 from jaxhydro.problems import InputError, Problem
-from jaxhydro.sea_options import share_within
+from jaxhydro.requested_sea import share_within
 from jaxhydro.simulate import largest_step
 from jaxhydro.statics import equilibrium
 from jaxhydro.waves.irregular import separated_record

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from jaxhydro.sea_options import ORDER, SEED, TIME_COLUMN, TRANSIENT, WAVE_COLUMN
+from jaxhydro.requested_sea import TRANSIENT
+from jaxhydro.sea_options import ORDER, SEED, TIME_COLUMN, WAVE_COLUMN
 from jaxhydro.wave_bands import CUTOFF, LOW
 
 SEA, RECORD, HOW = "Irregular waves from a spectrum", "Irregular waves from a record", "How waves act"

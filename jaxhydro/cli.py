@@ -312,7 +312,8 @@ def _model(
     platform: str, calibration: Path | None, diffraction: str | None, elements: int | None, heading: float | None = None
 ) -> "Model":
     """The model of a platform, for waves of a heading (deg)."""
-    from jaxhydro.command import calibrated, model_of
+    from jaxhydro.command import calibrated
+    from jaxhydro.platform import model_of
     from jaxhydro.platform_schema import load_platform
 
     declared = load_platform(platform)

@@ -1,10 +1,9 @@
 """The simulate command: from options to files and tables."""
 
-import dataclasses
 import math
 from collections.abc import Collection, Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -12,23 +11,22 @@ import numpy as np
 from jaxtyping import Array, Float
 
 import jaxhydro
+from jaxhydro.calibrated_model import Used, with_calibration
 from jaxhydro.console import complain, say, table
 from jaxhydro.environment import DOFS
 from jaxhydro.export import Motion, write_motion
 from jaxhydro.loads import Buoyancy
 from jaxhydro.model import Model
 from jaxhydro.platform import build
-from jaxhydro.platform_schema import Platform, load_platform
+from jaxhydro.platform_schema import load_platform
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.remarks import Remark
 from jaxhydro.rotations import rotation
 from jaxhydro.simulate import default_step, free_decay
 from jaxhydro.statics import equilibrium, natural_modes, stable_modes
-from jaxhydro.strips import COLUMN_SLOPE
 from jaxhydro.table_ranges import regular_fault
 from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
-from jaxhydro.waves.sea_state import SeaState
 
 GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
@@ -53,29 +51,6 @@ class Job(NamedTuple):
         return self.dt * np.arange(math.floor(self.duration / self.dt * (1 + 1e-12)) + 1)
 
 
-def model_of(platform: Platform, diffraction: str | None = None, elements: int | None = None) -> Model:
-    """The model of a platform; `diffraction` and the load `elements` of every pontoon in place of those declared."""
-    if elements is not None:
-        members = []
-        for member in platform.members:
-            axis = np.subtract(member.rB, member.rA)
-            column = abs(axis[2]) > COLUMN_SLOPE * np.linalg.norm(axis)
-            members.append(member if column else member.model_copy(update={"elements": elements}))
-        platform = platform.model_copy(update={"members": tuple(members)})
-    model = build(platform)
-    return model if diffraction is None else dataclasses.replace(model, diffraction=str(diffraction))
-
-
-class Used(NamedTuple):
-    """Values of a calibration in a model, by label; the sea state (m, s) that exponents among them count from; why they may not
-    be this platform's; how strips are taken with them (`calibration.strips.Strips`), where the platform says otherwise."""
-
-    values: dict[str, float]
-    reference: SeaState | None
-    warnings: list[str]
-    strips: Any
-
-
 def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     """The model with the values, laws and effects of a calibration.json or diagnosis.json; what is to be known of them is
     printed. `asked` is the platform as it was asked for, `name` its own. Raises InputError."""
@@ -97,31 +72,6 @@ def print_used(used: Used) -> None:
         say(f"Strips as they were when these were found: {used.strips}")
     for warning in used.warnings:
         complain(f"warning: {warning}")
-
-
-def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple[Model, Used]:
-    """`calibrated`, with what is to be known, and nothing is printed."""
-    from calibration.applied import applied
-    from calibration.seas import unusual
-
-    used = applied(source, model, asked, everything=True)
-    warnings = []
-    if not used.converged:
-        warnings.append(f"the fit of {source} did not converge")
-    if used.platform and used.platform != name:
-        warnings.append(f"{source} is a calibration of {used.platform!r}, and its values are used for {name!r}")
-    if said := "" if used.seas is None else unusual(used.seas):
-        warnings.append(f"in the seas of its campaign {source} has {said}; waves here are as options say")
-    if used.vague:
-        warnings.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
-    return used.model, Used(used.values, used.reference, warnings, used.strips)
-
-
-def calibration_file(path: str) -> Path:
-    """The diagnosis.json or calibration.json of a folder, or the file itself."""
-    from calibration.saved import file_of
-
-    return file_of(path)
 
 
 def finite(times: np.ndarray, position: np.ndarray) -> bool:

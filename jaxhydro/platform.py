@@ -38,7 +38,7 @@ from jaxhydro.model import Model, RigidBody, strongly_typed
 from jaxhydro.problems import InputError, PlatformWarning, Problem, suggest
 from jaxhydro.scales import size_of
 from jaxhydro.start import need_float64
-from jaxhydro.strips import Member
+from jaxhydro.strips import COLUMN_SLOPE, Member
 from jaxhydro.waves.sea_state import SeaState
 
 
@@ -104,6 +104,19 @@ def build(platform: schema.Platform) -> Model:
     model = Model(environment, body, hull, tuple(loads), *forms, remarks=(*remarks, *said))
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
+
+
+def model_of(platform: schema.Platform, diffraction: str | None = None, elements: int | None = None) -> Model:
+    """The model of a platform; `diffraction` and the load `elements` of every pontoon in place of those declared."""
+    if elements is not None:
+        members = []
+        for member in platform.members:
+            axis = np.subtract(member.rB, member.rA)
+            column = abs(axis[2]) > COLUMN_SLOPE * np.linalg.norm(axis)
+            members.append(member if column else member.model_copy(update={"elements": elements}))
+        platform = platform.model_copy(update={"members": tuple(members)})
+    model = build(platform)
+    return model if diffraction is None else replace(model, diffraction=str(diffraction))
 
 
 def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:

@@ -1,20 +1,18 @@
 """An irregular sea as the command line asks for it. What is wrong is told with its option."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy import signal
 
-from jaxhydro import wave_bands
 from jaxhydro.options import finite, positive, wrong
 from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.requested_sea import Asked, Record, usual_transient
 from jaxhydro.waves.irregular import sampling_interval
 
-TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
-LEAST = 100  # samples after the transient
 ORDER, SEED = 2, 0
 DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
 OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes")
@@ -26,77 +24,22 @@ STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, 
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
 
-def share_within(elevation: np.ndarray, step: float, low: float, high: float) -> float:
-    """Share of the variance of a record, sampled every `step` (s), between two frequencies (Hz)."""
-    power = np.abs(np.fft.rfft(elevation - elevation.mean())) ** 2
-    frequency = np.fft.rfftfreq(len(elevation), step)
-    return float(power[(frequency >= low) & (frequency <= high)].sum() / max(power.sum(), 1e-300))
+def with_band(sea: Asked, pace: float) -> Asked:
+    """A sea with a band, for a platform of a `pace` (`jaxhydro.scales`). Raises BadParameter where it is none."""
+    low, cutoff = sea.band(pace)
+    if cutoff <= low:
+        raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
+    return replace(sea, low=low, cutoff=cutoff)
 
 
-def usual_transient(duration: float, pace: float = 1.0) -> float:
-    """s, left out of statistics where nothing else is asked for."""
-    return min(TRANSIENT * pace, 0.25 * duration)
-
-
-@dataclass(frozen=True)
-class Record:
-    """A measured elevation (m) at even times (s), the gauge's place (m), and where it was read."""
-
-    source: str
-    column: str
-    times: np.ndarray
-    elevation: np.ndarray
-    position: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Asked:
-    """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
-
-    low and cutoff None: those that `jaxhydro.wave_bands` finds for the platform (`for_platform`).
-    """
-
-    hs: float | None
-    tp: float | None
-    gamma: float | None
-    spectrum: str
-    seed: int
-    amplitudes: str
-    low: float | None
-    cutoff: float | None
-    order: int
-    stretching: str
-    heading: float
-    transient: float | None
-    record: Record | None = None
-
-    def for_platform(self, pace: float) -> "Asked":
-        """With a band, for a platform of a `pace` (`jaxhydro.scales`). Raises BadParameter where it is none."""
-        low, cutoff = self.band(pace)
-        if cutoff <= low:
-            raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
-        return replace(self, low=low, cutoff=cutoff)
-
-    def band(self, pace: float) -> tuple[float, float]:
-        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave by `jaxhydro.wave_bands`."""
-        if self.low is not None and self.cutoff is not None:
-            return self.low, self.cutoff
-        if self.record is not None:
-            step = float(np.median(np.diff(self.record.times)))
-            usual = wave_bands.of_records([(self.record.elevation, step)], pace)
-        else:
-            usual = wave_bands.at_pace(pace) if self.tp is None else wave_bands.of_spectra([self.tp], pace)
-        low, cutoff = (found if given is None else given for given, found in zip((self.low, self.cutoff), usual))
-        return low, cutoff
-
-    def start(self, duration: float, pace: float = 1.0) -> float:
-        """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
-        if self.transient is None:
-            return usual_transient(duration, pace)
-        if not 0 <= self.transient < duration:
-            limits = f"from 0 to less than the duration, {duration:g} s, expected"
-            raise wrong("--transient", f"{limits}; found {self.transient:g}")
-        return self.transient
+def transient_of(sea: Asked, duration: float, pace: float = 1.0) -> float:
+    """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
+    if sea.transient is None:
+        return usual_transient(duration, pace)
+    if not 0 <= sea.transient < duration:
+        limits = f"from 0 to less than the duration, {duration:g} s, expected"
+        raise wrong("--transient", f"{limits}; found {sea.transient:g}")
+    return sea.transient
 
 
 def by_option(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from test_cli import cache, run  # noqa: F401
 import jaxhydro as jh
 from calibration import command as of_campaigns
 from jaxhydro import arguments, cli, sea_command, sea_options, sea_plot
-from jaxhydro.command import model_of
+from jaxhydro.platform import model_of
 from jaxhydro.sea_results import bands_of, summary, tables
 from jaxhydro.waves.irregular import spectrum_components
 

@@ -1,7 +1,6 @@
 """The golden set: commands give the numbers that are kept, so that code can be moved without moving a result."""
 
 import pytest
-
 from golden.commands import CASES, compare, differences
 
 

@@ -22,7 +22,7 @@ from calibration.sea_laws_tables import laws_table, sentence, states_table
 from calibration.seas import Options, compare, seas_of, with_diffraction
 from calibration.stretches import sea_state, stretches, walk
 from calibration.vocabulary import LAW_NAMES
-from jaxhydro.command import with_calibration
+from jaxhydro.calibrated_model import with_calibration
 from jaxhydro.drag_laws import drag_laws_of, surface_number
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.sea_state_law import reference_of as reference_of_loads

@@ -7,7 +7,7 @@ import pytest
 
 import jaxhydro as jh
 from jaxhydro.problems import validate
-from jaxhydro.sea_options import Asked, Record
+from jaxhydro.requested_sea import Asked, Record
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.schema import Sweep
 from jaxhydro.wave_bands import CUTOFF, LOW, of_records, of_spectra, wave_energy

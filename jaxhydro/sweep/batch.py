@@ -12,15 +12,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from jaxhydro.command import Used, model_of, with_calibration
+from jaxhydro.calibrated_model import Used, with_calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import MooringLines
 from jaxhydro.model import Model
+from jaxhydro.platform import model_of
 from jaxhydro.platform_schema import load_platform
 from jaxhydro.problems import InputError, Problem
+from jaxhydro.requested_sea import Asked, build_sea
 from jaxhydro.rotations import rotation
-from jaxhydro.sea_command import build_sea
-from jaxhydro.sea_options import Asked
 from jaxhydro.simulate import largest_step, simulate
 from jaxhydro.statics import EquilibriumError
 from jaxhydro.sweep.at_once import in_halves, shared_by

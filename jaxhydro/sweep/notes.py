@@ -9,7 +9,7 @@ from jaxtyping import Float
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.model import Model
 from jaxhydro.remarks import Remark
-from jaxhydro.sea_command import CUT, usual_cutoff
+from jaxhydro.requested_sea import CUT, usual_cutoff
 from jaxhydro.sweep.batch import Setup, reason_of, sea_of
 from jaxhydro.sweep.cases import Plan, Run, State, named
 from jaxhydro.table_ranges import TableRange, table_ranges

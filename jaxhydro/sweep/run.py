@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
-from jaxhydro.command import calibration_file
+from jaxhydro.calibrated_model import calibration_file
 from jaxhydro.files import check_folder
 from jaxhydro.platform_schema import builtin_platforms, load_platform
 from jaxhydro.problems import InputError, Problem, read_yaml

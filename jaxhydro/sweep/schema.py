@@ -7,7 +7,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from jaxhydro.environment import DOFS
 from jaxhydro.problems import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
-from jaxhydro.sea_options import LEAST, usual_transient
+from jaxhydro.requested_sea import LEAST, usual_transient
 from jaxhydro.waves.sea import Stretching
 
 Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
