@@ -29,13 +29,11 @@ from jaxhydro.problems import (
     suggest,
     validate,
 )
+from jaxhydro.units import SI
 
 DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 CHANNELS = ("time", *DOFS)
 WAVE = "wave"                                    # the wave channel's name among the others
-SI = {"time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
-      "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048},
-      "angle": {"rad": 1.0, "mrad": 1e-3, "deg": 0.017453292519943295}}
 
 
 def quantity(channel: str) -> str:

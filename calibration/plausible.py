@@ -7,11 +7,10 @@ import numpy as np
 from calibration.checks import Finding, Severity
 from calibration.manifest import IN_WAVES
 from calibration.records import Record
-from calibration.residuals import characteristic_length
 from calibration.signals import dominant_period, peak_frequency, wave_height
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.statics import equilibrium, natural_modes
+from jaxhydro.statics import characteristic_length, equilibrium, natural_modes
 from jaxhydro.units import for_people, unit_of
 
 ODD, WRONG = 3.0, 20.0  # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60

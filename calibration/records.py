@@ -15,12 +15,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from calibration.manifest import IN_WAVES, SI, WAVE, Channel, Manifest, Test, quantity
+from calibration.manifest import IN_WAVES, WAVE, Channel, Manifest, Test, quantity
 from calibration.readers import read_table
 from calibration.release import FreeMotion, free_motion
 from calibration.signals import missing_code, noise_level, resolution
 from calibration.tracked_point import at_reference, noise_at_reference
 from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.units import SI
 
 _LEAST_NOISE = 1e-6                              # m at the scale of the file, or rad: finer than any basin's sensor
 _BEYOND = 1e15                                   # what is larger stands for a missing value

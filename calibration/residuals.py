@@ -21,7 +21,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
 from jaxhydro.observe import observe
-from jaxhydro.statics import equilibrium
+from jaxhydro.statics import characteristic_length, equilibrium
 from jaxhydro.waves.sea import StillWater
 
 
@@ -44,12 +44,6 @@ class Unknowns(NamedTuple):
 
     shared: Float[Array, " p"]
     own: Float[Array, "r 3*c"]
-
-
-def characteristic_length(model: Model) -> float:
-    """Length (m) that makes an angle comparable to a displacement: the radius of gyration in roll and pitch."""
-    inertia = np.asarray(model.body.inertia_at_reference())
-    return float(np.sqrt(0.5 * (inertia[0, 0] + inertia[1, 1]) / float(model.body.mass)))
 
 
 def gather(records: Sequence[Record], model: Model, step: float) -> Data:

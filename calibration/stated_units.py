@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from calibration.manifest import SI
+from jaxhydro.units import SI
 
 _SAME = {"second": "s", "sec": "s", "msec": "ms", "minute": "min", "meter": "m", "metre": "m", "feet": "ft", "foot": "ft",
          "degree": "deg", "°": "deg", "radian": "rad", "millimeter": "mm", "millimetre": "mm", "centimeter": "cm",

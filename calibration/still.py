@@ -12,10 +12,10 @@ from jaxtyping import Array, Float
 from calibration.manifest import Period
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
-from calibration.residuals import characteristic_length, group_products
+from calibration.residuals import group_products
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.statics import WIDTH, equilibrium, held_at, linearised
+from jaxhydro.statics import WIDTH, characteristic_length, equilibrium, held_at, linearised
 
 ALIKE = 0.7  # of a shape's largest entry: surge and sway of one period may come mixed
 NEAR = 1e-4  # of an eigenvalue, off which inverse iterations are shifted

@@ -191,3 +191,9 @@ def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
         motions = " and ".join(modes.unstable)
         raise EquilibriumError(f"the platform is unstable in {motions}: check mass, centre of mass, volume and mooring")
     return modes
+
+
+def characteristic_length(model: Model) -> float:
+    """Length (m) that makes an angle comparable to a displacement: the radius of gyration in roll and pitch."""
+    inertia = np.asarray(model.body.inertia_at_reference())
+    return float(np.sqrt(0.5 * (inertia[0, 0] + inertia[1, 1]) / float(model.body.mass)))

@@ -1,8 +1,14 @@
-"""Units in which people read motions: m, and degrees where the program has radians."""
+"""Units of files, and those in which people read motions: m, and degrees where the program has radians."""
 
 import numpy as np
 
 from jaxhydro.environment import DOFS
+
+SI = {  # units that files may state, by quantity, and what they are in SI
+    "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
+    "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048},
+    "angle": {"rad": 1.0, "mrad": 1e-3, "deg": 0.017453292519943295},
+}
 
 
 def unit_of(channel: str) -> str:

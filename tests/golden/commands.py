@@ -31,7 +31,7 @@ SAME_MACHINE = 1e-9  # relative: moved code does the same arithmetic
 OTHER_MACHINE = {"simulation": 1e-7, "fit": 1e-3}  # another processor rounds otherwise, and an iteration amplifies that
 HEADLINE = re.compile(r"objective\.|\.rmse$|verdict$|effects\[\d+\]\.effect$|converged$")  # of a fit, on another processor
 SMALL = 1e-9  # of the largest number under one key: below it a number is rounding
-VOLATILE = re.compile(r"seconds|history|evaluations|version|jaxhydro$|created|source$|figures|notes|warnings|file$|platform$|step_at")
+VOLATILE = re.compile(r"seconds|history|evaluations|version|jaxhydro$|created|source$|figures|notes|warnings|file$|platform$")
 NAMES = re.compile(r"verdict$|effect$|motion$|(^|\.)name$|label$|\.use$|outcome$")  # texts that are results, not wording
 
 
@@ -107,7 +107,8 @@ def run(arguments: list[str]) -> None:
         [sys.executable, "-m", "jaxhydro", *arguments], capture_output=True, text=True, env=environment, check=False
     )
     if done.returncode:
-        raise RuntimeError(f"jaxhydro {' '.join(arguments)}: status {done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
+        said = f"{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
+        raise RuntimeError(f"jaxhydro {' '.join(arguments)}: status {done.returncode}\n{said}")
 
 
 def numbers_of(case: Case) -> dict[str, Any]:
