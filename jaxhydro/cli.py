@@ -7,7 +7,7 @@ import typer
 from typer.core import TyperGroup
 
 from jaxhydro import arguments, options, sea_options
-from jaxhydro.console import complain, say, table, warnings_told
+from jaxhydro.console import complain, say, table
 from jaxhydro.files import campaign_file
 from jaxhydro.interrupts import asked_to_stop, ended_by_signals
 from jaxhydro.problems import InputError
@@ -31,7 +31,7 @@ class Guarded(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""
         try:
-            with ended_by_signals(), warnings_told():
+            with ended_by_signals():
                 return super().invoke(ctx)
         except InputError as error:
             complain(str(error))

@@ -4,7 +4,6 @@ import math
 import os
 import sys
 import time as clock
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -17,7 +16,6 @@ from rich.table import Table
 from rich.text import Text
 
 from jaxhydro.interrupts import stop_if_asked
-from jaxhydro.problems import PlatformWarning
 
 EVERY = 10.0  # s between lines of progress that go to a file
 WIDTH = 120  # where there is no terminal to ask
@@ -38,25 +36,6 @@ def say(message: str, style: str = "", stderr: bool = False) -> None:
 def complain(message: str) -> None:
     """Print what is wrong, on standard error."""
     console(stderr=True).print(Text.assemble(("jaxhydro: ", "bold red"), message), soft_wrap=True)
-
-
-@contextmanager
-def warnings_told() -> Iterator[None]:
-    """Within it, warnings of this package are printed as its messages are, each once."""
-    shown, told = warnings.showwarning, set[str]()
-
-    def show(message: Any, category: type[Warning], *where: Any) -> None:
-        if not issubclass(category, PlatformWarning):
-            shown(message, category, *where)
-        elif str(message) not in told:
-            told.add(str(message))
-            complain(f"warning: {message}")
-
-    warnings.showwarning = show  # type: ignore[assignment]
-    try:
-        yield
-    finally:
-        warnings.showwarning = shown
 
 
 def table(title: str, heads: Iterable[str], rows: Iterable[Iterable[str]], left: int = 1, stderr: bool = False) -> None:

@@ -50,10 +50,6 @@ class Problem:
         return " ".join((f"{line}. {self.hint}" if self.hint else line).split())
 
 
-class PlatformWarning(UserWarning):
-    """A platform that can be simulated, of which something is most likely not meant."""
-
-
 class InputError(Exception):
     """A file that cannot be used. `source` names it, `problems` holds every mistake in it."""
 
