@@ -10,6 +10,7 @@ from calibration.saved import Saved, read_saved, wrong
 from calibration.seas import Options
 from calibration.strips import Strips
 from jaxhydro.body_schema import HighPass, KeuleganCarpenter
+from jaxhydro.coefficient_labels import shared_hint
 from jaxhydro.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
 from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
 from jaxhydro.model import Model
@@ -73,8 +74,8 @@ def applied(path: str | PathLike[str], model: Model, platform: str, everything: 
 def no_place(saved: Saved, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]) -> InputError:
     """The error of calibrated values that a model has no place for."""
     expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
-    found, hint = ", ".join(map(shown, unknown)), suggest(unknown[0], model.values)
-    return wrong(Path(path), expected, found, f"{saved.key}.parameters", hint)
+    found, hint = ", ".join(map(shown, unknown)), shared_hint(unknown[0], model.hull.elements.shares)
+    return wrong(Path(path), expected, found, f"{saved.key}.parameters", hint or suggest(unknown[0], model.values))
 
 
 def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
@@ -104,7 +105,8 @@ def _with_drag(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     for label, law in laws.items():
         if label not in plain and label not in there:
             known = [*plain, *there]
-            expected, hint = f"drag coefficients ({', '.join(known) or 'there are none'})", suggest(label, known)
+            expected = f"drag coefficients ({', '.join(known) or 'there are none'})"
+            hint = shared_hint(label, model.hull.elements.shares) or suggest(label, known)
             raise wrong(Path(path), expected, repr(label), where, hint)
         if label in there and not _alike(there[label], law):
             expected = f"the law that the platform declares ({_said(there[label])})"

@@ -21,6 +21,7 @@ from calibration.information import inverse
 from calibration.parameters import Free
 from calibration.residuals import Problem, Unknowns
 from calibration.result import Calibration
+from jaxhydro.coefficient_labels import shared_hint
 from jaxhydro.environment import DOFS
 from jaxhydro.problems import InputError, suggest
 from jaxhydro.problems import Problem as Wrong
@@ -69,7 +70,8 @@ class Likelihood:
         """Its place among the free parameters. Raises InputError, which lists them."""
         if label not in self.labels:
             known = f"a free parameter of this fit ({', '.join(self.labels)})"
-            raise InputError("uncertainty", [Wrong("parameter", known, repr(label), suggest(label, self.labels))])
+            hint = shared_hint(label, self.fit.problem.model.hull.elements.shares) or suggest(label, self.labels)
+            raise InputError("uncertainty", [Wrong("parameter", known, repr(label), hint)])
         return self.labels.index(label)
 
     def free(self, label: str) -> Free:

@@ -35,7 +35,7 @@ def parameter_labels(rows: Iterable[tuple[str, str]], symbol: str, shares: Share
 
 def sharing(label: str, shares: Shares) -> tuple[str, ...]:
     """Groups that share the coefficient of a label with its owner; none where it is nobody else's."""
-    owner, _, parameter = label.rpartition(".")
+    owner, _, parameter = label.removeprefix("wave_excitation.").rpartition(".")
     symbol, _, kind = parameter.rpartition("_")
     return tuple(one.group for one in shares if (one.owner, one.name) == (owner, coefficient_of(symbol, kind)))
 

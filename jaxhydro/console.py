@@ -17,7 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from jaxhydro.interrupts import stop_if_asked
-from jaxhydro.problems import CheckpointWarning, PlatformWarning
+from jaxhydro.problems import CheckpointWarning
 
 EVERY = 10.0  # s between lines of progress that go to a file
 WIDTH = 120  # where there is no terminal to ask
@@ -46,7 +46,7 @@ def warnings_told() -> Iterator[None]:
     shown, told = warnings.showwarning, set[str]()
 
     def show(message: Any, category: type[Warning], *where: Any) -> None:
-        if not issubclass(category, PlatformWarning | CheckpointWarning):
+        if not issubclass(category, CheckpointWarning):
             shown(message, category, *where)
         elif str(message) not in told:
             told.add(str(message))

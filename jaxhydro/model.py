@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.coefficient_labels import sharing
+from jaxhydro.coefficient_labels import shared_hint, sharing
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, EndShape, Instant, Lines, Parameter, StripShape
@@ -134,7 +134,8 @@ class Model(eqx.Module):
                 found = load.about(label).sized(float(self.size), float(self.pace))
                 others = sharing(label, self.hull.elements.shares)
                 return found._replace(meaning=f"{found.meaning}; shared by {', '.join(others)}") if others else found
-        raise KeyError(f"no parameter {label!r}; there are: {', '.join(sorted(self.values))}")
+        hint = shared_hint(label, self.hull.elements.shares)
+        raise KeyError(f"no parameter {label!r}; there are: {', '.join(sorted(self.values))}" + (f". {hint}" if hint else ""))
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
         """This model with some parameters changed. Raises KeyError for an unknown label."""

@@ -35,7 +35,8 @@ from jaxhydro.loads import (
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.model import Model, RigidBody, strongly_typed
-from jaxhydro.problems import InputError, PlatformWarning, Problem, suggest
+from jaxhydro.problems import InputError, Problem, suggest
+from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.scales import size_of
 from jaxhydro.start import need_float64
 from jaxhydro.strips import COLUMN_SLOPE, Member
@@ -43,18 +44,23 @@ from jaxhydro.waves.sea_state import SeaState
 
 
 def load_model(path_or_name: str | PathLike[str]) -> Model:
-    """The model of a platform file, or of a built-in platform by its name. Raises InputError with all that is wrong in it."""
-    return build(schema.load_platform(path_or_name))
+    """The model of a platform file, or of a built-in platform by its name.
+
+    Warnings among the model's `remarks` are given as Python warnings, too. Raises InputError with all that is wrong in it.
+    """
+    model = build(schema.load_platform(path_or_name))
+    for remark in model.remarks:
+        if remark.warning:
+            warnings.warn(remark.text, stacklevel=2)
+    return model
 
 
 def build(platform: schema.Platform) -> Model:
-    """The model that a platform declares. Warns of mooring lines that are slack (`PlatformWarning`).
+    """The model that a platform declares, with what is to be known of it as `remarks`.
 
     Raises Float64Error, a RuntimeError, unless JAX computes in float64.
     """
     need_float64()
-    if isinstance(platform.mooring, schema.LinearSprings) and (slack := platform.mooring.slackness()):
-        warnings.warn(f"{platform.name}: {slack}", PlatformWarning, stacklevel=2)
     water = platform.water
     environment = Environment(water.density, water.depth, water.gravity)
     mass, centre, inertia = platform.rigid_body.combined()
@@ -101,7 +107,7 @@ def build(platform: schema.Platform) -> Model:
             EndDrag(pick(of_ends["Cd"])),
         ]
     forms = (platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal)
-    model = Model(environment, body, hull, tuple(loads), *forms, remarks=(*remarks, *said))
+    model = Model(environment, body, hull, tuple(loads), *forms, remarks=(*_of_mooring(platform), *remarks, *said))
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
 
@@ -209,6 +215,12 @@ def _guided(platform: schema.Platform) -> list[AbstractLoad]:
         return []
     points, along = np.array([mass.point for mass in masses], float), tuple(mass.axes() for mass in masses)
     return [GuidedMasses.of({mass.name: mass.mass for mass in masses}, points, along, tuple(mass.weight for mass in masses))]
+
+
+def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
+    """A warning of mooring lines that are slack."""
+    slack = platform.mooring.slackness() if isinstance(platform.mooring, schema.LinearSprings) else ""
+    return as_warnings([slack] if slack else [])
 
 
 def _mooring(platform: schema.Platform) -> list[AbstractLoad]:

@@ -50,10 +50,6 @@ class Problem:
         return " ".join((f"{line}. {self.hint}" if self.hint else line).split())
 
 
-class PlatformWarning(UserWarning):
-    """A platform that can be simulated, of which something is most likely not meant."""
-
-
 class CheckpointWarning(UserWarning):
     """What an earlier run reached cannot be gone on from: it is of other inputs or of another program, or damaged."""
 

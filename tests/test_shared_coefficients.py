@@ -291,3 +291,13 @@ def test_longer_chains_and_circles() -> None:
     assert len(circle) == 1 and "column -> leg -> pontoon -> column" in circle[0]
     into = broken(column=OWN | {"Ca_t": "leg"}, leg=OWN | {"Ca_t": "column"}, pontoon=FLAT | {"Ca_t": "leg"})
     assert len(into) == 2 and "pontoon" in into[1]
+
+
+def test_a_label_of_what_is_shared_is_pointed_to_its_owner() -> None:
+    """As is no other unknown label."""
+    model = build(COLUMN, LEG, coefficients={"column": OWN, "leg": SHARED})
+    with pytest.raises(KeyError, match=r"no parameter 'leg\.Cd_t'.*It is shared: column\.Cd_t\."):
+        model.with_values({"leg.Cd_t": 1.0})
+    with pytest.raises(KeyError) as other:
+        model.about("leg.Cd_q")
+    assert "shared" not in str(other.value)

@@ -1,6 +1,7 @@
 """Lines that are longer than the way to their anchors: no mooring, and a warning before anything runs."""
 
 import copy
+import math
 import warnings
 from typing import Any
 
@@ -8,10 +9,11 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
+from calibration import load_campaign
 from jaxhydro.cli import app
-from jaxhydro.platform import build
+from jaxhydro.platform import build, load_model
 from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import PlatformWarning, validate
+from jaxhydro.problems import validate
 
 ANCHORS = ([60, 0, -100], [-30, 52, -100], [-30, -52, -100])
 FAIRLEADS = ([5, 0, -5], [-2.5, 4.33, -5], [-2.5, -4.33, -5])
@@ -33,10 +35,11 @@ def platform(*lengths: float) -> dict[str, Any]:
 
 
 def told(data: dict[str, Any]) -> list[str]:
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        build(validate(Platform, data, "shallow"))
-    return [str(one.message) for one in caught if issubclass(one.category, PlatformWarning)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # a model says it by its remarks alone
+        model = build(validate(Platform, data, "shallow"))
+    assert all(one.warning for one in model.remarks)
+    return [one.text for one in model.remarks]
 
 
 def test_lines_that_hang_through_are_told() -> None:
@@ -71,4 +74,33 @@ def test_the_command_line_says_it_before_it_runs(tmp_path) -> None:
     )
     assert found.exit_code == 0
     assert found.stderr.count("every line is slack") == 1
-    assert found.stderr.startswith("jaxhydro: warning: shallow: mooring.lines")
+    assert found.stderr.startswith("jaxhydro: warning: mooring.lines: every line is slack")
+
+
+def test_python_is_warned_where_a_file_is_loaded(tmp_path) -> None:
+    """At the caller's line, of warnings only; once."""
+    file = tmp_path / "platform.yaml"
+    file.write_text(yaml.safe_dump(platform(115.0, 115.0, 115.0)), encoding="utf-8")
+    with pytest.warns(UserWarning, match="every line is slack") as caught:
+        load_model(file)
+    assert len(caught) == 1 and caught[0].filename == __file__
+    file.write_text(yaml.safe_dump(platform(100.0, 100.0, 100.0)), encoding="utf-8")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        load_model(file)
+
+
+def test_a_campaign_finds_it(tmp_path) -> None:
+    """With the other warnings on its platform file."""
+    (tmp_path / "platform.yaml").write_text(yaml.safe_dump(platform(115.0, 105.0, 105.0)), encoding="utf-8")
+    rows = "\n".join(f"{0.5 * i},{0.2 * math.cos(0.6 * i) * math.exp(-0.02 * i)}" for i in range(240))
+    (tmp_path / "heave.csv").write_text(f"t,heave\n{rows}\n", encoding="utf-8")
+    manifest = {
+        "name": "tank",
+        "platform": "platform.yaml",
+        "channels": {"time": {"column": "t", "unit": "s"}, "heave": {"column": "heave", "unit": "m"}},
+        "tests": [{"id": "one", "kind": "decay", "degree_of_freedom": "heave", "file": "heave.csv"}],
+    }
+    (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(manifest), encoding="utf-8")
+    said = [one for one in load_campaign(tmp_path).findings if "slack" in one.message]
+    assert len(said) == 1 and said[0].place == "platform.yaml" and said[0].message.startswith("mooring.lines: one line is")
