@@ -155,8 +155,9 @@ def _of_relations(
 def _of_factor(one: str, two: str, values: Sequence[float], scale: float, known: set[str]) -> str | None:
     """In words, by what the ratio of motion `one` to motion `two` misses the model's, all records the same."""
     if all(value < 0 for value in values) and all(abs(math.log(-value)) < CLOSE for value in values):
-        return (f"{one} and {two} go together as the declared model's do, with the other sign: an axis reversed "
-                f"(`channels.{one}.sign` or `channels.{two}.sign`), or recorded at another point (`tracked_point`)?")  # fmt: skip
+        keys = f"(`channels.{one}.sign` or `channels.{two}.sign`)"
+        return (f"{one} and {two} go together as the declared model's do, with the other sign: an axis reversed {keys}, or "
+                "recorded at another point (`tracked_point`)?")  # fmt: skip
     turns = quantity(one) != quantity(two)
     if {quantity(one), quantity(two)} & known or (turns and "time" in known):
         return None
