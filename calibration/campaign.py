@@ -9,7 +9,7 @@ from pathlib import Path
 
 from calibration.checks import Finding, check_records
 from calibration.manifest import IN_WAVES, Manifest, platform_source, read_manifest
-from calibration.plausible import check_plausible
+from calibration.plausible import CampaignFinding, check_plausible
 from calibration.records import Record, read_series, records_of
 from calibration.table_findings import check_tables, of_platform
 from calibration.wave_band import wave_band
@@ -100,5 +100,5 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     band = wave_band(manifest, model, records)
     doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
-        raise InputError(source, grave)
+        raise InputError(source, [*(one.problem for one in doubtful if isinstance(one, CampaignFinding)), *grave])
     return replace(campaign, findings=(*findings, *doubtful))

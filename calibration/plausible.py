@@ -4,13 +4,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from calibration.campaign_hints import Hint, campaign_hints
 from calibration.checks import Finding, Severity
 from calibration.manifest import IN_WAVES
 from calibration.records import Record
 from calibration.signals import dominant_period, peak_frequency, wave_height
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.statics import characteristic_length, equilibrium, natural_modes
+from jaxhydro.statics import characteristic_length, equilibrium, natural_modes, widths
 from jaxhydro.units import for_people, unit_of
 
 ODD, WRONG = 3.0, 20.0  # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
@@ -23,6 +24,11 @@ OFF = 0.02  # of the radius of gyration, or rad: where a platform is at rest
 STEEP = (1 / 7, 1.0)  # height over length: beyond 1/7 no wave stands (Michell 1893, Phil. Mag. 36)
 FULL, WHAT = "(full scale)", "a unit, or the scale?"
 NOISY = 0.5  # of a motion's deviation
+AGREE = "records that agree with the manifest and the declared model"
+
+
+class CampaignFinding(Finding):
+    """A finding that all records of a campaign make together; its test and channel are the first."""
 
 
 def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale: float = 1.0) -> tuple[Finding, ...]:
@@ -33,12 +39,16 @@ def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale
     length, gravity = characteristic_length(model), float(model.environment.gravity)
     periods: dict[str, float] = {}
     found: list[Finding] = []
+    hints: tuple[Hint, ...] = ()
     if decays:
         rest = equilibrium(model)
         modes = natural_modes(model, rest)
         periods = {dof: modes.of(dof) for dof in DOFS if np.isfinite(modes.of(dof))}
+        hints = campaign_hints(decays, modes, widths(model), length, scale)
+        found += [CampaignFinding("warning", h.record.file, h.record.id, h.channel, None, h.message, AGREE) for h in hints]
         found += [] if zeroed else _at_rest(decays, dict(zip(DOFS, map(float, rest))), length)
-    return (*found, *(one for record in used for one in _of(record, length, gravity, periods, scale)))
+    told = any(hint.channel == "time" for hint in hints)
+    return (*found, *(one for record in used for one in _of(record, length, gravity, periods, scale, told)))
 
 
 def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
@@ -54,7 +64,11 @@ def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) ->
             yield Finding("warning", decays[0].file, decays[0].id, name, None, message)
 
 
-def _of(record: Record, length: float, gravity: float, periods: dict[str, float], scale: float) -> Iterator[Finding]:
+def _of(
+    record: Record, length: float, gravity: float, periods: dict[str, float], scale: float, told: bool
+) -> Iterator[Finding]:
+    """Findings on one record. `told`: that all periods are off is said of the campaign."""
+
     def found(limits: tuple[float, float], ratio: float, channel: str, message: str, expected: str) -> Iterator[Finding]:
         if ratio > limits[0]:
             severity: Severity = "error" if ratio > limits[1] else "warning"
@@ -66,7 +80,7 @@ def _of(record: Record, length: float, gravity: float, periods: dict[str, float]
         if period is not None:
             why, by_scale = _of_time(period / own, scale)
             message = f"a period of {period:.3g} s {FULL}, the declared model's is {own:.3g} s: {why}"
-            limits, ratio = (1.0 if by_scale else ODD, WRONG), max(period / own, own / period)
+            limits, ratio = (WRONG if told else 1.0 if by_scale else ODD, WRONG), max(period / own, own / period)
             yield from found(limits, ratio, name, message, f"a period of about {own:.3g} s")
     for name, values in record.values.items():
         size = float(np.percentile(np.abs(values - np.median(values)), 99))
@@ -99,7 +113,7 @@ def _of_time(ratio: float, scale: float) -> tuple[str, bool]:
     if scale != 1 and abs(np.log(ratio / scale**0.5)) < NEAR:
         return f"longer by the square root of `scale`, {scale**0.5:.3g}: are the records at full scale already?", True
     if scale != 1 and abs(np.log(ratio * scale**0.5)) < NEAR:
-        return f"shorter by the square root of `scale`, {scale**0.5:.3g}: is the platform at the model's scale?", True
+        return f"shorter by the square root of `scale`, {scale**0.5:.3g}: were times scaled down before?", True
     if scale == 1 and 1 / WRONG < ratio < 1 / ODD:
         return f"a unit of time, or a `scale` of about {ratio**-2:.2g}, as model-scale records would need?", False
     return "a unit of time, or the scale?", False

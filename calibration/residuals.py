@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from calibration.ladder import padded_size
 from calibration.parameters import ParameterSpace
 from calibration.records import Record
 from jaxhydro.environment import DOFS
@@ -46,10 +47,14 @@ class Unknowns(NamedTuple):
     own: Float[Array, "r 3*c"]
 
 
-def gather(records: Sequence[Record], model: Model, step: float) -> Data:
-    """Records as arrays. `step` (s) is the largest time step."""
+def gather(records: Sequence[Record], model: Model, step: float, exact: bool = False) -> Data:
+    """Records as arrays, of sizes that records of nearly the same length share. `step` (s) is the largest time step.
+
+    `exact`: as many samples as the longest record has, for Fourier lines that are this record's.
+    """
     channels = [dof for dof in DOFS if any(dof in record.values for record in records)]
     longest = max(len(record.time) for record in records)
+    longest = longest if exact else padded_size(longest)
     shape = (len(records), len(channels), longest)
     measured, present, time = np.zeros(shape), np.zeros(shape), np.zeros((shape[0], longest))
     count, size, unit, pace = [], [], np.ones(shape[:2]), []
@@ -68,7 +73,7 @@ def gather(records: Sequence[Record], model: Model, step: float) -> Data:
         metres = spread * length if DOFS.index(main) > 2 else spread
         unit[i] = [metres / length if DOFS.index(channel) > 2 else metres for channel in channels]
         pace.append(2 * np.pi / max(dominant_period(record), 4 * step))
-    capacity = int(np.ceil(max(count) / 50) * 50)
+    capacity = padded_size(max(count))
     arrays = (time, measured, present, size, count, unit, pace)
     names = ("time", "measured", "present", "step", "count", "unit", "pace")
     fields: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))

@@ -132,7 +132,8 @@ def tests_in_waves(
 ) -> tuple[tuple[TestFit, ...], tuple[str, ...]]:
     """All tests in waves with a calibrated model, and with that declared; and words of warning."""
     after, before = (compare(campaign, one, options, made=made) for one in (model, declared))
-    return tuple(_test(*pair) for pair in zip(after.tests, before.tests, strict=True)), after.notes
+    tests = tuple(_test(*pair) for pair in zip(after.tests, before.tests, strict=True))
+    return tests, tuple(dict.fromkeys(before.notes + after.notes))
 
 
 def _test(after: SeaTest, before: SeaTest) -> TestFit:

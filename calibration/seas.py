@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign import Campaign
+from calibration.campaign_hints import motion_hints
 from calibration.manifest import WAVE
 from calibration.records import Record
 from calibration.result import Series, TestFit
@@ -193,6 +194,7 @@ def compare(
         except ValueError as error:
             raise Diverged(f"{run.file}: {error}") from None
         notes += [*run.notes, *one.notes]
+    notes += motion_hints(map(_moving, tests))
     order = [record.id for record in campaign.records]
     return Compared(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step)
 
@@ -217,6 +219,12 @@ def moving(size: Mapping[str, float]) -> list[str]:
     angle = {name: DOFS.index(name) > 2 for name in size}
     largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
     return [name for name in size if size[name] >= MOVES * largest[angle[name]]]
+
+
+def _moving(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Measured and simulated motion by channel, of those that move in the simulation."""
+    moving_ones = moving_channels({one.channel: one.simulated for one in test.fit.series})
+    return {one.channel: (one.measured, one.simulated) for one in test.fit.series if one.channel in moving_ones}
 
 
 def peak_period(run: Run, record: Record, scale: float) -> float:

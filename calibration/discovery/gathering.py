@@ -123,7 +123,7 @@ def of_decays(
 ) -> tuple[Problem, list[Series], np.ndarray, Rows]:
     """Decays in arrays, simulated in steps of at most `step` (s); every motion's series, how far their own unknowns may go, and
     their rows up to `highest` (Hz)."""
-    data = gather(records, model, step)
+    data = gather(records, model, step, exact=True)
     decays = Problem(model, data, space, from_rest, None if from_rest else equilibrium(model))
     found, own_width = _decay_series(records, data, highest)
     return decays, [one for one, _ in found], own_width, Rows.of([cut for _, cut in found], data.time.shape[1])

@@ -1,0 +1,78 @@
+"""Records of nearly the same length share compiled programs, and padding changes no result."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import calibration.fit
+from calibration import load_campaign
+from calibration.campaign import Campaign
+from calibration.fit import prepare
+from calibration.ladder import padded_size
+from calibration.residuals import Problem, condensed
+
+DECAYS = "jaxhydro/campaigns/volturnus-s-decays"
+
+
+def test_sizes_are_a_ladder() -> None:
+    """No less than what is to be held, no more than 1.25 times, and four to an octave."""
+    sizes = [padded_size(n) for n in range(1, 5000)]
+    assert all(n <= size <= max(1.25 * n, n + 1) for n, size in enumerate(sizes, 1))
+    assert len({size for size in sizes if 1024 < size <= 2048}) == 4
+    assert sizes == sorted(sizes) and all(padded_size(size) == size for size in sizes)
+
+
+def cut(campaign: Campaign, share: float, ids: tuple[str, ...]) -> Campaign:
+    """The campaign with some of its records only, each cut to a share of its length."""
+
+    def one(record):
+        n = int(share * len(record.time))
+        return replace(record, time=record.time[:n], values={name: values[:n] for name, values in record.values.items()})
+
+    return replace(campaign, records=tuple(one(record) for record in campaign.records if record.id in ids))
+
+
+@pytest.fixture(scope="module")
+def campaign() -> Campaign:
+    return load_campaign(DECAYS)
+
+
+def test_records_of_nearly_the_same_length_are_traced_once(campaign, monkeypatch) -> None:
+    traces = []
+    motion = Problem.motion
+
+    def counted(self, *args):
+        traces.append((self.data.time.shape, self.data.capacity))
+        return motion(self, *args)
+
+    monkeypatch.setattr(Problem, "motion", counted)
+    ids = tuple(record.id for record in campaign.records if record.degree_of_freedom == "heave")[:1]
+    whole = len(campaign.record(ids[0]).time)
+    shares = [n / whole for n in (560, 570, 580)]
+    counts = []
+    for share in shares:
+        fit = prepare(cut(campaign, share, ids))
+        weight = calibration.fit.weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(1))
+        jax.block_until_ready(condensed(fit.unknowns, fit.problem, jnp.asarray(weight), jnp.asarray(fit.ends)))
+        counts.append(len(traces))
+    assert counts[0] > 0 and counts[1:] == counts[:1] * 2, traces
+
+
+def test_padding_changes_no_result(campaign, monkeypatch) -> None:
+    """The products of residuals and slopes, against those of arrays just as long as the record."""
+    ids = (next(record.id for record in campaign.records if record.degree_of_freedom == "heave"),)
+
+    def products():
+        fit = prepare(cut(campaign, 0.37, ids))
+        return fit.problem.data, fit.problem.products(fit.unknowns, fit.ends)
+
+    padded, found = products()
+    monkeypatch.setattr("calibration.residuals.padded_size", lambda count: count)
+    exact, expected = products()
+    assert padded.time.shape[1] > exact.time.shape[1] and padded.capacity > exact.capacity
+    scale = np.sqrt(np.einsum("rckk->rck", expected))
+    limit = 1e-12 * scale[..., :, None] * scale[..., None, :] + 1e-300
+    assert (np.abs(found - expected) <= limit).all()
