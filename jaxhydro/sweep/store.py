@@ -124,10 +124,10 @@ def check_same(folder: Path, inputs: Inputs) -> None:
     except (OSError, ValueError, KeyError):  # of another format
         made_by = None
     for name, now in computed_with().items():
-        before = made_by.get(name) if isinstance(made_by, dict) else None
-        if before != now:
+        earlier = made_by.get(name) if isinstance(made_by, dict) else None
+        if earlier != now:
             told = "another" if name == "source code" else now
-            were = "that" if name == "source code" else f"{before or 'that'},"
+            were = "that" if name == "source code" else f"{earlier or 'that'},"
             problems.append(Problem(name, f"{were} which made the runs that are there", told, WAYS))
     if problems:
         raise InputError(f"--out {folder}", problems[:1])
