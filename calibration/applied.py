@@ -65,7 +65,7 @@ def applied(path: str | PathLike[str], model: Model, platform: str, everything: 
     vague = tuple(label for label in values if not saved.best.parameters[label].identifiable)
     left = tuple(label for label in saved.values() if label not in values)
     reference = _reference(saved) if any(map(is_exponent, values)) else None
-    model = model.with_values(values)
+    model = model.at_values(values)
     of_file = (saved.campaign, saved.platform, saved.best.converged, strips)
     seas = None if saved.seas is None else saved.seas.options()
     return Applied(model, values, vague, left, reference, *of_file, seas)

@@ -21,6 +21,7 @@ from calibration.identifiability import memory
 from calibration.information import inverse
 from calibration.likelihood import LEVEL, RCOND, Likelihood
 from calibration.residuals import Problem, Unknowns
+from jaxhydro.choices import check
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.problems import InputError
 from jaxhydro.problems import Problem as Wrong
@@ -62,7 +63,8 @@ class Bootstrap:
     ) -> tuple[float, float]:
         """Interval in values: quantiles of the draws, or these mirrored at the estimate in the coordinate, which takes a bias
         off, or the estimate and the draws' deviation, for which 50 draws are enough (Davison and Hinkley 1997, chapter 5).
-        Raises InputError for an unknown label."""
+        Raises InputError for an unknown label, UnknownName for another kind."""
+        check(kind=(kind, ("percentile", "basic", "normal")))
         i, sides = self.likelihood.index(label), [0.5 - 0.5 * level, 0.5 + 0.5 * level]
         ends = np.quantile(self.coordinate[:, i], sides)
         if kind == "normal":

@@ -13,6 +13,7 @@ from calibration.plausible import CampaignFinding, check_plausible
 from calibration.records import Record, read_series, records_of
 from calibration.table_findings import check_tables, of_platform
 from calibration.wave_band import wave_band
+from jaxhydro.choices import unknown
 from jaxhydro.model import Model
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
@@ -46,8 +47,11 @@ class Campaign:
         return tuple(record for record in self.records if record.use == use)
 
     def record(self, id: str) -> Record:
-        """The record of one test. Raises KeyError for an id that no test has."""
-        return {record.id: record for record in self.records}[id]
+        """The record of one test. Raises UnknownName for an id that no test has."""
+        records = {record.id: record for record in self.records}
+        if id not in records:
+            raise unknown("test", id, records)
+        return records[id]
 
 
 def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]:

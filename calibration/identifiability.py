@@ -4,6 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from calibration.information import inverse
+
+ROUNDING = 1e-14  # of the largest eigenvalue of a scaled matrix: a weak prior that is all there is of a coordinate is more
 
 class Spread(NamedTuple):
     """Covariance of the coordinates of all unknowns: the shared parameters first, then every record's own."""
@@ -71,7 +74,5 @@ def spread(
     scatter = assemble(np.einsum("rckl,rc->rkl", products, weight**2 * variance * inflation), shared)
     own = np.zeros(len(hessian) - shared)
     square, wide = np.concatenate([ridge**2, own]), np.concatenate([width**2, own])
-    scale = 1 / np.sqrt(np.maximum(np.diag(hessian) + square, 1e-300))
-    inverse = np.linalg.pinv((hessian + np.diag(square)) * np.outer(scale, scale), rcond=1e-14, hermitian=True)
-    inverse = inverse * np.outer(scale, scale)
-    return Spread(inverse @ (scatter + np.diag(wide * square**2)) @ inverse, shared)
+    bread = inverse(hessian + np.diag(square), ROUNDING)
+    return Spread(bread @ (scatter + np.diag(wide * square**2)) @ bread, shared)

@@ -17,6 +17,7 @@ from calibration.sea_fit import tests_in_waves
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction
 from calibration.still import pose_offsets, pose_periods
+from jaxhydro.choices import check
 from jaxhydro.environment import DOFS
 from jaxhydro.interrupts import stopping
 from jaxhydro.model import Model
@@ -50,8 +51,9 @@ def calibrate_jointly(
     begun = clock.monotonic()
     options = options_of(campaign) if options is None else options
     source = str(campaign.folder / "campaign.yaml")
-    if unknown := [kind for kind in kinds if kind not in get_args(Kind)]:
-        raise ValueError(f"kinds: expected some of {', '.join(get_args(Kind))}, found {unknown[0]!r}")
+    for kind in kinds:
+        check(kinds=(kind, get_args(Kind)))
+    check(objective=(objective, get_args(Objective)), loss=(loss, get_args(Loss)))
 
     def report(stage: str, iteration: int, value: float, fraction: float, name: str = "error") -> None:
         if progress is not None:

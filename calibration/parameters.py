@@ -64,7 +64,7 @@ class ParameterSpace(NamedTuple):
 
     def model(self, model: Model, x: Float[Array, " p"]) -> Model:
         """The model with its free parameters at coordinates."""
-        return model.with_values(self.values(x))
+        return model.at_values(self.values(x))
 
 
 def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:

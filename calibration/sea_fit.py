@@ -4,6 +4,7 @@ import math
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from calibration.sea_remarks import sea_remarks
 from calibration.sea_residuals import Objective, SeaProblem, pose_in_waves
 from calibration.seas import Options, Seas, SeaTest, compare, moving_channels, options_of, sea_step, seas_of, with_diffraction
 from calibration.shooting_fit import ShootingFit
+from jaxhydro.choices import check
 from jaxhydro.environment import DOFS
 from jaxhydro.interrupts import stopping
 from jaxhydro.loads.sea_state_law import is_exponent
@@ -61,6 +63,9 @@ def calibrate_in_waves(
     Raises InputError where there is nothing to fit, Interrupted with what was reached.
     """
     begun = clock.monotonic()
+    check(objective=(objective, get_args(Objective)), drag=(drag, (*get_args(Drag), None)))
+    for one in over:
+        check(over=(one, get_args(Over)))
     source = str(campaign.folder / "campaign.yaml")
     options = options_of(campaign) if options is None else options
     records = [record for record in campaign.used("fit") if record.kind in IN_WAVES]

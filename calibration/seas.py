@@ -7,7 +7,7 @@ file. Everything is SI at full scale.
 import dataclasses
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -22,8 +22,9 @@ from calibration.runs import Run, runs
 from calibration.stretches import stretches, walk, window
 from calibration.wave_band import wave_band
 from jaxhydro.analysis import power_spectrum
+from jaxhydro.choices import check
 from jaxhydro.environment import DOFS, Environment
-from jaxhydro.model import Model
+from jaxhydro.model import CONVENTIONS, Model
 from jaxhydro.observe import observe
 from jaxhydro.problems import InputError, Problem
 from jaxhydro.requested_sea import share_within
@@ -57,6 +58,13 @@ class Options:
     kinds: tuple[Kind, ...] = KINDS
     highest_difference: float | None = None
     acting: Acting = "everywhere"
+
+    def __post_init__(self) -> None:
+        """Raises UnknownName for another order, stretching, diffraction, kind or place of action."""
+        check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
+        check(diffraction=(self.diffraction, (*CONVENTIONS["diffraction"], None)), acting=(self.acting, get_args(Acting)))
+        for kind in self.kinds:
+            check(kinds=(kind, KINDS))
 
 
 def options_of(campaign: Campaign) -> Options:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
 from jaxhydro.platform import build
 from jaxhydro.platform_schema import Platform, load_platform
@@ -40,7 +41,7 @@ def with_elements(platform: Platform, group: str, elements: int, points: int = 2
     """
     groups = {member.group for member in platform.members}
     if group not in groups:
-        raise ValueError(f"a group of members ({', '.join(sorted(groups))}) expected, found {group!r}")
+        raise unknown("group of members", group, sorted(groups))
     cut = {"elements": elements, "points": points}
     members = tuple(m.model_copy(update=cut) if m.group == group else m for m in platform.members)
     return platform.model_copy(update={"members": members})
@@ -68,6 +69,9 @@ def convergence(
 
     if not elements or any(n != int(n) or n < 1 for n in elements):
         raise ValueError(f"numbers of elements are whole and at least 1, found {tuple(elements)}")
+    for dof in dofs:
+        if dof not in DOFS:
+            raise unknown("degree of freedom", dof, DOFS)
     platform = platform if isinstance(platform, Platform) else load_platform(platform)
     kept = np.asarray(times) >= float(times[0]) + transient
     time, motions, periods = np.asarray(times)[kept], [], []

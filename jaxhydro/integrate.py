@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, get_args
 
 import equinox as eqx
 import jax
@@ -11,6 +11,7 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float, Int
 
 from jaxhydro import adams_bashforth, runge_kutta
+from jaxhydro.choices import check
 from jaxhydro.model import Model, State
 from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.support_sea import Clock
@@ -125,6 +126,7 @@ def integrate(
     Simulations of different lengths share one compilation by sharing a capacity: `count` says how many steps of it are
     taken (with adjoint "forward", and not by diffrax: there all are).
     """
+    check(method=(method, get_args(Method)), adjoint=(adjoint, get_args(Adjoint)))
     count = jnp.asarray(capacity) if count is None else count
     run = _by_diffrax if method == "diffrax" else partial(_by_loop, method)
     position, velocity = run(model, sea, state, start, step, count + MORE, capacity + MORE, adjoint)
@@ -146,6 +148,7 @@ def states(
 
 def clock(method: Method, start: float, step: float, count: int) -> Clock:
     """When an integration over `count` steps asks for the sea."""
+    check(method=(method, get_args(Method)))
     if method == "ab4":
         return Clock(start, step, count + MORE, (0.0,), adams_bashforth.START)
     if method == "diffrax":

@@ -9,6 +9,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import check, unknown
 from jaxhydro.coefficient_labels import shared_hint, sharing
 from jaxhydro.environment import Environment
 from jaxhydro.hull import Hull
@@ -22,6 +23,16 @@ from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
 from jaxhydro.waves.transfer import Transfer
+
+CONVENTIONS: dict[str, tuple[str | bool, ...]] = {
+    "wetting": ("instantaneous", "mean"),
+    "diffraction": ("maccamy_fuchs", "ramp", "none"),
+    "directions": ("body", "earth"),
+    "waves_at": ("displaced", "mean"),
+    "centripetal": (True, False),
+    "lag": (True, False),
+    "bound": (True, False),
+}
 
 
 class RigidBody(eqx.Module):
@@ -101,6 +112,10 @@ class Model(eqx.Module):
     bound: bool = eqx.field(static=True, default=True)
     remarks: tuple[Remark, ...] = eqx.field(static=True, default=())
 
+    def __check_init__(self) -> None:
+        """Raises UnknownName for a word that is none of a convention's."""
+        check(**{name: (getattr(self, name), allowed) for name, allowed in CONVENTIONS.items()})
+
     @property
     def size(self) -> Float[Array, ""]:
         """Length (-) over that of VolturnUS-S, by displaced volume: see `scales`."""
@@ -125,7 +140,7 @@ class Model(eqx.Module):
         return {label: value for load in self.loads for label, value in load.values.items()}
 
     def about(self, label: str) -> Parameter:
-        """Unit, meaning, bounds and null of a parameter. Raises KeyError for an unknown label.
+        """Unit, meaning, bounds and null of a parameter. Raises UnknownName for an unknown label.
 
         Bounds that are lengths or times go with the platform's size.
         """
@@ -134,14 +149,24 @@ class Model(eqx.Module):
                 found = load.about(label).sized(float(self.size), float(self.pace))
                 others = sharing(label, self.hull.elements.shares)
                 return found._replace(meaning=f"{found.meaning}; shared by {', '.join(others)}") if others else found
-        hint = shared_hint(label, self.hull.elements.shares)
-        raise KeyError(f"no parameter {label!r}; there are: {', '.join(sorted(self.values))}" + (f". {hint}" if hint else ""))
+        raise unknown("parameter", label, sorted(self.values), shared_hint(label, self.hull.elements.shares))
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
-        """This model with some parameters changed. Raises KeyError for an unknown label."""
-        unknown = set(values) - set(self.values)
-        if unknown:
-            self.about(sorted(unknown)[0])
+        """This model with some parameters changed.
+
+        Numbers are checked where they are concrete; under jit or grad nothing can be raised. Raises UnknownName for an unknown
+        label, ValueError for what is no finite number, or is negative where physics has none that are (`Parameter.check`).
+        """
+        about = {label: load.about for load in self.loads for label in load.values}
+        for label, value in values.items():
+            if label not in about:
+                raise unknown("parameter", label, sorted(about))
+            if not isinstance(value, jax.core.Tracer):
+                about[label](label).check(label, value)
+        return self.at_values(values)
+
+    def at_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
+        """The same without checks, for values that a fit found: by rounding they may be beyond what is possible."""
 
         def changed(load: AbstractLoad) -> AbstractLoad:
             new = {label: jnp.asarray(values.get(label, old), float) for label, old in load.values.items()}

@@ -1,6 +1,5 @@
 """How bad input is told: every mistake in a file by its path, what was expected and what was found."""
 
-import difflib
 import reprlib
 import warnings
 from collections.abc import Iterable, Iterator
@@ -15,6 +14,7 @@ from ruamel.yaml.constructor import DuplicateKeyError
 from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
+from jaxhydro import choices
 from jaxhydro.declared import Place, arms_of, bare, dotted, locate, tags_of, words
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -94,10 +94,7 @@ class Faults(ValueError):
 
 def nearest(word: object, known: Iterable[str]) -> str:
     """The known word nearest to `word`, case aside; empty where none is near."""
-    by_lower = {name.lower(): name for name in known}
-    text = word[:80] if isinstance(word, str) else shown(word)
-    near = difflib.get_close_matches(text.lower(), by_lower, n=1, cutoff=0.6)
-    return by_lower[near[0]] if near else ""
+    return choices.nearest(word if isinstance(word, str) else shown(word), known)
 
 
 def suggest(word: object, known: Iterable[str]) -> str:

@@ -7,6 +7,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
 
 EDGE = 0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
@@ -21,9 +22,9 @@ class Response(eqx.Module):
     acceleration: Float[Array, "t 6"]
 
     def __getitem__(self, dof: str) -> Float[Array, " t"]:
-        """Position of one degree of freedom by its name (m or rad)."""
+        """Position of one degree of freedom by its name (m or rad). Raises UnknownName for another name."""
         if dof not in DOFS:
-            raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")
+            raise unknown("degree of freedom", dof, DOFS)
         return self.position[..., DOFS.index(dof)]
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import equinox as eqx
 import jax
@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro import adams_bashforth
+from jaxhydro.choices import check, unknown
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import Adjoint, Grid, Method, clock, integrate
 from jaxhydro.model import Model, State
@@ -47,6 +48,7 @@ def default_step(model: Model, method: Method = "tsit5") -> float:
 
 def memory_step(model: Model, method: Method = "tsit5") -> float:
     """The longest step (s) with which a method follows what loads remember (`AbstractLoad.fastest`); infinite for most."""
+    check(method=(method, get_args(Method)))
     fastest = max(load.fastest() for load in model.loads)
     return STABLE.get(method, STABLE_ELSE) / fastest if fastest else math.inf
 
@@ -110,9 +112,10 @@ def simulate(
     nothing; diffrax's reverse gradient is the cheaper one (`make bench` prints the ratios).
     `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
 
-    Raises ValueError for times that do not increase and for regular waves outside a table of the model, EquilibriumError where
-    the platform does not rest.
+    Raises UnknownName for another method, adjoint or motion, ValueError for times that do not increase and for regular waves
+    outside a table of the model, EquilibriumError where the platform does not rest.
     """
+    check(adjoint=(adjoint, get_args(Adjoint)), method=(method, (*get_args(Method), None)))
     times = jnp.asarray(times, float)
     if times.ndim != 1 or times.shape[0] < 2 or not (np.diff(np.asarray(times)) > 0).all():
         raise ValueError("times must be at least two increasing numbers")
@@ -218,11 +221,12 @@ def free_decay(
 
 
 def by_name(values: Mapping[str, float] | Float[Array, "6"] | None) -> Float[Array, "6"]:
-    """Six degrees of freedom from named ones (what is not named is zero), or as they are. Raises KeyError for a wrong name."""
+    """Six degrees of freedom from named ones (what is not named is zero), or as they are. Raises UnknownName for others."""
     if values is None:
         return jnp.zeros(6)
     if not isinstance(values, Mapping):
         return jnp.asarray(values, float)
-    if unknown := set(values) - set(DOFS):
-        raise KeyError(f"no degree of freedom {sorted(unknown)[0]!r}; there are: {', '.join(DOFS)}")
+    for name in values:
+        if name not in DOFS:
+            raise unknown("degree of freedom", name, DOFS)
     return jnp.stack([jnp.asarray(values.get(dof, 0.0), float) for dof in DOFS])

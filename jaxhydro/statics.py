@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model, State
 from jaxhydro.waves.sea import StillWater
@@ -123,7 +124,11 @@ class Modes(NamedTuple):
     unstable: tuple[str, ...] = ()
 
     def of(self, dof: str) -> float:
-        """Longest period (s) of a mode in whose shape `dof` is the largest entry; nan if there is none."""
+        """Longest period (s) of a mode in whose shape `dof` is the largest entry; nan if there is none.
+
+        Raises UnknownName for another name."""
+        if dof not in DOFS:
+            raise unknown("degree of freedom", dof, DOFS)
         index = DOFS.index(dof)
         mine = [period for period, shape in zip(self.period, self.shape, strict=True) if np.argmax(np.abs(shape)) == index]
         return float(mine[0]) if mine else float("nan")
@@ -186,6 +191,9 @@ def _coupled(model: Model, moved: Collection[str]) -> set[str]:
 def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
     """Natural modes about the equilibrium. Raises EquilibriumError where the platform does not stay there, once it is `moved`:
     a motion that goes with none of these may be unstable."""
+    for dof in moved:
+        if dof not in DOFS:
+            raise unknown("degree of freedom", dof, DOFS)
     modes = natural_modes(model)
     if set(modes.unstable) & (set(DOFS) if set(moved) == set(DOFS) else _coupled(model, moved)):
         motions = " and ".join(modes.unstable)

@@ -13,7 +13,8 @@ from jaxhydro.loads import LOADS
 ROOT = Path(__file__).resolve().parents[1]
 
 LAYERS = (  # a module imports from layers below its own
-    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.excitation", "jaxhydro.remarks"),
+    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.excitation", "jaxhydro.remarks",
+      "jaxhydro.choices"),
     ("jaxhydro.scales", "jaxhydro.coefficient_labels"),
     ("jaxhydro.waterplane",),
     ("jaxhydro.waves.transfer", "jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta", "jaxhydro.waves.continuation"),

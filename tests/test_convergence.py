@@ -74,7 +74,7 @@ def test_the_same_in_a_cut_platform(sea: IrregularSea, found) -> None:
 @pytest.mark.parametrize(
     "options, message",
     [
-        ({"group": "pontoons"}, r"a group of members \(column, pontoon\) expected, found 'pontoons'"),
+        ({"group": "pontoons"}, r"no group of members 'pontoons'; there are: column, pontoon. Did you mean 'pontoon'"),
         ({"elements": (1, 0)}, r"at least 1, found \(1, 0\)"),
         ({"elements": ()}, r"found \(\)"),
     ],

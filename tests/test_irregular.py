@@ -372,7 +372,7 @@ def test_sampling_interval_of_rounded_times() -> None:
         ({"elevation": np.ones(2400)}, "no waves from 0.04 to 0.2 Hz"),
         ({"cutoff": 1.2}, "half the sampling rate, 1 Hz, found 1.2 Hz"),
         ({"cutoff": 0.01}, "0 <= low < cutoff"),
-        ({"order": 3}, "order is 1 or 2, found 3"),
+        ({"order": 3}, "order: expected 1 or 2, found 3"),
     ],
 )
 def test_records_that_cannot_be(options, message: str) -> None:

@@ -1,5 +1,6 @@
 """By what an effect is believed: what counts in every band, and gains in what was not fitted."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -29,7 +30,7 @@ from calibration.discovery.judgement import (
     refusal,
     worse,
 )
-from calibration.discovery.linear import likelihoods
+from calibration.discovery.linear import inverted, likelihoods
 from calibration.discovery.looks import Look, Prior, Series
 from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
 from calibration.discovery.study import Study
@@ -337,3 +338,22 @@ def test_of_what_cannot_be_told_apart_the_simplest_is_believed_first():
     assert names == ["wave_gauge_position", "static_offset", "umbilical", "hysteresis", "sensor_lag"]
     assert [one.worth for one in in_order(some[:1] + some[3:])] == [2380.0, 2000.0, 1400.0]
     assert in_order([]) == []
+
+
+def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatch) -> None:
+    """Variances of any ratio: the clear one is not taken for rounding of the other."""
+    one = SimpleNamespace(amplitudes=("a", "b"))
+    for variances in ((1.0, 1.0), (1.0, 1e-12), (1.0, 1e-20), (1e-20, 1.0)):
+        covariance, steps = np.diag(variances), 5 * np.sqrt(variances)
+        study = SimpleNamespace(index=lambda names: [0, 1], steps=lambda x, steps=steps: steps)
+        monkeypatch.setattr(judgement, "predict", lambda *_, c=covariance: SimpleNamespace(covariance=c))
+        state = SimpleNamespace(look=SimpleNamespace(active=(0, 1), place=SimpleNamespace(x=None)))
+        assert judgement.clearness(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
+
+
+def test_there_is_one_pseudo_inverse() -> None:
+    """Of equations, of covariances and of what is eliminated, with the same numbers as each had by itself."""
+    root = np.random.default_rng(0).normal(size=(9, 6)) * np.logspace(-6, 6, 6)
+    for matrix in (root.T @ root, np.pad(root.T @ root, (0, 1)), np.zeros((2, 2))):
+        scale = np.outer(*2 * [1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))])
+        np.testing.assert_array_equal(inverted(matrix), np.linalg.pinv(matrix * scale, rcond=1e-12, hermitian=True) * scale)

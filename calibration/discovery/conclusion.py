@@ -87,7 +87,7 @@ def augmented_model(search: Search, state: State) -> Model:
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
     values |= {label: search.study.value(label, state.look.place.x) for one in state.chosen for label in one.choices}
     own = [one for one in state.chosen if one.load is not None]
-    return with_effects(with_candidates(search.posed.declared, own), values).with_values(values)
+    return with_effects(with_candidates(search.posed.declared, own), values).at_values(values)
 
 
 def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str, Estimate]:

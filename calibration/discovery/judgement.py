@@ -11,6 +11,7 @@ from calibration.discovery.linear import likelihoods, predict
 from calibration.discovery.looks import FLOOR, Look, Prior
 from calibration.discovery.study import Study
 from calibration.formatting import percent
+from calibration.information import inverse
 
 # thresholds, set by what they do on campaigns with nothing missing
 LEAST_BIC = 6.0  # strong, by Kass and Raftery 1995
@@ -205,5 +206,5 @@ def clearness(study: Study, one: Candidate, state: State, prior: Prior) -> float
     columns = [look.active.index(i) for i in study.index(one.amplitudes)]
     covariance = predict(study, look, prior).covariance[np.ix_(columns, columns)]
     steps = study.steps(look.place.x)[study.index(one.amplitudes)]
-    wald = float(steps @ np.linalg.pinv(covariance, hermitian=True) @ steps)
+    wald = float(steps @ inverse(covariance) @ steps)
     return math.sqrt(max(wald - len(columns) + 1, 0.0))

@@ -15,10 +15,12 @@ from scipy.special import boxcox
 
 from calibration.discovery.looks import Look, Place, Prior
 from calibration.discovery.study import Study
+from calibration.information import inverse
 
 POWER = 0.2  # p: 0 is the logarithm
 FAR = 3.0  # standard deviations of a prior: beyond them it is steep
 ROUNDS = 6  # of weights
+ROUNDING = 1e-12  # of the largest eigenvalue of scaled equations: slopes that Broyden's update mended are no better
 
 
 def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
@@ -115,8 +117,7 @@ def own_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarray) -> np.
 
 def inverted(matrix: np.ndarray) -> np.ndarray:
     """A symmetric matrix's inverse, or pseudo-inverse, of parameters of any size."""
-    scale = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    return np.linalg.pinv(matrix * np.outer(scale, scale), rcond=1e-12, hermitian=True) * np.outer(scale, scale)
+    return inverse(matrix, ROUNDING)
 
 
 def solve(study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float) -> tuple[np.ndarray, np.ndarray]:

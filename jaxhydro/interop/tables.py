@@ -2,11 +2,12 @@
 
 import math
 from os import PathLike
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from jaxtyping import Float
 
+from jaxhydro.choices import check
 from jaxhydro.problems import InputError, Problem
 
 By = Literal["period", "rad/s", "Hz"]
@@ -16,7 +17,11 @@ CONTRADICTION = 0.02  # of a value's modulus, by which MOD and PHASE may differ 
 
 
 def to_omega(values: Any, by: str) -> Any:
-    """Angular frequencies (rad/s) of the first column of a file that is by `period` (s), `rad/s` or `Hz`."""
+    """Angular frequencies (rad/s) of the first column of a file that is by `period` (s), `rad/s` or `Hz`.
+
+    Raises UnknownName for another word.
+    """
+    check(by=(by, get_args(By)))
     if by == "period":
         return 2 * math.pi / np.asarray(values)
     return np.asarray(values) * (2 * math.pi if by == "Hz" else 1.0)

@@ -7,6 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from jaxhydro.environment import Environment
@@ -19,7 +20,11 @@ from jaxhydro.waves.transfer import Transfer
 
 
 class Parameter(NamedTuple):
-    """What a load's parameter means: its unit, the range that is physically possible, and where the load is silent."""
+    """What a load's parameter means: its unit, the range in which a fit looks for it, and where the load is silent.
+
+    A `lower` end of 0 or more says that the quantity has a sign by physics, as drag, stiffness and times have: it may not be
+    negative (`check`). All other ends are of fits only: published values beyond them, a Cd of 30 for a plate, are not wrong.
+    """
 
     unit: str
     meaning: str
@@ -27,6 +32,18 @@ class Parameter(NamedTuple):
     upper: float = float("inf")
     null: float = 0.0
     of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not where a wave gauge may have stood
+
+    def check(self, label: str, value: Any) -> None:
+        """Raise ValueError for a value of the parameter `label` that is no finite number, or negative where it cannot be."""
+        try:
+            numbers = np.asarray(value, float)
+        except (TypeError, ValueError):
+            raise ValueError(f"{label}: expected a number ({self.unit}), found {value!r}") from None
+        least = 0.0 if self.lower >= 0 else -math.inf
+        if not (np.isfinite(numbers) & (numbers >= least)).all():
+            expected = "a finite number" if least < 0 else "a finite number of 0 or more"
+            found = ", ".join(f"{one:g}" for one in numbers.ravel()[:3])
+            raise ValueError(f"{label}: expected {expected} ({self.unit}: {self.meaning}), found {found}")
 
     def sized(self, size: float, pace: float) -> "Parameter":
         """With the bounds of a platform of other `size` and `pace` (-, `scales`), where they are lengths or times."""

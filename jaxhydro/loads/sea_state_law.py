@@ -8,6 +8,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import check, unknown
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.waves.sea_state import SeaState
 
@@ -68,6 +69,7 @@ class SeaStateLaw(AbstractLoad):
 
 def exponent_label(label: str, over: str) -> str:
     """The exponent's label of a coefficient over "significant_height" or "peak_period"."""
+    check(over=(over, OVER))
     return f"{label}.{OVER[over]}_exponent"
 
 
@@ -116,7 +118,6 @@ def with_exponents(
             base = eqx.tree_at(lambda inner: inner.values, load.load, {k: load.values[k] for k in load.load.values})
             found.append(SeaStateLaw.of(base, kept | mine, reference))
     if left:
-        known = ", ".join(label for load in loads for label in load.values)
         lost = next(label for label in exponents if label in left)
-        raise KeyError(f"no coefficient {split(lost)[0]!r}; there are: {known}")
+        raise unknown("coefficient", split(lost)[0], [label for load in loads for label in load.values])
     return tuple(found)

@@ -11,6 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
 from jaxhydro.integrate import integrate
 from jaxhydro.model import Model, State
@@ -110,4 +111,4 @@ def _with_slope(
 
 
 def _no_motion(dof: str) -> int:
-    raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")
+    raise unknown("degree of freedom", dof, DOFS)

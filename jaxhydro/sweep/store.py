@@ -123,11 +123,11 @@ def check_same(folder: Path, inputs: Inputs) -> None:
         made_by: Any = group.attrs.get("computed_with")
     except (OSError, ValueError, KeyError):  # of another format
         made_by = None
-    for name, own in computed_with().items():
-        made = made_by.get(name) if isinstance(made_by, dict) else None
-        if made != own:
-            told = "another" if name == "source code" else own
-            were = "that" if name == "source code" else f"{made or 'that'},"
+    for name, now in computed_with().items():
+        earlier = made_by.get(name) if isinstance(made_by, dict) else None
+        if earlier != now:
+            told = "another" if name == "source code" else now
+            were = "that" if name == "source code" else f"{earlier or 'that'},"
             problems.append(Problem(name, f"{were} which made the runs that are there", told, WAYS))
     if problems:
         raise InputError(f"--out {folder}", problems[:1])

@@ -12,6 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, components
 from jaxhydro.waves.continuation import continued
@@ -66,8 +67,7 @@ def spectrum_components(
     """
     if not (duration > 0 and math.isfinite(duration)):
         raise ValueError(f"duration is above 0 s, found {duration}")
-    if amplitudes not in ("deterministic", "rayleigh"):
-        raise ValueError(f"amplitudes are 'deterministic' or 'rayleigh', found {amplitudes!r}")
+    check(amplitudes=(amplitudes, ("deterministic", "rayleigh")))
     if spreading is not None and not (spreading >= 0 and math.isfinite(spreading)):
         raise ValueError(f"the exponent of a spreading is not negative, found {spreading}")
     period = repeat_period(duration)
@@ -170,8 +170,9 @@ def separated_record(
         raise ValueError(f"an elevation for each of {len(times)} times expected, found shape {elevation.shape}")
     if not np.all(np.isfinite(elevation)):
         raise ValueError(f"elevations are numbers, found {np.sum(~np.isfinite(elevation))} of {len(elevation)} that are not")
-    if order not in (1, 2):
-        raise ValueError(f"order is 1 or 2, found {order}")
+    check(order=(order, (1, 2)))
+    for kind in kinds:
+        check(kinds=(kind, KINDS))
     if cutoff > 0.5 / step:
         raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
     level = elevation - elevation.mean()

@@ -1,13 +1,14 @@
 """Irregular seas of first and second order, summed as they are or made ready for a time integration."""
 
 import math
-from typing import Literal
+from typing import Literal, get_args
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
+from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.excitation import Excitation
@@ -45,6 +46,13 @@ class IrregularSea(AbstractSea):
     highest_difference: float | None = eqx.field(static=True, default=None)
     acting: Acting = eqx.field(static=True, default="everywhere")
 
+    def __check_init__(self) -> None:
+        """Raises UnknownName for another order, stretching, kind or place of action."""
+        check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
+        check(acting=(self.acting, get_args(Acting)))
+        for kind in self.kinds:
+            check(kinds=(kind, KINDS))
+
     def direct(self) -> WaveSea:
         """The same sea by direct summation: exact, N components and at second order N^2 pairs at every point, where they act.
         Raises ValueError where that is not everywhere."""
@@ -79,6 +87,7 @@ class IrregularSea(AbstractSea):
         self, times: Float[np.ndarray, " t"], position: tuple[float, float] = (0.0, 0.0), order: int | None = None
     ) -> Float[np.ndarray, " t"]:
         """Elevation (m) at `times` (s) at a fixed horizontal `position` (m), of all orders or of the `order` asked for."""
+        check(order=(order, (1, 2, None)))
         waves, times = self.components, np.asarray(times, float)
         first, last = waves.harmonics
         spectrum = np.zeros(2 * last + 1, complex)

@@ -3,13 +3,14 @@
 import abc
 import dataclasses
 import math
-from typing import Literal
+from typing import Literal, get_args
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
@@ -95,6 +96,10 @@ class WaveSea(AbstractSea):
     bound: PlaneWaves | None = None
     transfer: Transfer | None = None
     exciting: Excitation | None = None
+
+    def __check_init__(self) -> None:
+        """Raises UnknownName for another stretching."""
+        check(stretching=(self.stretching, get_args(Stretching)))
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
         level, above = stretched(self, self.stretching, time, points, self.environment.depth)

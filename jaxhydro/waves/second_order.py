@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int, PyTree
 
+from jaxhydro.choices import check
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components, PlaneWaves
 
@@ -36,6 +37,7 @@ def transfer(first: Wave, second: Wave, environment: Environment, kind: Kind) ->
     elevation E A_i A_j (sum) or E A_i conj(A_j) (difference), and potential alike: the whole of the pair, (i, j) and (j, i)
     together. Of a wave with itself it is half. A wave of frequency 0 binds nothing.
     """
+    check(kind=(kind, KINDS))
     return _transfer(first, second, environment, SIGN[kind])
 
 
@@ -84,6 +86,8 @@ def bound_waves(
     """
     omega, vector, amplitude = waves.omega, waves.vector(), waves.complex_amplitude()
     found = []
+    for kind in kinds:
+        check(kinds=(kind, KINDS))
     if "sum" in kinds:
         i, j = np.tril_indices(omega.size)
         weight = jnp.where(i == j, 0.5, 1.0) * amplitude[i] * amplitude[j]
@@ -118,6 +122,8 @@ class _Tiles(eqx.Module):
 def _tiles(n: int, first: int, kinds: Sequence[Kind], width: int) -> _Tiles:
     """Pairs i >= j of n harmonics from `first` on, in runs of `width`: along anti-diagonals for sums, else diagonals."""
     parts = []
+    for kind in kinds:
+        check(kinds=(kind, KINDS))
     if "sum" in kinds:
         lag = np.arange(2 * n - 1)
         high, low = (lag + 1) // 2, lag // 2  # outwards from the diagonal

@@ -1,0 +1,56 @@
+"""Words of which a few are known: what is none of them is refused, with the nearest that is."""
+
+import difflib
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+NEAR = 0.6  # `difflib`'s ratio from which words are alike
+LISTED = 40  # known words that a message lists at most
+
+
+class UnknownName(KeyError, ValueError):
+    """A name or a word that is none of those that are known; the message lists them, and suggests the nearest."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The known word nearest to `word`, case aside; empty where none is near."""
+    by_lower = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(word[:80].lower(), by_lower, n=1, cutoff=NEAR)
+    return by_lower[near[0]] if near else ""
+
+
+def unknown(kind: str, word: object, known: Iterable[str], hint: str = "") -> UnknownName:
+    """The error of a name that is none: `no degree of freedom 'pich'; there are: ... Did you mean 'pitch'?`.
+
+    A `hint` is told in place of the nearest name.
+    """
+    known = list(known)
+    listed = ", ".join(known[:LISTED]) + (", ..." if len(known) > LISTED else "") or "none"
+    near = nearest(word, known) if isinstance(word, str) else ""
+    hint = hint or (f"Did you mean {near!r}?" if near else "")
+    return UnknownName(f"no {kind} {word!r}; there are: {listed}" + (f". {hint}" if hint else ""))
+
+
+def _same(value: Any, one: Any) -> bool:
+    """Whether a value is one of those allowed; True is not 1."""
+    plain = value is None or isinstance(value, str | bool | int | float | np.generic)
+    return plain and isinstance(value, bool | np.bool_) == isinstance(one, bool) and bool(value == one)
+
+
+def check(**chosen: tuple[Any, Iterable[Any]]) -> None:
+    """Raise UnknownName for the first argument, by its name, whose value is none of those allowed with it.
+
+    A flag is a bool, a number no flag.
+    """
+    for name, (value, allowed) in chosen.items():
+        allowed = tuple(allowed)
+        if any(_same(value, one) for one in allowed):
+            continue
+        listed = " or ".join(filter(None, (", ".join(map(repr, allowed[:-1])), repr(allowed[-1]))))
+        near = nearest(value, [one for one in allowed if isinstance(one, str)]) if isinstance(value, str) else ""
+        raise UnknownName(f"{name}: expected {listed}, found {value!r}" + (f". Did you mean {near!r}?" if near else ""))
