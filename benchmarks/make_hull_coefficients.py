@@ -9,6 +9,7 @@ under still water, as in Jonkman's panels (NREL's forum, "ITI 5MW Barge"). About
 """
 
 import argparse
+import itertools
 import json
 import math
 from pathlib import Path
@@ -19,24 +20,30 @@ from capytaine.bem.airy_waves import froude_krylov_force
 from ruamel.yaml import YAML
 
 HULLS = Path(__file__).with_name("hulls")
-GRAVITY = 9.80665                                                    # m/s2
-LID = 0.01                                                           # m, under still water
+GRAVITY = 9.80665  # m/s2
+LID = 0.01  # m, under still water
 DOFS = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
-WAVES = {"oc3-hywind": 20.0, "oc4-deepcwind": 14.0, "iti-barge": 20.0, "ship-section": 3.0}   # s
+WAVES = {"oc3-hywind": 20.0, "oc4-deepcwind": 14.0, "iti-barge": 20.0, "ship-section": 3.0}  # s
 START = {"oc3-hywind": (31, 30), "oc4-deepcwind": (17.5, 26), "iti-barge": (8, 12), "ship-section": (1.3, 1.4)}  # s, about
-HEADINGS = {"ship-section": 90.0}                                    # deg
+HEADINGS = {"ship-section": 90.0}  # deg
 
 
 def revolved(profile: list[tuple[float, float]], centre: tuple[float, float], size: float) -> list[np.ndarray]:
     """Panels (n, 4, 3) of a profile (radius, z) about a vertical axis, outward; `size` is that of a panel (m)."""
     panels = []
-    for (r0, z0), (r1, z1) in zip(profile, profile[1:]):
+    for (r0, z0), (r1, z1) in itertools.pairwise(profile):
         around = max(32, math.ceil(2 * math.pi * max(r0, r1) / size))
         steps = max(1, math.ceil(math.hypot(r1 - r0, z1 - z0) / size))
         r, z = np.linspace(r0, r1, steps + 1), np.linspace(z0, z1, steps + 1)
         angle = np.linspace(0, 2 * math.pi, around + 1)
-        at = np.stack([centre[0] + r[:, None] * np.cos(angle), centre[1] + r[:, None] * np.sin(angle),
-                       np.repeat(z[:, None], around + 1, 1)], axis=-1)
+        at = np.stack(
+            [
+                centre[0] + r[:, None] * np.cos(angle),
+                centre[1] + r[:, None] * np.sin(angle),
+                np.repeat(z[:, None], around + 1, 1),
+            ],
+            axis=-1,
+        )
         panels.append(np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=2).reshape(-1, 4, 3))
     return panels
 
@@ -53,8 +60,10 @@ def box(length: float, breadth: float, draught: float, size: float) -> list[np.n
     """Panels of the sides of a box, without its bottom."""
     x, y, t = length / 2, breadth / 2, draught
     return [
-        rectangle((x, -y, -t), (0, breadth, 0), (0, 0, t), size), rectangle((-x, y, -t), (0, -breadth, 0), (0, 0, t), size),
-        rectangle((x, y, -t), (-length, 0, 0), (0, 0, t), size), rectangle((-x, -y, -t), (length, 0, 0), (0, 0, t), size),
+        rectangle((x, -y, -t), (0, breadth, 0), (0, 0, t), size),
+        rectangle((-x, y, -t), (0, -breadth, 0), (0, 0, t), size),
+        rectangle((x, y, -t), (-length, 0, 0), (0, 0, t), size),
+        rectangle((-x, -y, -t), (length, 0, 0), (0, 0, t), size),
     ]
 
 
@@ -95,8 +104,8 @@ def hydrostatics(body: cpt.FloatingBody, density: float) -> tuple[float, np.ndar
     """
     wet = body.mesh.faces_centers[:, 2] < -1.5 * LID
     x, y, z = body.mesh.faces_centers[wet].T
-    down = -(body.mesh.faces_normals[:, 2] * body.mesh.faces_areas)[wet]      # of the waterplane, by the panels under it
-    weight, arm = density * GRAVITY, float(-(0.5 * z**2 * down).sum())        # arm: integral of z over the volume
+    down = -(body.mesh.faces_normals[:, 2] * body.mesh.faces_areas)[wet]  # of the waterplane, by the panels under it
+    weight, arm = density * GRAVITY, float(-(0.5 * z**2 * down).sum())  # arm: integral of z over the volume
     areas = [0, 0, down.sum(), (y**2 * down).sum() + arm, (x**2 * down).sum() + arm, 0]
     return float(-(z * down).sum()), weight * np.diag(areas)
 
@@ -108,8 +117,9 @@ def rigid(platform: dict) -> tuple[np.ndarray, np.ndarray]:
     for part in own.get("parts", [own]):
         m, (x, y, z) = part["mass"], part["centre_of_mass"]
         arm = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]], float)
-        mass += np.block([[m * np.eye(3), -m * arm],
-                          [m * arm, np.diag([part["inertia"][k] for k in ("Ixx", "Iyy", "Izz")]) - m * arm @ arm]])
+        mass += np.block(
+            [[m * np.eye(3), -m * arm], [m * arm, np.diag([part["inertia"][k] for k in ("Ixx", "Iyy", "Izz")]) - m * arm @ arm]]
+        )
         weight[[3, 4], [3, 4]] -= m * GRAVITY * z
     return mass, weight
 
@@ -141,18 +151,20 @@ def solved(name: str) -> dict:
     mass, stiffness = mass[part], stiffness[part]
 
     def radiation(omega: float) -> tuple[np.ndarray, np.ndarray]:
-        at = {**water, "water_depth": depth if omega > 0 else math.inf}           # Capytaine's tables end at kh = 0.1
+        at = {**water, "water_depth": depth if omega > 0 else math.inf}  # Capytaine's tables end at kh = 0.1
         some = [solver.solve(cpt.RadiationProblem(radiating_dof=DOFS[j], omega=omega, **at), keep_details=False) for j in kept]
-        added, damping = ([[getattr(one, what)[DOFS[i]] for one in some] for i in kept] for what in ("added_masses", "radiation_dampings"))
+        added, damping = (
+            [[getattr(one, what)[DOFS[i]] for one in some] for i in kept] for what in ("added_masses", "radiation_dampings")
+        )
         return np.array(added), np.array(damping)
 
     periods, masses = {}, {}
     for index, dof in enumerate(names):
-        omega = 0.0 if index == 0 else 2 * math.pi / START[name][index - 1]   # in surge and sway nearly at zero frequency
+        omega = 0.0 if index == 0 else 2 * math.pi / START[name][index - 1]  # in surge and sway nearly at zero frequency
         for _ in range(1 if index == 0 else 4):
             added = radiation(omega)[0]
             square, vectors = np.linalg.eig(np.linalg.solve(mass + added, stiffness))
-            energy = np.abs(vectors * (stiffness @ vectors))                  # of every motion, by mode
+            energy = np.abs(vectors * (stiffness @ vectors))  # of every motion, by mode
             omega = float(np.sqrt(square.real[np.argmax(energy[index] / energy.sum(axis=0))]))
         periods[dof], masses[dof] = 2 * math.pi / omega, np.diag(added).tolist()
     period, heading = WAVES[name], math.radians(HEADINGS.get(name, 0.0))
@@ -163,10 +175,17 @@ def solved(name: str) -> dict:
     added, damping = radiation(omega)
     motion = np.linalg.solve(stiffness - omega**2 * (mass + added) - 1j * omega * damping, force)
     return {
-        "panels": int(body.mesh.nb_faces), "volume": volume, "pressure": np.diag(pressure)[2:5].tolist(), "periods": periods,
-        "added_mass": masses, "wave": {
-            "period": period, "heading": math.degrees(heading), "added_mass": np.diag(added).tolist(),
-            "motion": dict(zip(names, np.abs(motion).tolist())), "force": dict(zip(names, np.abs(force).tolist())),
+        "panels": int(body.mesh.nb_faces),
+        "volume": volume,
+        "pressure": np.diag(pressure)[2:5].tolist(),
+        "periods": periods,
+        "added_mass": masses,
+        "wave": {
+            "period": period,
+            "heading": math.degrees(heading),
+            "added_mass": np.diag(added).tolist(),
+            "motion": dict(zip(names, np.abs(motion).tolist())),
+            "force": dict(zip(names, np.abs(force).tolist())),
         },
     }
 

@@ -41,8 +41,8 @@ from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, say
 
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
-    "seeds", "coverage", "identified", "periods", "hulls", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas",
-    "classical_bias", "starts", "global_search", "study", "diagnoses", "lacking", "numerical_tank",
+    "seeds", "coverage", "identified", "periods", "hulls", "openfast", "openfast_waves", "measured", "measured_waves",
+    "tuned_seas", "classical_bias", "starts", "global_search", "study", "diagnoses", "lacking", "numerical_tank",
 )  # fmt: skip
 INTRO = """\
 # Validation

@@ -40,7 +40,7 @@ class ModelDamping:
 
 
 def motion_shape(model: Model, dof: str, position: Float[Array, "6"] | None = None) -> np.ndarray:
-    """(6,) natural mode in which `dof` has the largest strain energy, as rates of surge ... yaw (m/s, rad/s) where that of `dof` is 1.
+    """(6,) natural mode with the largest strain energy in `dof`, as rates of surge ... yaw (m/s, rad/s), 1 for `dof`.
 
     A platform let go in pitch also surges: its decay has the inertia and damping of the mode. Raises ValueError where no
     mode is mainly of `dof`; KeyError for an unknown one.

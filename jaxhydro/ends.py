@@ -30,6 +30,8 @@ class Ends(eqx.Module):
     label: tuple[int, ...] = eqx.field(static=True)
     labels: tuple[str, ...] = eqx.field(static=True)
     strip: tuple[int, ...] = eqx.field(static=True)  # the strip of every face
+    # ends of members that lie at the surface: their place, the element beside, its wet share at the reference position
+    afloat: tuple[tuple[int, int, float], ...] = eqx.field(static=True, default=())
 
 
 class _End(NamedTuple):
@@ -56,21 +58,25 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     rows: list[_End] = []
     faces: list[_End] = []
     of: list[int] = []
-    taper, count = np.asarray(strips.taper), 0
+    afloat: list[tuple[int, int, float]] = []
+    taper, count, elements = np.asarray(strips.taper), 0, 0
     for member in members:
         upright = bool(member.axis @ (member.b - member.a) > 0)
         label = labels.index(member.group) if member.column else 0
+        orders = member.elements_and_orders(size)
         for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
             area = float(member.area(member.size(np.array([fraction])))[0])
             radius = math.sqrt(area / math.pi) if member.column else 0.0
             own = (radius, area if member.column else 0.0, 2 / 3 * math.pi * radius**3)
             if (up := member.upward) is not None and member.floats:
                 part, middle, _ = wet_section(member.submerged, member.circular)
+                afloat.append((len(rows), elements + (len(orders) - 1 if fraction else 0), part))
                 area, direction = part * area, member.directions[up]
                 height = float(member.size(np.array([fraction]))[0][up])
                 point = point + middle * height * direction * np.sign(direction[2])
             rows.append(_End(point, member.axis, member.gauge, 1.0 if far else -1.0, area, *own, label))
-        for lo, hi, order in member.elements_and_orders(size):
+        elements += len(orders)
+        for lo, hi, order in orders:
             near, far_end = (lo, hi) if upright else (hi, lo)
             first, last = (float(member.area(member.size(np.array([at])))[0]) for at in (near, far_end))
             if taper[:, count].any():
@@ -84,7 +90,7 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     vectors = [np.array(column, float).reshape(-1, 3).T for column in columns[:3]]
     numbers = [np.array(column, float) for column in columns[3:-1]]
     fields: dict[str, Any] = dict(zip(_End._fields, map(jnp.asarray, (*vectors, *numbers))))
-    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of))
+    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of), afloat=tuple(afloat))
 
 
 def _free(rows: Sequence[_End]) -> list[_End]:

@@ -50,7 +50,14 @@ CASES = {
     "iti-barge": Case("ITI Energy barge", HULLS / "iti-barge.yaml", 20.0, 0.01, 0.0),
     "ship-section": Case("ship section, 0.4 m wide", HULLS / "ship-section.yaml", 3.0, 2e-4, 90.0),
 }  # fmt: skip
-BASES = {"name": "base_column", "shape": "circ", "d": 24.0, "rA": [28.868, 0, -20], "rB": [28.868, 0, -14], "maccamy_fuchs": True}
+BASES = {
+    "name": "base_column",
+    "shape": "circ",
+    "d": 24.0,
+    "rA": [28.868, 0, -20],
+    "rB": [28.868, 0, -14],
+    "maccamy_fuchs": True,
+}
 UPPER = {"name": "upper_column", "shape": "circ", "d": 12.0, "rA": [28.868, 0, -14], "rB": [28.868, 0, 12]}
 
 

@@ -9,6 +9,7 @@ for a wave eta = Re a exp(i (omega t - k . x)). Drag, of second order in the wav
 or inclined cylinders and boxes, and level ones that are wholly wet or lie at the surface.
 """
 
+import itertools
 import math
 from typing import Any, NamedTuple
 
@@ -45,7 +46,11 @@ def copies(platform: dict[str, Any]) -> list[dict[str, Any]]:
 
 def across(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Two unit vectors across an axis: the first horizontal."""
-    first = np.array([1.0, 0, 0]) if abs(axis[2]) > 1 - 1e-9 else np.cross([0, 0, 1], axis) / np.linalg.norm(np.cross([0, 0, 1], axis))
+    first = (
+        np.array([1.0, 0, 0])
+        if abs(axis[2]) > 1 - 1e-9
+        else np.cross([0, 0, 1], axis) / np.linalg.norm(np.cross([0, 0, 1], axis))
+    )
     return first, np.cross(axis, first)
 
 
@@ -58,7 +63,9 @@ def sections(member: dict[str, Any], share: np.ndarray) -> np.ndarray:
     at = (at - at[0]) / (at[-1] - at[0])
     # a station named twice: what lies at it belongs to the piece above
     piece = np.clip(np.searchsorted(at, share, side="right") - 1, 0, len(at) - 2)
-    size = sizes[piece] + (sizes[piece + 1] - sizes[piece]) * (share - at[piece]) / np.maximum(at[piece + 1] - at[piece], 1e-300)
+    size = sizes[piece] + (sizes[piece + 1] - sizes[piece]) * (share - at[piece]) / np.maximum(
+        at[piece + 1] - at[piece], 1e-300
+    )
     return np.stack([size, size])
 
 
@@ -71,12 +78,12 @@ def pieces(member: dict[str, Any], heave: float) -> list[tuple[float, float]]:
     first, last = (0.0, cut) if low < high else (cut, 1.0)
     if high == low:
         first, last = 0.0, 1.0
-    return [(max(a, first), min(b, last)) for a, b in zip(at, at[1:]) if min(b, last) > max(a, first)]
+    return [(max(a, first), min(b, last)) for a, b in itertools.pairwise(at) if min(b, last) > max(a, first)]
 
 
-def loads_of(platform: dict[str, Any], heave: float) -> tuple[Loads, np.ndarray]:
+def loads_of(platform: dict[str, Any], heave: float, afloat_too: bool = True) -> tuple[Loads, np.ndarray]:
     """Slices, ends and steps of all members; and volume (m3), waterplane (m2, m4 about x and y) and the moment of the volume
-    (m4) about the reference point, which is at z = `heave` (m)."""
+    (m4) about the reference point, which is at z = `heave` (m). Without boxes `afloat_too` for their form alone."""
     rho = platform["water"]["density"]
     rows: list[tuple] = []
     form = np.zeros(5)
@@ -105,48 +112,65 @@ def loads_of(platform: dict[str, Any], heave: float) -> tuple[Loads, np.ndarray]
         elif a[2] + heave >= 0:
             continue
 
-        def row(point: np.ndarray, direction: np.ndarray, added: float, inertia: float, area: float, radius: float) -> None:
-            rows.append((point, direction, added, inertia, area, radius))
-
         found = pieces(member, heave)
         afloat = 0 < wet < 1 and not column
-        closed = 0.0 if afloat else 1.0                              # the body's own volume in the waves
+        closed = 0.0 if afloat else 1.0  # the body's own volume in the waves
         for first, last in found:
             share = first + (np.arange(SLICES) + 0.5) / SLICES * (last - first)
             size = sections(member, share)
             volumes = shape * size[0] * size[1] * wet * length * (last - first) / SLICES
             points = a[:, None] + along[:, None] * share + lowered[:, None]
-            if afloat:
+            if afloat and afloat_too:
                 rows += box_afloat(a, along, e1, e2, np.array(sections(member, share)[:, 0]), wet, lowered, heave, rho)
             for i in range(SLICES):
                 radius = 0.5 * size[0, i] if at_surface else 0.0
-                row(points[:, i], e1, rho * c["Ca_t"] * volumes[i], rho * (closed + c["Ca_t"]) * volumes[i], 0.0, radius)
-                row(points[:, i], e2, rho * c["Ca_" + second] * volumes[i], rho * (closed + c["Ca_" + second]) * volumes[i], 0.0, radius)
+                rows.append(
+                    (points[:, i], e1, rho * c["Ca_t"] * volumes[i], rho * (closed + c["Ca_t"]) * volumes[i], 0.0, radius)
+                )
+                rows.append(
+                    (
+                        points[:, i],
+                        e2,
+                        rho * c["Ca_" + second] * volumes[i],
+                        rho * (closed + c["Ca_" + second]) * volumes[i],
+                        0.0,
+                        radius,
+                    )
+                )
             form += [volumes.sum(), 0, 0, 0, volumes @ points[2]]
             edges = sections(member, np.linspace(first + 1e-12, last - 1e-12, SLICES + 1))
             surface, radii = shape * edges[0] * edges[1], 0.5 * edges[0]
-            for i in range(SLICES):                                  # a side that looks along the axis
+            for i in range(SLICES):  # a side that looks along the axis
                 if (grown := surface[i + 1] - surface[i]) != 0.0:
                     mass = rho * c["Ca_z"] * 2 / 3 * math.pi * abs(radii[i + 1] ** 3 - radii[i] ** 3) if column else 0.0
-                    row(points[:, i], axis, mass, mass, grown, 0.0)
-        ends = [(found[0][0], found[0][0], 1.0), *((u[1], v[0], 0.0) for u, v in zip(found, found[1:])), (found[-1][1], found[-1][1], -1.0)]
-        for below, above, way in ends:                               # bottom, steps, top
-            sizes = [sections(member, np.array([max(below - 1e-12, 0.0)])), sections(member, np.array([min(above + 1e-12, 1.0)]))]
+                    rows.append((points[:, i], axis, mass, mass, grown, 0.0))
+        ends = [
+            (found[0][0], found[0][0], 1.0),
+            *((u[1], v[0], 0.0) for u, v in itertools.pairwise(found)),
+            (found[-1][1], found[-1][1], -1.0),
+        ]
+        for below, above, way in ends:  # bottom, steps, top
+            sizes = [
+                sections(member, np.array([max(below - 1e-12, 0.0)])),
+                sections(member, np.array([min(above + 1e-12, 1.0)])),
+            ]
             surface = [shape * float(s[0, 0] * s[1, 0]) * wet for s in sizes]
             radius = [0.5 * float(s[0, 0]) if shape < 1 else math.sqrt(float(s[0, 0] * s[1, 0]) / math.pi) for s in sizes]
             point = a + along * below + lowered
-            pushed, size = (surface[1] - surface[0], radius[0] ** 3 - radius[1] ** 3) if way == 0.0 else (way * surface[0], radius[0] ** 3)
+            pushed, size = (
+                (surface[1] - surface[0], radius[0] ** 3 - radius[1] ** 3) if way == 0.0 else (way * surface[0], radius[0] ** 3)
+            )
             if way == -1.0 and column and point[2] + heave > -1e-9:
-                tilt = 1 / axis[2]                                   # the waterplane of a leaning column
+                tilt = 1 / axis[2]  # the waterplane of a leaning column
                 own = shape * float(sizes[0][0, 0] * sizes[0][1, 0]) * tilt
                 w, h = float(sizes[0][0, 0]), float(sizes[0][1, 0])
                 bend = own * (w * h / 16 if shape < 1 else 1 / 12) * (np.ones(2) if shape < 1 else np.array([h**2, w**2]))
                 form[1:4] += [own, own * point[1] ** 2 + bend[0], own * point[0] ** 2 + bend[1]]
-                row(point, np.array([0, 0, tilt]) - axis, 0.0, 0.0, surface[0], 0.0)   # nothing of an upright one
+                rows.append((point, np.array([0, 0, tilt]) - axis, 0.0, 0.0, surface[0], 0.0))  # nothing of an upright one
                 continue
             mass = rho * c["Ca_z"] * 2 / 3 * math.pi * abs(size) if column else 0.0
             if pushed != 0.0 and not afloat:
-                row(point, axis, mass, mass, pushed, 0.0)
+                rows.append((point, axis, mass, mass, pushed, 0.0))
         if afloat:
             width = float(sections(member, np.array([0.5]))[0, 0])
             middle, own = 0.5 * (a + b), width * length
@@ -157,9 +181,9 @@ def loads_of(platform: dict[str, Any], heave: float) -> tuple[Loads, np.ndarray]
     return Loads(point.T + np.array([[0], [0], [heave]]), lever, added, inertia, area, radius), form
 
 
-def box_afloat(a, along, e1, e2, size, wet, lowered, heave, rho) -> list[tuple]:  # noqa: ANN001
+def box_afloat(a, along, e1, e2, size, wet, lowered, heave, rho) -> list[tuple]:
     """Rows of the pressure on a box afloat: that of the water's acceleration in its wet volume, and on its waterplane."""
-    (n, across_, deep), (width, height) = (60, 16, 8), size
+    (n, across_, deep), (width, height) = (32, 24, 8), size
     s, y, z = ((np.arange(count) + 0.5) / count for count in (n, across_, deep))
     lid = 1 / (n * across_) * width * np.linalg.norm(along)
     rows = []
@@ -204,10 +228,12 @@ class Hull:
         given = platform.get("hydrostatics", {})
 
         def lift(heave: float) -> float:
-            volume = given["displaced_volume"] - given["C33"] / weight * heave if given else loads_of(platform, heave)[1][0]
+            volume = (
+                given["displaced_volume"] - given["C33"] / weight * heave if given else loads_of(platform, heave, False)[1][0]
+            )
             return weight * volume - self.mass[0, 0] * self.water["gravity"] + pull - lines[2, 2] * heave
 
-        reach = 0.1 * self.mass[0, 0] / (self.water["density"] * loads_of(platform, 0.0)[1][1])
+        reach = 0.1 * self.mass[0, 0] / (self.water["density"] * loads_of(platform, 0.0, False)[1][1])
         self.heave = brentq(lift, -reach, reach, xtol=1e-12) if abs(lift(0.0)) > 1e-9 * weight else 0.0
         self.loads, form = loads_of(platform, self.heave)
         self.volume = float(form[0])
@@ -225,8 +251,11 @@ class Hull:
         energy = np.abs(vectors * (self.stiffness @ vectors)).real
         share = energy / energy.sum(axis=0)
         names = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-        return {dof: float(2 * math.pi / math.sqrt(values.real[np.argmax(share[i])])) for i, dof in enumerate(names)
-                if self.stiffness[i, i] > 0}
+        return {
+            dof: float(2 * math.pi / math.sqrt(values.real[np.argmax(share[i])]))
+            for i, dof in enumerate(names)
+            if self.stiffness[i, i] > 0
+        }
 
     def motion(self, period: float, heading: float) -> np.ndarray:
         """Complex motion (m, rad) per metre of wave amplitude, in a wave that runs to a `heading` (rad)."""
