@@ -181,8 +181,8 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     square, vectors = square.real[order], vectors.real[:, order]
     largest = np.abs(square).max()
     kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
-    share = strain_energy(stiffness, vectors[:, kept])
-    motion = tuple(DOFS[int(i)] for i in np.argmax(share, axis=0))
+    share = strain_energy(jnp.asarray(stiffness), jnp.asarray(vectors[:, kept]))
+    motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
     vectors = vectors * widths(model)[:, None]
     shape = vectors[:, kept].T
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)

@@ -53,7 +53,9 @@ def moved(name: str) -> dict[str, float]:
     return motion(model(name), CASES[name])
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name == "volturnus-s" else ()) for name in CASES]
+)
 def test_natural_periods(name: str) -> None:
     found = own_periods(name)
     own = reference(name).periods()
@@ -67,7 +69,7 @@ def test_natural_periods(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=() if name in ("oc3-hywind", "iti-barge") else pytest.mark.slow) for name in CASES]
+    "name", [pytest.param(name, marks=() if name == "iti-barge" else pytest.mark.slow) for name in CASES]
 )
 def test_a_small_regular_wave(name: str) -> None:
     """A strip afloat takes the waves as linear across its section, which shows in the ship section's roll."""
