@@ -23,6 +23,7 @@ from benchmarks.evidence import (
     coverage,
     diagnoses,
     global_search,
+    hulls,
     identified,
     lacking,
     measured,
@@ -40,8 +41,8 @@ from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, say
 
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
-    "seeds", "coverage", "identified", "periods", "openfast", "openfast_waves", "measured", "measured_waves", "tuned_seas",
-    "classical_bias", "starts", "global_search", "study", "diagnoses", "lacking", "numerical_tank",
+    "seeds", "coverage", "identified", "periods", "hulls", "openfast", "openfast_waves", "measured", "measured_waves",
+    "tuned_seas", "classical_bias", "starts", "global_search", "study", "diagnoses", "lacking", "numerical_tank",
 )  # fmt: skip
 INTRO = """\
 # Validation
@@ -77,7 +78,7 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return lacking.run(figures, options.processes)
     if name == "diagnoses":
         return diagnoses.run(figures, options.processes, options.diagnoses)
-    plain = {"periods": periods, "openfast": openfast, "openfast_waves": openfast_waves,
+    plain = {"periods": periods, "hulls": hulls, "openfast": openfast, "openfast_waves": openfast_waves,
              "measured": measured, "study": study_text}  # fmt: skip
     return plain[name].run(figures)
 

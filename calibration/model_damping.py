@@ -40,7 +40,7 @@ class ModelDamping:
 
 
 def motion_shape(model: Model, dof: str, position: Float[Array, "6"] | None = None) -> np.ndarray:
-    """(6,) natural mode in which `dof` is the largest, as rates of surge ... yaw (m/s, rad/s) where that of `dof` is 1.
+    """(6,) natural mode with the largest strain energy in `dof`, as rates of surge ... yaw (m/s, rad/s), 1 for `dof`.
 
     A platform let go in pitch also surges: its decay has the inertia and damping of the mode. Raises ValueError where no
     mode is mainly of `dof`; KeyError for an unknown one.
@@ -48,10 +48,9 @@ def motion_shape(model: Model, dof: str, position: Float[Array, "6"] | None = No
     if dof not in DOFS:
         raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")
     modes, place = natural_modes(model, position), DOFS.index(dof)
-    for shape in modes.shape:
-        if np.argmax(np.abs(shape)) == place:
-            rates = shape / widths(model)
-            return rates / rates[place]
+    if (at := modes.number(dof)) is not None:
+        rates = modes.shape[at] / widths(model)
+        return rates / rates[place]
     raise ValueError(f"expected a natural mode mainly of {dof}, found none: nothing restores it")
 
 

@@ -15,9 +15,9 @@ from calibration.records import Record
 from calibration.residuals import group_products
 from jaxhydro.environment import DOFS
 from jaxhydro.model import Model
-from jaxhydro.statics import WIDTH, characteristic_length, equilibrium, held_at, linearised
+from jaxhydro.statics import characteristic_length, equilibrium, held_at, linearised, strain_energy
 
-ALIKE = 0.7  # of a shape's largest entry: surge and sway of one period may come mixed
+ALIKE = 0.7  # of a mode's largest share of strain energy: surge and sway of one period may come mixed
 NEAR = 1e-4  # of an eigenvalue, off which inverse iterations are shifted
 CORRECTIONS = 3  # steps of Newton's method, where sensors track another point
 
@@ -86,7 +86,7 @@ def pose_offsets(model: Model, records: Sequence[Record], space: ParameterSpace,
 
 class PeriodProblem(eqx.Module):
     """Stated natural periods: ln(T / stated) over its relative standard deviation. T is that of the undamped natural mode in
-    which the motion is the largest (`natural_modes`)."""
+    which the motion has the largest strain energy (`natural_modes`)."""
 
     model: Model
     stated: Float[Array, " n"]  # s
@@ -124,9 +124,8 @@ def natural_period(model: Model, dof: int) -> Float[Array, ""]:
 
     whole = scaled(k)
     square, vectors = jnp.linalg.eigh(0.5 * (whole + whole.T))
-    wide = jnp.ones(6).at[3:].set(WIDTH * model.size)
-    shape = jnp.abs(jax.scipy.linalg.solve_triangular(half.T, vectors, lower=False)).T * wide
-    mine = (shape[:, dof] > ALIKE * shape.max(axis=1)) & (square > 1e-10 * jnp.abs(square).max())
+    share = strain_energy(k, jax.scipy.linalg.solve_triangular(half.T, vectors, lower=False))
+    mine = (share[dof] > ALIKE * share.max(axis=0)) & (square > 1e-10 * jnp.abs(square).max())
     at = jnp.argmin(jnp.where(mine, square, jnp.inf))
     right = left = vectors[:, at]
     near = whole - square[at] * (1 + NEAR) * jnp.eye(6)

@@ -32,6 +32,8 @@ class Ends(eqx.Module):
     labels: tuple[str, ...] = eqx.field(static=True)
     strip: tuple[int, ...] = eqx.field(static=True)  # the strip of every face
     shares: Shares = eqx.field(static=True, default=())
+    # ends of members that lie at the surface: their place, the element beside, its wet share at the reference position
+    afloat: tuple[tuple[int, int, float], ...] = eqx.field(static=True, default=())
 
     def parameters(self, symbol: str) -> list[str]:
         """Labels of a parameter, such as column.Cd_z of `symbol` Cd, in the order of `labels`."""
@@ -62,21 +64,25 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     rows: list[_End] = []
     faces: list[_End] = []
     of: list[int] = []
-    taper, count = np.asarray(strips.taper), 0
+    afloat: list[tuple[int, int, float]] = []
+    taper, count, elements = np.asarray(strips.taper), 0, 0
     for member in members:
         upright = bool(member.axis @ (member.b - member.a) > 0)
         label = labels.index(member.group) if member.column else 0
+        orders = member.elements_and_orders(size)
         for point, fraction, far in ((member.a, 0.0, not upright), (member.b, 1.0, upright)):
             area = float(member.area(member.size(np.array([fraction])))[0])
             radius = math.sqrt(area / math.pi) if member.column else 0.0
             own = (radius, area if member.column else 0.0, 2 / 3 * math.pi * radius**3)
             if (up := member.upward) is not None and member.floats:
                 part, middle, _ = wet_section(member.submerged, member.circular)
+                afloat.append((len(rows), elements + (len(orders) - 1 if fraction else 0), part))
                 area, direction = part * area, member.directions[up]
                 height = float(member.size(np.array([fraction]))[0][up])
                 point = point + middle * height * direction * np.sign(direction[2])
             rows.append(_End(point, member.axis, member.gauge, 1.0 if far else -1.0, area, *own, label))
-        for lo, hi, order in member.elements_and_orders(size):
+        elements += len(orders)
+        for lo, hi, order in orders:
             near, far_end = (lo, hi) if upright else (hi, lo)
             first, last = (float(member.area(member.size(np.array([at])))[0]) for at in (near, far_end))
             if taper[:, count].any():
@@ -91,7 +97,7 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
     numbers = [np.array(column, float) for column in columns[3:-1]]
     fields: dict[str, Any] = dict(zip(_End._fields, map(jnp.asarray, (*vectors, *numbers))))
     shares = shares_of((member.group, member.shared) for member in members)
-    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of), shares=shares)
+    return Ends(**fields, label=columns[-1], labels=labels, strip=tuple(of), shares=shares, afloat=tuple(afloat))
 
 
 def _free(rows: Sequence[_End]) -> list[_End]:

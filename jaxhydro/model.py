@@ -302,7 +302,7 @@ class Model(eqx.Module):
             hull,
             wetted,
             shape,
-            EndShape.of(hull, covered, extent),
+            EndShape.of(hull, wetted, covered, extent),
             past,
             past_end,
             lines,

@@ -116,22 +116,36 @@ def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"
 
 
 class Modes(NamedTuple):
-    """Undamped natural modes of small motion: period (s), longest first; shape (mode, dof), the largest entry 1; and motions in
-    which the platform falls away from rest."""
+    """Undamped natural modes of small motion: period (s), longest first; shape (mode, dof), the largest entry 1; motions in
+    which the platform falls away from rest; and the motion with the largest strain energy in every mode."""
 
     period: np.ndarray
     shape: np.ndarray
-    unstable: tuple[str, ...] = ()
+    unstable: tuple[str, ...]
+    motion: tuple[str, ...]
+
+    def number(self, dof: str) -> int | None:
+        """Place of the longest mode in which `dof` has the largest strain energy; None if there is none."""
+        return self.motion.index(dof) if dof in self.motion else None
 
     def of(self, dof: str) -> float:
-        """Longest period (s) of a mode in whose shape `dof` is the largest entry; nan if there is none.
+        """Longest period (s) of a mode in which `dof` has the largest strain energy; nan if there is none.
 
         Raises UnknownName for another name."""
         if dof not in DOFS:
             raise unknown("degree of freedom", dof, DOFS)
-        index = DOFS.index(dof)
-        mine = [period for period, shape in zip(self.period, self.shape, strict=True) if np.argmax(np.abs(shape)) == index]
-        return float(mine[0]) if mine else float("nan")
+        at = self.number(dof)
+        return float("nan") if at is None else float(self.period[at])
+
+
+def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) -> Float[Array, "6 m"]:
+    """Share (-) of every degree of freedom in the potential energy of modes with the shapes `vectors`.
+
+    It has no unit to choose, and the height of the reference point hardly matters: a spar that pitches about a point far below
+    still water moves the reference point by more than its angle, but only the angle is restored.
+    """
+    energy = abs(vectors * (stiffness @ vectors))
+    return energy / energy.sum(axis=0)
 
 
 @eqx.filter_jit
@@ -172,11 +186,13 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
     square, vectors = square.real[order], vectors.real[:, order]
     largest = np.abs(square).max()
     kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
+    share = strain_energy(jnp.asarray(stiffness), jnp.asarray(vectors[:, kept]))
+    motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
     vectors = vectors * widths(model)[:, None]
     shape = vectors[:, kept].T
     shape = shape / np.abs(shape).max(axis=1, keepdims=True)
     unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
-    return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable))
+    return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable), motion)
 
 
 def _coupled(model: Model, moved: Collection[str]) -> set[str]:

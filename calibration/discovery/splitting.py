@@ -117,7 +117,7 @@ def own_mode(model: Model, dof: str) -> tuple[float, float]:
     motion."""
     position = equilibrium(model)
     modes, mass = natural_modes(model, position), np.asarray(linearised(model, position)[0])
-    i = int(np.argmin(np.where(np.argmax(np.abs(modes.shape), axis=1) == DOFS.index(dof), -modes.period, np.inf)))
+    i = modes.number(dof) or 0
     shape = modes.shape[i] / widths(model)
     return float(modes.period[i]), float(shape @ mass @ shape) / float(shape[DOFS.index(dof)]) ** 2
 

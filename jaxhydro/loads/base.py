@@ -61,7 +61,8 @@ class StripShape(NamedTuple):
 
 class EndShape(NamedTuple):
     """What ends and faces are: the area (m2) on which pressure acts, that which a flow along the axis sees, and the volume (m3)
-    to which added mass refers. Of a face it is that of the wet part of its strip; an end is wet by `EndFlow.wet`.
+    to which added mass refers. Of a face it is that of the wet part of its strip; an end is wet by `EndFlow.wet`. The end of
+    a member that lies at the surface has the area of the wet section beside it.
 
     A face of a strip over which the section A grows by dA has the area dA, against the axis, and the volume r dA, A = pi r^2:
     over a step that makes 2/3 pi (R^3 - r^3), the difference of two half spheres. OpenFAST HydroDyn, Morison module (tapered
@@ -73,10 +74,13 @@ class EndShape(NamedTuple):
     volume: Float[Array, " m"]
 
     @classmethod
-    def of(cls, hull: Hull, covered: Float[Array, " n"], extent: Float[Array, "2 n"]) -> "EndShape":
+    def of(cls, hull: Hull, wetted: Wetted, covered: Float[Array, " n"], extent: Float[Array, "2 n"]) -> "EndShape":
         """Those of a hull's ends and faces; `covered` (m) is the wet length of every strip, `extent` (m) its size."""
-        ends, strips = hull.ends, hull.strips
-        own = cls(ends.area, ends.facing, ends.volume)
+        ends, strips, area = hull.ends, hull.strips, hull.ends.area
+        if ends.afloat:
+            at, beside, part = (jnp.array(column) for column in zip(*ends.afloat, strict=True))
+            area = area.at[at].set(area[at] / part * wetted.length[beside] / hull.elements.length[beside])
+        own = cls(area, ends.facing, ends.volume)
         if not ends.strip:
             return own
         of = jnp.array(ends.strip, dtype=int)
