@@ -8,8 +8,8 @@ from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF,
 from benchmarks.evidence.numerical_tank_truth import REACH
 from calibration.discovery.effect_names import called
 from calibration.discovery.judgement import LOST, TIMES
-from calibration.discovery.words import plain, several
-from calibration.formatting import number, percent, quantity
+from calibration.discovery.words import plain
+from calibration.formatting import listed, number, percent, quantity
 
 HALVES = {FITTED: "fitted", HELD: "held out"}
 BANDS = {"low_frequency": "low", "wave_frequency": "wave"}
@@ -101,7 +101,7 @@ def missing_table(results: dict[str, Any], known: dict[str, Any]) -> str:
 def excitation(known: dict[str, Any]) -> str:
     """The strips' first-order excitation at the waves' peak beside WAMIT's."""
     loads = known["excitation"]
-    shares = several([f"{100 * a / b:.0f} % in {motion}" for motion, (a, b, _) in loads.items()])
+    shares = listed([f"{100 * a / b:.0f} % in {motion}" for motion, (a, b, _) in loads.items()])
     ahead = sorted(-math.degrees(angle) for _, _, angle in loads.values())
     return f"strips have {shares} of WAMIT's, {ahead[0]:.0f} to {ahead[-1]:.0f} deg ahead of it"
 
@@ -186,7 +186,7 @@ deviation, offset included:
 **The tank's own tables among the candidates** (`radiation`, `excitation` and `drift` of the platform file, `use: candidate`:
 the WAMIT files that OpenFAST's forces are made of; a share of 1 is the truth): {verdict_of(results["tables"])} J of the
 held-out half becomes {results["tables"]["objective"]["holdout"][1]:.2f}. Not in the tank:
-{several(not_there(results["tables"], OF_TABLES)) or "nothing of that"}. Beside the tables strips still have a drift, an
+{listed(not_there(results["tables"], OF_TABLES)) or "nothing of that"}. Beside the tables strips still have a drift, an
 excitation by their drag and a viscous damping of their own.
 
 {effects_table(results["tables"]) if results["tables"]["effects"] else ""}
@@ -234,7 +234,7 @@ its linear part is {quantity(moving[0], None, "N/m")} beside {quantity(static[0]
 
 def verdict_of(found: dict[str, Any]) -> str:
     """The verdict in a sentence or two."""
-    names = several([named(one) for one in found["effects"]])
+    names = listed([named(one) for one in found["effects"]])
     share, signature = found["unexplained"]
     head = {"found": f"*found*, {names}", "nothing_missing": "*nothing missing*"}.get(found["verdict"], "*unexplained*")
     left = f"{head}. {percent(share)} of the error's energy is left: {signature.rstrip('.')}."
@@ -265,9 +265,9 @@ def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
         short.append(f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "
                      f"what was found, {percent(decay[0])} where the decays are fitted alone")  # fmt: skip
     if lost:
-        short.append(f"numerical tank: there and not found: {several([called(*pair) for pair in lost])}")
+        short.append(f"numerical tank: there and not found: {listed([called(*pair) for pair in lost])}")
     if wrong := not_there(results["all"], MISSING):
-        short.append(f"numerical tank: found and not there: {several(wrong)}")
+        short.append(f"numerical tank: found and not there: {listed(wrong)}")
     if wrong := not_there(results["tables"], OF_TABLES):
-        short.append(f"numerical tank: found beside the tables that its forces are made of, and not there: {several(wrong)}")
+        short.append(f"numerical tank: found beside the tables that its forces are made of, and not there: {listed(wrong)}")
     return tuple(short)

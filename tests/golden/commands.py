@@ -30,7 +30,7 @@ NUMBERS = HERE / "numbers"
 SAME_MACHINE = 1e-9  # relative: moved code does the same arithmetic
 OTHER_MACHINE = {"simulation": 1e-7, "fit": 1e-3}  # another processor rounds otherwise, and an iteration amplifies that
 HEADLINE = re.compile(r"objective\.|\.rmse$|verdict$|effects\[\d+\]\.effect$|converged$")  # of a fit, on another processor
-SMALL = 1e-9  # of the largest number under one key: below it a number is rounding
+ZERO = 1e-12  # a difference below is rounding, of what is zero
 VOLATILE = re.compile(r"seconds|history|evaluations|version|jaxhydro$|created|source$|figures|notes|warnings|file$|platform$")
 NAMES = re.compile(r"verdict$|effect$|motion$|(^|\.)name$|label$|\.use$|outcome$")  # texts that are results, not wording
 
@@ -152,7 +152,7 @@ def differences(expected: dict[str, Any], found: dict[str, Any], tolerance: floa
         numbers = all(isinstance(x, int | float) and not isinstance(x, bool) for x in (a, b))
         if not numbers and a != b:
             lines.append(f"{path}: expected {a!r}, found {b!r}")
-        elif numbers and not math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance * SMALL):
+        elif numbers and not math.isclose(a, b, rel_tol=tolerance, abs_tol=ZERO):
             lines.append(f"{path}: expected {a!r}, found {b!r} ({abs(b - a) / max(abs(a), 1e-300):.1e} off)")
     return sorted(lines)
 
