@@ -14,10 +14,10 @@ import numpy as np
 from benchmarks.bench_sea import CUTOFF, ELEMENTS, HEIGHT, LOW, PERIOD, PLATFORM, STEP
 from benchmarks.bench_timing import Row, contest
 from jaxhydro import IrregularSea, State, build, equilibrium, jonswap, load_platform, spectrum_components
-from jaxhydro.convergence import with_elements
+from jaxhydro.dynamics.integrate import clock, integrate
+from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
-from jaxhydro.integrate import clock, integrate
-from jaxhydro.model import Model
+from jaxhydro.platform.convergence import with_elements
 
 SHORT, HOUR = 120.0, 3600.0  # s
 DISTINCT = 8  # seas; larger batches repeat them
@@ -138,7 +138,7 @@ def rounded(value: float) -> float:
 
 def draw(found: dict[str, dict[int, float]], device: str, path: Path) -> None:
     """Throughput against batch."""
-    from jaxhydro.plot import BEFORE, SIMULATED, header, save, stack, style
+    from jaxhydro.plots.style import BEFORE, SIMULATED, header, save, stack, style
 
     with style():
         figure, (ax,) = stack([1.6])

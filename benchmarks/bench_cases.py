@@ -22,9 +22,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.parameters import default_free, parameter_space
+from calibration.parameters.space import default_free, parameter_space
 from jaxhydro import Model, State, StillWater, equilibrium, free_decay, load_model
-from jaxhydro.integrate import integrate
+from jaxhydro.dynamics.integrate import integrate
 
 PLATFORM = Path(__file__).resolve().parents[1] / "jaxhydro" / "campaigns" / "volturnus-s-decays" / "platform.yaml"
 RELEASE = np.array([6.0, 0.0, 2.0, 0.0, np.deg2rad(4.0), 0.0])

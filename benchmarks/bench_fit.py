@@ -1,6 +1,7 @@
 """One calibration of the built-in campaign: this package's least squares against population searches on its simulator.
 
-Differential evolution (scipy), a genetic algorithm (pymoo) and CMA-ES (cma), as `calibration.searches` has them, get the same
+Differential evolution (scipy), a genetic algorithm (pymoo) and CMA-ES (cma), as `calibration.global_search` has
+them, get the same
 simulation at the same time step, the same bounds of the same coefficients on the same logarithmic scale, and two advantages:
 the records' releases and sensor offsets, which the least squares has to find too, are given to them as it found them, and
 their populations are simulated in batches.
@@ -16,13 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.bench_timing import Row, contest, times
-from calibration.campaign import load_campaign
-from calibration.fit import Fit, run
-from calibration.residuals import Problem, Unknowns, first_guess
-from calibration.search import Found, posed
-from calibration.search import run as search
-from calibration.searches import METHODS, Budget, Task
-from calibration.searches.descents import WindowedFit
+from calibration.campaign.load_campaign import load_campaign
+from calibration.fitting.decay_fit import Fit, run
+from calibration.global_search import METHODS, Budget, Task
+from calibration.global_search.descents import WindowedFit
+from calibration.global_search.run_search import Found, posed
+from calibration.global_search.run_search import run as search
+from calibration.residuals.decays import Problem, Unknowns, first_guess
 
 CAMPAIGN = Path(__file__).resolve().parents[1] / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 FACTOR = 10.0  # every coefficient is searched from a tenth to ten times of what the platform declares

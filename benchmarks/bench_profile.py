@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.bench_sea import STEP, Hour
 from benchmarks.bench_timing import Row, contest, times
 from jaxhydro import Model, State
-from jaxhydro.integrate import integrate
+from jaxhydro.dynamics.integrate import integrate
 from jaxhydro.rotations import rotation, turned
 from jaxhydro.waves.sea import AbstractSea
 

@@ -14,8 +14,8 @@ from benchmarks.bench_timing import Row, contest, times
 from benchmarks.reference_model import matrix_of, state_of
 from benchmarks.reference_waves import WaveModel, Waves, march
 from jaxhydro import IrregularSea, State, build, equilibrium, jonswap, load_platform, spectrum_components
-from jaxhydro.convergence import with_elements
-from jaxhydro.integrate import clock, integrate
+from jaxhydro.dynamics.integrate import clock, integrate
+from jaxhydro.platform.convergence import with_elements
 from jaxhydro.waves import Components
 
 HEIGHT, PERIOD = 8.1, 12.8  # m, s

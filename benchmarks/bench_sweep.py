@@ -18,10 +18,10 @@ from benchmarks.bench_batch import model_of, prepared, seas_of
 from benchmarks.bench_sea import CUTOFF, ELEMENTS, HEIGHT, LOW, PERIOD, PLATFORM, STEP
 from benchmarks.bench_timing import Row, contest, times
 from jaxhydro import State, equilibrium
-from jaxhydro.integrate import integrate
-from jaxhydro.model import Model
+from jaxhydro.dynamics.integrate import integrate
+from jaxhydro.dynamics.model import Model
 from jaxhydro.sweep import run_sweep
-from jaxhydro.sweep.schema import Sweep
+from jaxhydro.sweep.sweep_schema import Sweep
 from jaxhydro.waves.irregular import repeat_period
 
 ROOT = Path(__file__).resolve().parents[1]

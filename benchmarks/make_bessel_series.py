@@ -1,4 +1,4 @@
-"""Prints the Chebyshev series of jaxhydro/bessel.py to full double precision, ready to paste.
+"""Prints the Chebyshev series of jaxhydro/waves/bessel.py to full double precision, ready to paste.
 
     python benchmarks/make_bessel_series.py
 

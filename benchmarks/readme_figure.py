@@ -7,7 +7,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from benchmarks.evidence.lacking import CASES, DRAWN, MOTIONS, PAPER
-from jaxhydro.plot import BEFORE, GREY, SIMULATED, save, style
+from jaxhydro.plots.style import BEFORE, GREY, SIMULATED, save, style
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 LOW_BEFORE, LOW_AFTER = 3, 4  # columns of the table of seas

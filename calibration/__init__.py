@@ -1,26 +1,26 @@
 """Fits a jaxhydro model to measurements: `load_campaign`, then `calibrate`, `calibrate_in_waves`, or `search` first; and
 finds what the model lacks: `diagnose`."""
 
-from calibration.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
-from calibration.campaign import Campaign, load_campaign
-from calibration.candidates import decay_information, effective_noise, expected_information, rank_tests
-from calibration.classical import classical, equivalent_damping
-from calibration.directions import Identifiability
-from calibration.discovery.candidates import Candidate
+from calibration.campaign.load_campaign import Campaign, load_campaign
+from calibration.decay_analysis.linear_quadratic import classical, equivalent_damping
+from calibration.decay_analysis.model_damping import drag_coefficient, model_damping, motion_shape
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.result import Diagnosis
-from calibration.fit import Interrupted, Progress, calibrate
-from calibration.fit_uncertainty import identifiability_of
-from calibration.joint import calibrate_jointly
-from calibration.likelihood import Likelihood, likelihood
-from calibration.model_damping import drag_coefficient, model_damping, motion_shape
-from calibration.profile import Profile, profile
+from calibration.discovery.diagnosis import Diagnosis
+from calibration.discovery.effects.candidates import Candidate
+from calibration.fitting.decay_fit import Interrupted, Progress, calibrate
+from calibration.fitting.fit_uncertainty import identifiability_of
+from calibration.fitting.joint_fit import calibrate_jointly
+from calibration.fitting.law_choice import SeaLaws, choose_law
+from calibration.fitting.sea_fit import calibrate_in_waves
+from calibration.global_search import Budget
+from calibration.global_search.run_search import Found, SearchInterrupted, search
+from calibration.identifiability.directions import Identifiability
 from calibration.result import Calibration, Estimate, Series, TestFit
-from calibration.sampling import Samples, sample
-from calibration.sea_fit import calibrate_in_waves
-from calibration.sea_laws import SeaLaws, choose_law
-from calibration.search import Found, SearchInterrupted, search
-from calibration.searches import Budget
+from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats
+from calibration.uncertainty.likelihood import Likelihood, likelihood
+from calibration.uncertainty.nuts import Samples, sample
+from calibration.uncertainty.profile import Profile, profile
+from calibration.uncertainty.test_design import decay_information, effective_noise, expected_information, rank_tests
 
 __all__ = [
     "Bootstrap", "Budget", "Calibration", "Campaign", "Candidate", "Diagnosis", "Estimate", "Found",

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from jaxhydro.model import Model
+from jaxhydro.dynamics.model import Model
 
 if TYPE_CHECKING:
-    from calibration.directions import Identifiability
+    from calibration.identifiability.directions import Identifiability
 
 
 @dataclass(frozen=True, eq=False)

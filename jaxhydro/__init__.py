@@ -16,16 +16,16 @@ from jaxhydro.start import start as _start
 
 _start()  # before the imports below, which may compute
 
-from jaxhydro.convergence import Convergence, convergence
+from jaxhydro.dynamics.model import Model, RigidBody, State
+from jaxhydro.dynamics.response import Response
+from jaxhydro.dynamics.simulate import free_decay, simulate
+from jaxhydro.dynamics.statics import EquilibriumError, equilibrium, natural_modes
 from jaxhydro.environment import DOFS, Environment
+from jaxhydro.errors import InputError
 from jaxhydro.loads import LOADS, AbstractLoad, Action, Instant, Parameter
-from jaxhydro.model import Model, RigidBody, State
-from jaxhydro.platform import build, load_model
-from jaxhydro.platform_schema import Platform, builtin_platforms, load_platform
-from jaxhydro.problems import InputError
-from jaxhydro.response import Response
-from jaxhydro.simulate import free_decay, simulate
-from jaxhydro.statics import EquilibriumError, equilibrium, natural_modes
+from jaxhydro.platform.build import build, load_model
+from jaxhydro.platform.convergence import Convergence, convergence
+from jaxhydro.platform.schema import Platform, builtin_platforms, load_platform
 from jaxhydro.waves import (
     AbstractSea,
     Components,

@@ -1,6 +1,6 @@
 """`python -m jaxhydro` is `jaxhydro`."""
 
-from jaxhydro.cli import main
+from jaxhydro.cli.app import main
 
 if __name__ == "__main__":  # workers that are spawned come by here too
     main()

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from jaxhydro.problems import InputError, Problem, nearest, suggest_path
+from jaxhydro.errors import InputError, Problem, nearest, suggest_path
 
 MANIFEST = "campaign.yaml"
 YAML = (".yaml", ".yml")

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 import jaxhydro as jh
-from calibration.campaign import load_campaign
-from calibration.records import Record
+from calibration.campaign.load_campaign import load_campaign
+from calibration.campaign.records import Record
 from calibration.result import Calibration, Estimate, Series, TestFit
 
 DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"

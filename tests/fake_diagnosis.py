@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from calibration.discovery.result import Diagnosis, Effect, Evidence, Finding, Rejected, Score
+from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding, Rejected, Score
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 
 

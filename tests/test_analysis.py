@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import signal
 
-from jaxhydro.analysis import (
+from jaxhydro.analysis.spectral import (
     BANDS,
     PowerSpectrum,
     band_integral,

@@ -13,14 +13,14 @@ from jaxhydro.loads import LOADS
 ROOT = Path(__file__).resolve().parents[1]
 
 LAYERS = (  # a module imports from layers below its own
-    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.bessel", "jaxhydro.waves.excitation", "jaxhydro.remarks",
+    ("jaxhydro.environment", "jaxhydro.rotations", "jaxhydro.waves.bessel", "jaxhydro.waves.excitation", "jaxhydro.remarks",
       "jaxhydro.choices"),
-    ("jaxhydro.scales", "jaxhydro.coefficient_labels"),
-    ("jaxhydro.waterplane",),
-    ("jaxhydro.waves.transfer", "jaxhydro.solve6", "jaxhydro.strips", "jaxhydro.runge_kutta", "jaxhydro.waves.continuation"),
-    ("jaxhydro.ends", "jaxhydro.adams_bashforth"),
+    ("jaxhydro.scales", "jaxhydro.hull.coefficient_labels"),
+    ("jaxhydro.hull.waterplane",),
+    ("jaxhydro.waves.transfer", "jaxhydro.dynamics.solve6", "jaxhydro.hull.strips", "jaxhydro.integrators.runge_kutta", "jaxhydro.waves.continuation"),
+    ("jaxhydro.hull.ends", "jaxhydro.integrators.adams_bashforth"),
     ("jaxhydro.waves.dispersion", "jaxhydro.waves.flow", "jaxhydro.waves.diffraction"),
-    ("jaxhydro.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
+    ("jaxhydro.hull.hull", "jaxhydro.waves.components", "jaxhydro.waves.spectra", "jaxhydro.waves.supports"),
     ("jaxhydro.waves.sea", "jaxhydro.waves.second_order", "jaxhydro.waves.sea_state", "jaxhydro.waves.envelope"),
     ("jaxhydro.waves.irregular", "jaxhydro.waves.support_sea"),
     ("jaxhydro.waves.preparation",),
@@ -29,40 +29,40 @@ LAYERS = (  # a module imports from layers below its own
     ("jaxhydro.loads.base",),
     ("jaxhydro.loads.*",),
     ("jaxhydro.loads",),
-    ("jaxhydro.model",),
-    ("jaxhydro.integrate", "jaxhydro.statics", "jaxhydro.response", "jaxhydro.table_ranges"),
-    ("jaxhydro.observe", "jaxhydro.simulate"),
+    ("jaxhydro.dynamics.model",),
+    ("jaxhydro.dynamics.integrate", "jaxhydro.dynamics.statics", "jaxhydro.dynamics.response", "jaxhydro.dynamics.table_ranges"),
+    ("jaxhydro.dynamics.observe", "jaxhydro.dynamics.simulate"),
     # files in, files out: the edge
-    ("jaxhydro.declared", "jaxhydro.analysis", "jaxhydro.start", "jaxhydro.interrupts", "jaxhydro.fingerprint"),
-    ("jaxhydro.problems",),
-    ("jaxhydro.body_schema", "jaxhydro.guided_mass_schema", "jaxhydro.files"),
-    ("jaxhydro.interop.coefficients", "jaxhydro.interop.tables"),
-    ("jaxhydro.interop.wamit", "jaxhydro.interop.capytaine", "jaxhydro.retardation"),
-    ("jaxhydro.interop.quadratic_transfer", "jaxhydro.interop.excitation", "jaxhydro.interop.hydrostatics"),
+    ("jaxhydro.schema_description", "jaxhydro.analysis.spectral", "jaxhydro.start", "jaxhydro.interrupts", "jaxhydro.fingerprint"),
+    ("jaxhydro.errors",),
+    ("jaxhydro.platform.body", "jaxhydro.platform.guided_mass_schema", "jaxhydro.files"),
+    ("jaxhydro.interop.radiation_coefficients", "jaxhydro.interop.wamit_tables"),
+    ("jaxhydro.interop.wamit_radiation", "jaxhydro.interop.capytaine_radiation", "jaxhydro.interop.retardation"),
+    ("jaxhydro.interop.wamit_drift", "jaxhydro.interop.wamit_excitation", "jaxhydro.interop.wamit_hydrostatics"),
     ("jaxhydro.interop.capytaine_waves",),
-    ("jaxhydro.interop", "jaxhydro.shared_coefficients"),
-    ("jaxhydro.platform_schema", "jaxhydro.drag_laws", "jaxhydro.table_checks"),
-    ("jaxhydro.computed_hydrostatics",),
-    ("jaxhydro.computed",),
-    ("jaxhydro.platform", "jaxhydro.plot"),
-    ("jaxhydro.convergence",),
+    ("jaxhydro.interop", "jaxhydro.platform.shared_coefficients"),
+    ("jaxhydro.platform.schema", "jaxhydro.platform.drag_laws", "jaxhydro.platform.table_checks"),
+    ("jaxhydro.platform.computed_hydrostatics",),
+    ("jaxhydro.platform.computed_loads",),
+    ("jaxhydro.platform.build", "jaxhydro.plots.style"),
+    ("jaxhydro.platform.convergence",),
     ("jaxhydro",),
-    ("jaxhydro.sea_results",),
-    ("jaxhydro.sea_plot",),
-    ("jaxhydro.export", "jaxhydro.console", "jaxhydro.options"),
-    ("jaxhydro.sea_options",),
-    ("jaxhydro.command", "jaxhydro.arguments"),
-    ("jaxhydro.sea_command",),
-    ("jaxhydro.sweep.schema", "jaxhydro.sweep.lifetime", "jaxhydro.sweep.statistics", "jaxhydro.sweep.at_once"),
-    ("jaxhydro.sweep.load", "jaxhydro.sweep.cases", "jaxhydro.sweep.plot"),
+    ("jaxhydro.analysis.sea_statistics",),
+    ("jaxhydro.plots.seas",),
+    ("jaxhydro.cli.simulation_files", "jaxhydro.cli.console", "jaxhydro.cli.options"),
+    ("jaxhydro.cli.sea_options",),
+    ("jaxhydro.cli.simulate_command", "jaxhydro.cli.arguments"),
+    ("jaxhydro.cli.sea_command",),
+    ("jaxhydro.sweep.sweep_schema", "jaxhydro.sweep.lifetime", "jaxhydro.sweep.run_statistics", "jaxhydro.sweep.at_once"),
+    ("jaxhydro.sweep.sweep_file", "jaxhydro.sweep.cases", "jaxhydro.sweep.sweep_figures"),
     ("jaxhydro.sweep.batch",),
-    ("jaxhydro.sweep.notes", "jaxhydro.sweep.store", "jaxhydro.sweep.resources", "jaxhydro.sweep.sensitivity"),
-    ("jaxhydro.sweep.worker", "jaxhydro.sweep.outputs"),
+    ("jaxhydro.sweep.sweep_remarks", "jaxhydro.sweep.store", "jaxhydro.sweep.resources", "jaxhydro.sweep.sensitivity"),
+    ("jaxhydro.sweep.worker", "jaxhydro.sweep.write_sweep"),
     ("jaxhydro.sweep.local", "jaxhydro.sweep.cluster"),
-    ("jaxhydro.sweep.run",),
+    ("jaxhydro.sweep.run_sweep",),
     ("jaxhydro.sweep",),
-    ("jaxhydro.sweep.command",),
-    ("jaxhydro.cli",),
+    ("jaxhydro.cli.sweep_command",),
+    ("jaxhydro.cli.app",),
     ("jaxhydro.__main__",),
 )
 SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
@@ -74,18 +74,18 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
 }
 NUMERICS = [name for layer in LAYERS[:16] for name in layer]
 EDGE = {  # third-party or built-in, and the only modules that may use it
-    "matplotlib": {"jaxhydro.plot", "jaxhydro.sweep.plot"}
+    "matplotlib": {"jaxhydro.plots.style", "jaxhydro.sweep.sweep_figures"}
     | {f"calibration.{name}" for name in ("plot", "seas_plot", "sea_laws_plot", "uncertainty_plot")}
     | {f"calibration.discovery.{name}" for name in ("plots", "search_plots")},
-    "PIL": {"jaxhydro.plot"},
-    "ruamel": {"jaxhydro.problems"},
+    "PIL": {"jaxhydro.plots.style"},
+    "ruamel": {"jaxhydro.errors"},
     "yaml": set(),
     "pandas": {f"calibration.{name}" for name in ("delimited", "matlab", "readers", "records", "signals", "spreadsheet")},
     "xarray": {f"jaxhydro.sweep.{name}" for name in ("outputs", "run", "store")}
-    | {"jaxhydro.export", "jaxhydro.interop.capytaine"}
+    | {"jaxhydro.cli.simulation_files", "jaxhydro.interop.capytaine_radiation"}
     | {f"calibration.{name}" for name in ("folder", "outputs", "readers", "seas_outputs")},
-    "typer": {"jaxhydro.cli", "jaxhydro.options", "jaxhydro.arguments"},
-    "rich": {"jaxhydro.console"},
+    "typer": {"jaxhydro.cli.app", "jaxhydro.cli.options", "jaxhydro.cli.arguments"},
+    "rich": {"jaxhydro.cli.console"},
     "filelock": {"jaxhydro.sweep.store"},
 }
 STANDARD = set(sys.stdlib_module_names) - {"csv", "io", "json", "logging", "os", "pathlib", "random", "sys", "warnings"}
@@ -150,9 +150,9 @@ def test_the_shared_helpers_of_loads_are_no_loads() -> None:
 
 def test_sweeps_are_known_to_the_edge_only() -> None:
     """So what evidence is made of (benchmarks/evidence/common.fingerprint) does not depend on them."""
-    left_out = ("jaxhydro.sweep", "jaxhydro.sea_command", "calibration.sweep_page")
+    left_out = ("jaxhydro.sweep", "jaxhydro.cli.sea_command", "calibration.report.sweep_page")
     for name in modules():
-        if not name.startswith((*left_out, "jaxhydro.cli", "calibration.report")):
+        if not name.startswith((*left_out, "jaxhydro.cli.app", "calibration.report.write_report")):
             known = {module for module, _ in imports(name) if module.startswith(left_out)}
             assert not known, f"{name} imports {known}"
 
@@ -161,12 +161,12 @@ def test_the_simulator_does_not_know_calibration() -> None:
     """architecture.md: jaxhydro never imports calibration, the command line aside."""
     simulator = [name for name in modules() if name.startswith("jaxhydro")]
     users = {name for name in simulator if any(module.startswith("calibration") for module, _ in imports(name))}
-    assert users <= {"jaxhydro.cli", "jaxhydro.command"}
+    assert users <= {"jaxhydro.cli.app", "jaxhydro.cli.simulate_command"}
 
 
 def test_calibration_uses_public_names_and_not_the_command_line() -> None:
     """architecture.md: calibration imports only jaxhydro's public names."""
-    edge = ("jaxhydro.cli", "jaxhydro.command", "jaxhydro.options")
+    edge = ("jaxhydro.cli.app", "jaxhydro.cli.simulate_command", "jaxhydro.cli.options")
     for name in modules():
         if name.startswith("calibration"):
             for module, what in imports(name):

@@ -11,15 +11,15 @@ import pytest
 from ruamel.yaml import YAML
 
 import jaxhydro as jh
-from calibration.campaign import Campaign, load_campaign
-from calibration.fit import Fit, Interrupted, Progress, calibrate, pose, run
-from calibration.identifiability import memory, spread
-from calibration.parameters import choose, default_free, parameter_space, slopes
-from calibration.residuals import Problem, Unknowns, condensed, dominant_period, first_guess, square_root
+from calibration.campaign.load_campaign import Campaign, load_campaign
+from calibration.fitting.decay_fit import Fit, Interrupted, Progress, calibrate, pose, run
+from calibration.identifiability.standard_deviations import memory, spread
+from calibration.parameters.space import choose, default_free, parameter_space, slopes
+from calibration.parameters.transforms import Interval, LogInterval, Scaled
+from calibration.residuals.decays import Problem, Unknowns, condensed, dominant_period, first_guess, square_root
 from calibration.result import Calibration
-from calibration.transforms import Interval, LogInterval, Scaled
-from jaxhydro.problems import InputError
-from jaxhydro.statics import linearised
+from jaxhydro.dynamics.statics import linearised
+from jaxhydro.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
 DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
@@ -410,7 +410,7 @@ def test_interruption_before_the_first_iteration(ship_campaign: Campaign, monkey
     def stop(_: Fit) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("calibration.fit.run", stop)
+    monkeypatch.setattr("calibration.fitting.decay_fit.run", stop)
     with pytest.raises(Interrupted) as caught:
         calibrate(ship_campaign)
     assert caught.value.partial is None

@@ -15,13 +15,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from calibration.campaign import load_campaign
-from calibration.checks import check_records
-from calibration.manifest import read_manifest
-from calibration.readers import read_table
-from calibration.records import load_records, read_series
-from calibration.signals import noise_level
-from jaxhydro.problems import InputError
+from calibration.campaign.checks import check_records
+from calibration.campaign.load_campaign import load_campaign
+from calibration.campaign.manifest import read_manifest
+from calibration.campaign.records import load_records, read_series
+from calibration.campaign.signals import noise_level
+from jaxhydro.errors import InputError
+from jaxhydro.interop.data_files import read_table
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 MEASURED = ("measured/focal-c4", "measured/focal-c2", "measured/kvlcc2")
@@ -394,7 +394,7 @@ def test_one_column_for_one_test_and_none_for_another(tmp_path):
 
 
 def test_a_numeric_id_is_a_name_and_each_file_is_read_once(tmp_path, monkeypatch):
-    from calibration import records as module
+    from calibration.campaign import records as module
     document = manifest()
     document["tests"] = [{**document["tests"][0], "id": 21337, "window": [0, 20]},
                          {**document["tests"][0], "id": "b", "window": [20, 40], "repeat_of": 21337}]

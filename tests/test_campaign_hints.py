@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from calibration import load_campaign
-from calibration.campaign import Campaign
-from calibration.campaign_hints import motion_hints
-from calibration.plausible import CampaignFinding, check_plausible
+from calibration.campaign.campaign_hints import motion_hints
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.plausible import CampaignFinding, check_plausible
 
 TURN, SCALE = 180 / math.pi, 50.0
 ANGLES = ("roll", "pitch", "yaw")
@@ -84,7 +84,7 @@ def test_every_way_to_be_wrong_is_told_once(campaign, changes, words) -> None:
 def test_a_campaign_that_is_refused_says_why_first(tmp_path) -> None:
     import shutil
 
-    from jaxhydro.problems import InputError
+    from jaxhydro.errors import InputError
 
     folder = tmp_path / "campaign"
     shutil.copytree("jaxhydro/campaigns/volturnus-s-decays", folder)

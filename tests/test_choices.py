@@ -10,21 +10,21 @@ import numpy as np
 import pytest
 
 import jaxhydro as jh
-from calibration.campaign import load_campaign
-from calibration.fit import labels_of, space_of
-from calibration.joint import calibrate_jointly
-from calibration.sea_fit import calibrate_in_waves
-from calibration.seas import Options
+from calibration.campaign.load_campaign import load_campaign
+from calibration.fitting.decay_fit import labels_of, space_of
+from calibration.fitting.joint_fit import calibrate_jointly
+from calibration.fitting.sea_fit import calibrate_in_waves
+from calibration.residuals.measured_seas import Options
 from jaxhydro.choices import UnknownName, check, nearest, unknown
-from jaxhydro.convergence import with_elements
-from jaxhydro.integrate import Method, clock
-from jaxhydro.interop.tables import to_omega
+from jaxhydro.dynamics.integrate import Method, clock
+from jaxhydro.dynamics.model import CONVENTIONS
+from jaxhydro.dynamics.simulate import default_step, memory_step
+from jaxhydro.dynamics.statics import stable_modes
+from jaxhydro.interop.wamit_tables import to_omega
 from jaxhydro.loads import LOADS
 from jaxhydro.loads.base import Parameter
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
-from jaxhydro.model import CONVENTIONS
-from jaxhydro.simulate import default_step, memory_step
-from jaxhydro.statics import stable_modes
+from jaxhydro.platform.convergence import with_elements
 from jaxhydro.waves.components import PlaneWaves
 from jaxhydro.waves.irregular import separated_record
 from jaxhydro.waves.sea import Stretching

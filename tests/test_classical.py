@@ -11,10 +11,17 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 import jaxhydro as jh
-from calibration.classical import Classical, Decrements, classical, decrements, equivalent_damping, linear_quadratic
-from calibration.model_damping import drag_coefficient, model_damping, motion_shape
+from calibration.decay_analysis.linear_quadratic import (
+    Classical,
+    Decrements,
+    classical,
+    decrements,
+    equivalent_damping,
+    linear_quadratic,
+)
+from calibration.decay_analysis.model_damping import drag_coefficient, model_damping, motion_shape
+from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
-from jaxhydro.response import decay_cycles
 
 PERIOD = 20.0
 OMEGA = 2 * math.pi / PERIOD

@@ -18,8 +18,8 @@ from fake_calibration import DEMO, small
 from typer.testing import CliRunner
 
 import jaxhydro
-from calibration.outputs import write_calibration
-from jaxhydro import cli
+from calibration.results.write_calibration import write_calibration
+from jaxhydro.cli import app as cli
 
 PLATFORM = DEMO / "platform.yaml"
 RUNNER = CliRunner()
@@ -146,7 +146,7 @@ def test_bad_platforms_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     def equilibrium(model):
         raise jaxhydro.EquilibriumError("no static equilibrium: heave is out of balance by 0.3 of the weight")
 
-    monkeypatch.setattr("jaxhydro.command.equilibrium", equilibrium)
+    monkeypatch.setattr("jaxhydro.cli.simulate_command.equilibrium", equilibrium)
     broken = tmp_path / "broken.yaml"
     broken.write_text(PLATFORM.read_text().replace("density", "densty"))
     for name, words in (
@@ -184,7 +184,7 @@ def test_bad_calibrations_are_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", ["simulate", "calibrate", "demo"])
 def test_folders_that_cannot_be_written_are_told_before_the_work(command, tmp_path, monkeypatch) -> None:
-    for work in ("jaxhydro.cli._model", "calibration.command.load_fitted"):
+    for work in ("jaxhydro.cli.app._model", "calibration.commands.calibrate_command.load_fitted"):
         monkeypatch.setattr(work, lambda *_: pytest.fail("the work began"))
     more = {"simulate": [PLATFORM, "--release", "surge=1"], "calibrate": [DEMO], "demo": []}[command]
     file = tmp_path / "file"
@@ -206,7 +206,8 @@ def test_missing_and_unknown_words_are_usage_errors(tmp_path: Path) -> None:
 @pytest.fixture
 def fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     """A fit that takes no time."""
-    command, fit = pytest.importorskip("calibration.command"), pytest.importorskip("calibration.fit")
+    command = pytest.importorskip("calibration.commands.calibrate_command")
+    fit = pytest.importorskip("calibration.fitting.decay_fit")
 
     def calibrate(campaign, progress):
         for i in range(3):
@@ -253,7 +254,7 @@ def test_the_demo_compares_with_the_truth_and_makes_the_page(fitted, tmp_path: P
     ],
 )
 def test_what_does_not_converge(outcome, status, words, written, monkeypatch, tmp_path) -> None:
-    command = pytest.importorskip("calibration.command")
+    command = pytest.importorskip("calibration.commands.calibrate_command")
     good = small()
     first = good.tests[0]
     nowhere = replace(first, series=(replace(first.main, simulated=first.main.simulated * np.nan),))
@@ -275,7 +276,7 @@ def test_what_does_not_converge(outcome, status, words, written, monkeypatch, tm
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_stops_a_command(sent, monkeypatch, tmp_path) -> None:
     """Also one that comes in a callback that swallows it, or that an import in progress takes for a failure."""
-    command = pytest.importorskip("calibration.command")
+    command = pytest.importorskip("calibration.commands.calibrate_command")
     before = signal.getsignal(sent)
 
     def at_once(*_: object, **__: object) -> None:
@@ -316,7 +317,7 @@ def small_campaign(folder: Path, **changes: str) -> Path:
 
 
 def test_bad_campaigns_are_told(tmp_path: Path) -> None:
-    pytest.importorskip("calibration.fit")
+    pytest.importorskip("calibration.fitting.decay_fit")
     cases = [
         (tmp_path / "none", "expected a campaign's folder, or its campaign.yaml, found no such folder"),
         (small_campaign(tmp_path / "a", decay="decai"), "tests[0].kind: expected one of decay"),
@@ -329,7 +330,7 @@ def test_bad_campaigns_are_told(tmp_path: Path) -> None:
 
 
 def test_results_do_not_replace_data_or_other_results(tmp_path: Path) -> None:
-    pytest.importorskip("calibration.fit")
+    pytest.importorskip("calibration.fitting.decay_fit")
     campaign = small_campaign(tmp_path / "a", **{"heave-1.csv": "simulated.nc"})
     table = pd.read_csv(campaign / "heave-1.csv")
     xr.Dataset({name: ("n", table[name]) for name in table}).to_netcdf(campaign / "simulated.nc", engine="h5netcdf")
@@ -349,7 +350,7 @@ def test_a_report_needs_results(tmp_path: Path) -> None:
 
 
 def test_a_small_calibration_from_end_to_end(tmp_path: Path) -> None:
-    pytest.importorskip("calibration.fit")
+    pytest.importorskip("calibration.fitting.decay_fit")
     text = run("calibrate", small_campaign(tmp_path / "a"), "--out", tmp_path / "o")
     assert "converged after" in text
     read = json.loads((tmp_path / "o" / "calibration.json").read_text())["baseline"]
@@ -358,5 +359,5 @@ def test_a_small_calibration_from_end_to_end(tmp_path: Path) -> None:
 
 
 def test_platforms_are_listed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jaxhydro.platform_schema.builtin_platforms", lambda: (str(PLATFORM),))
+    monkeypatch.setattr("jaxhydro.platform.schema.builtin_platforms", lambda: (str(PLATFORM),))
     assert re.search(r"VolturnUS-S 20054 19565 12\d\.\d 1\d\.\d 2\d\.\d", run("platforms"))

@@ -12,10 +12,12 @@ from fake_calibration import DEMO
 from test_cli import cache, run  # noqa: F401
 
 import jaxhydro as jh
-from calibration import command as of_campaigns
-from jaxhydro import arguments, cli, sea_command, sea_options, sea_plot
-from jaxhydro.platform import model_of
-from jaxhydro.sea_results import bands_of, summary, tables
+from calibration.commands import calibrate_command as of_campaigns
+from jaxhydro.analysis.sea_statistics import bands_of, summary, tables
+from jaxhydro.cli import app as cli
+from jaxhydro.cli import arguments, sea_command, sea_options
+from jaxhydro.platform.build import model_of
+from jaxhydro.plots import seas as sea_plot
 from jaxhydro.waves.irregular import spectrum_components
 
 PLATFORM = DEMO / "platform.yaml"

@@ -7,13 +7,14 @@ from fake_calibration import DEMO, small
 from test_cli import RUNNER, run, small_campaign
 
 import jaxhydro as jh
-from calibration import tables
-from calibration.outputs import write_calibration
-from calibration.saved import read_saved
-from jaxhydro import cli, console
-from jaxhydro.cli import TRUTH
-from jaxhydro.console import column_widths, table
-from jaxhydro.problems import suggest_path
+from calibration.report import tables
+from calibration.results.read_calibration import read_saved
+from calibration.results.write_calibration import write_calibration
+from jaxhydro.cli import app as cli
+from jaxhydro.cli import console
+from jaxhydro.cli.app import TRUTH
+from jaxhydro.cli.console import column_widths, table
+from jaxhydro.errors import suggest_path
 
 NAMES = ["volturnus-s", "volturnus-s-focal"]
 

@@ -6,8 +6,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jaxhydro import IrregularSea, build, convergence, jonswap, load_platform, natural_modes, simulate, spectrum_components
-from jaxhydro.analysis import band_integral, bands, power_spectrum
-from jaxhydro.convergence import with_elements
+from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
+from jaxhydro.platform.convergence import with_elements
 
 PLATFORM = load_platform("volturnus-s-focal")
 TIMES = np.arange(0.0, 480.0, 0.5)

@@ -8,10 +8,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from calibration.discovery.bands import Rows, bands_of
-from calibration.discovery.descent import LEAST, fit, mended
-from calibration.discovery.linear import cost_of, likelihoods, linearly, predict
-from calibration.discovery.looks import Look, Place, Prior, Series
+from calibration.discovery.effect_descent import LEAST, fit, mended
+from calibration.discovery.eliminated_least_squares import cost_of, likelihoods, linearly, predict
+from calibration.discovery.frequency_bands import Rows, bands_of
+from calibration.discovery.linearisations import Look, Place, Prior, Series
 from calibration.discovery.study import Study
 
 SAMPLES, NOISE = 201, 0.05

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from benchmarks.evidence.diagnoses import Case, Share, Tally, conclude, doubts, factors, merged, outcome
-from calibration.discovery.judgement import Verdict
+from calibration.discovery.acceptance import Verdict
 
 
 def said(effects, error, alike=None, verdict="found", sources="now", motions=None, tried=None):

@@ -15,18 +15,18 @@ from test_outputs import Page, changed
 from typer.testing import CliRunner
 
 import jaxhydro as jh
-from calibration.applied import applied
-from calibration.discovery.outputs import write_diagnosis
-from calibration.discovery.result import Diagnosis
-from calibration.discovery.saved import read_diagnosis
-from calibration.fit import Interrupted, Progress
-from calibration.outputs import write_calibration
-from calibration.report import write_report
-from calibration.saved import read_saved
-from calibration.seas import Diverged, Options
-from calibration.strips import USUAL, Strips
-from jaxhydro import cli
-from jaxhydro.problems import InputError, Problem
+from calibration.campaign.strip_conventions import USUAL, Strips
+from calibration.discovery.diagnosis import Diagnosis
+from calibration.fitting.decay_fit import Interrupted, Progress
+from calibration.report.write_report import write_report
+from calibration.residuals.measured_seas import Diverged, Options
+from calibration.results.applied_calibration import applied
+from calibration.results.read_calibration import read_saved
+from calibration.results.read_diagnosis import read_diagnosis
+from calibration.results.write_calibration import write_calibration
+from calibration.results.write_diagnosis import write_diagnosis
+from jaxhydro.cli import app as cli
+from jaxhydro.errors import InputError, Problem
 
 DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"
 FORCE = "coulomb_friction.surge.force"
@@ -183,7 +183,9 @@ def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis,
     assert Strips.of(cli._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
     assert "directions: earth, drag_speed: component, centripetal: false" in capsys.readouterr().out
     begun: list[Any] = []
-    monkeypatch.setattr("calibration.command.calibrate", lambda _, **how: begun.append(how["start"]) or result.baseline)
+    monkeypatch.setattr(
+        "calibration.commands.calibrate_command.calibrate", lambda _, **how: begun.append(how["start"]) or result.baseline
+    )
     assert "has directions: earth" in run("calibrate", DEMO, "--start", path, "--out", tmp_path / "o")
     assert begun == [{"column.Ca_t": 1.5}]
     wrong = {"strips": content["strips"] | {"directions": "up"}, "seas": content["seas"] | {"acting": "there"}}
@@ -199,7 +201,7 @@ def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: P
         asked.append(list(labels))
         return model
 
-    monkeypatch.setattr("calibration.discovery.candidates.with_effects", with_effects)
+    monkeypatch.setattr("calibration.discovery.effects.candidates.with_effects", with_effects)
     model = jh.load_model(str(DEMO / "platform.yaml"))
     path = saved_with(written, tmp_path, {"column.Ca_t": 1.5, FORCE: 81000.0}, "VolturnUS-S")
     with pytest.raises(InputError, match=r"augmented\.parameters: expected parameters of this hull .* found 'coulomb_friction"):

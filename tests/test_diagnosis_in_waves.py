@@ -13,23 +13,23 @@ from numpy.testing import assert_allclose
 
 import jaxhydro as jh
 from calibration import load_campaign
-from calibration.applied import applied
-from calibration.campaign import Campaign
-from calibration.command import simulate_campaign
-from calibration.discovery import conventions
-from calibration.discovery.afar import FINENESS, from_afar
-from calibration.discovery.conclusion import conclude
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.runs import runs
+from calibration.commands.calibrate_command import simulate_campaign
+from calibration.discovery import strip_trials as conventions
+from calibration.discovery.channel_signs import turned
+from calibration.discovery.checkpoint import keep, resumed
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.kept import keep, resumed
-from calibration.discovery.looks import Place
-from calibration.discovery.outputs import write_diagnosis
-from calibration.discovery.pose import pose
-from calibration.discovery.records import by_a_program, highest_difference, options_for
-from calibration.discovery.search import FIRST_ORDER, SIMPLER, Search
-from calibration.discovery.signs import turned
-from calibration.report import write_report
-from calibration.runs import runs
-from calibration.seas import seas_of
+from calibration.discovery.diagnosis_conclusion import conclude
+from calibration.discovery.effects.phase_shift_start import FINENESS, from_afar
+from calibration.discovery.greedy_search import FIRST_ORDER, SIMPLER, Search
+from calibration.discovery.linearisations import Place
+from calibration.discovery.set_up import pose
+from calibration.discovery.wave_records import by_a_program, highest_difference, options_for
+from calibration.report.write_report import write_report
+from calibration.residuals.measured_seas import seas_of
+from calibration.results.applied_calibration import applied
+from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.loads.strip_drag import StripDrag
 
 RHO, G, DEPTH = 1000.0, 9.81, 200.0

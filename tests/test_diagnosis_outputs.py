@@ -14,14 +14,16 @@ from PIL import Image
 from test_outputs import SCHEMAS, Page, changed, contents
 
 import jaxhydro as jh
-from calibration.discovery import plots, tables, words
-from calibration.discovery.outputs import document, paired, write_diagnosis
-from calibration.discovery.result import Diagnosis
-from calibration.discovery.saved import read_diagnosis
-from calibration.outputs import NotFinite
-from calibration.report import write_report
-from calibration.saved import Parameter
-from jaxhydro.problems import InputError
+from calibration.discovery.diagnosis import Diagnosis
+from calibration.plots import diagnosis_figures as plots
+from calibration.report import diagnosis_tables as tables
+from calibration.report import diagnosis_words as words
+from calibration.report.write_report import write_report
+from calibration.results.read_calibration import Parameter
+from calibration.results.read_diagnosis import read_diagnosis
+from calibration.results.write_calibration import NotFinite
+from calibration.results.write_diagnosis import document, paired, write_diagnosis
+from jaxhydro.errors import InputError
 
 DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"
 FORCE = "coulomb_friction.surge.force"

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import h2vp, hankel2, jv, jvp, yvp
 
-from jaxhydro.bessel import SWITCH, bessel_primes
+from jaxhydro.waves.bessel import SWITCH, bessel_primes
 from jaxhydro.waves.diffraction import maccamy_fuchs
 
 TABLE = Path(__file__).parent / "data" / "maccamy_fuchs_capytaine.csv"

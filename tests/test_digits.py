@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from calibration.checks import check_records
-from calibration.digits import local_resolution, straight_piece
-from calibration.manifest import read_manifest
+from calibration.campaign.checks import check_records
+from calibration.campaign.digits import local_resolution, straight_piece
+from calibration.campaign.manifest import read_manifest
 
 T = np.arange(0.0, 100.0, 0.05)
 SMOOTH = 3.4 * np.exp(-0.01 * T) * np.cos(2 * np.pi * T / 9.2 + 0.1)

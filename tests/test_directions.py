@@ -11,19 +11,19 @@ import pytest
 from ruamel.yaml import YAML
 
 import jaxhydro as jh
-from calibration.candidates import decay_information, effective_noise, expected_information, rank_tests
-from calibration.conclusion import series_of
-from calibration.directions import TOLD, Identifiability, identifiability
-from calibration.fit import Fit, pose, run
-from calibration.fit_uncertainty import identifiability_of
-from calibration.identifiability import spread
-from calibration.information import CLEAR, collinearity, eliminated, varimax
-from calibration.manifest import Test
-from calibration.parameters import VAGUE, parameter_space
-from calibration.records import Record
-from calibration.residuals import Unknowns, first_guess
-from calibration.statements import Parameters
-from jaxhydro.statics import linearised
+from calibration.campaign.manifest import Test
+from calibration.campaign.records import Record
+from calibration.fitting.decay_fit import Fit, pose, run
+from calibration.fitting.fit_conclusion import series_of
+from calibration.fitting.fit_uncertainty import identifiability_of
+from calibration.identifiability.directions import TOLD, Identifiability, identifiability
+from calibration.identifiability.information import CLEAR, collinearity, eliminated, varimax
+from calibration.identifiability.standard_deviations import spread
+from calibration.identifiability.statements import Parameters
+from calibration.parameters.space import VAGUE, parameter_space
+from calibration.residuals.decays import Unknowns, first_guess
+from calibration.uncertainty.test_design import decay_information, effective_noise, expected_information, rank_tests
+from jaxhydro.dynamics.statics import linearised
 
 PLATFORM = jh.__path__[0] + "/campaigns/volturnus-s-decays/platform.yaml"
 NOISE, LENGTH = 0.01, 300.0  # m, s

@@ -12,24 +12,25 @@ from scipy.integrate import solve_ivp
 
 import jaxhydro as jh
 from calibration import calibrate
-from calibration.campaign import load_campaign
-from calibration.discovery import kept, search
-from calibration.discovery.bands import Rows, bands_of
-from calibration.discovery.candidates import Candidate, with_effects
-from calibration.discovery.catalogue import catalogue
+from calibration.campaign.load_campaign import load_campaign
+from calibration.discovery import checkpoint as kept
+from calibration.discovery import greedy_search as search
+from calibration.discovery.acceptance import SLIGHT, Left, Verdict, given_up
+from calibration.discovery.candidate_trials import Found, Scored
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.judgement import SLIGHT, Left, Verdict, given_up
-from calibration.discovery.linear import Predicted
-from calibration.discovery.listed import scales_of
-from calibration.discovery.looks import Place, Prior
-from calibration.discovery.pose import pose
-from calibration.discovery.search import Search
-from calibration.discovery.trials import Found, Scored
-from calibration.seas import Options
+from calibration.discovery.effects.candidates import Candidate, with_effects
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.listed import scales_of
+from calibration.discovery.eliminated_least_squares import Predicted
+from calibration.discovery.frequency_bands import Rows, bands_of
+from calibration.discovery.greedy_search import Search
+from calibration.discovery.linearisations import Place, Prior
+from calibration.discovery.set_up import pose
+from calibration.residuals.measured_seas import Options
+from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
-from jaxhydro.problems import InputError
-from jaxhydro.statics import equilibrium, linearised
 
 PLATFORM = {
     "name": "a rolling body",

@@ -14,13 +14,13 @@ from scipy.signal import lfilter
 from test_loads import BODY, COEFFICIENTS, COLUMN, HIGH_PASS, KEULEGAN_CARPENTER, PONTOON, RHO, SEA, G, build, force, only
 
 import jaxhydro as jh
-from calibration.model_damping import model_damping
-from calibration.parameters import default_free, parameter_space
-from jaxhydro import integrate
-from jaxhydro.drag_laws import drag_laws_of, plain_drag, surface_number, with_drag_laws
+from calibration.decay_analysis.model_damping import model_damping
+from calibration.parameters.space import default_free, parameter_space
+from jaxhydro.dynamics import integrate
+from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import EndDrag, HighPassDrag, KeuleganCarpenterDrag, StripDrag, SuctionSideDrag
-from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import InputError, validate
+from jaxhydro.platform.drag_laws import drag_laws_of, plain_drag, surface_number, with_drag_laws
+from jaxhydro.platform.schema import Platform
 
 CD_T, CD_Z = COEFFICIENTS["Cd_t"], COEFFICIENTS["Cd_z"]
 ALL = (StripDrag, EndDrag, HighPassDrag, KeuleganCarpenterDrag, SuctionSideDrag)

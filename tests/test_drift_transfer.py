@@ -13,14 +13,14 @@ from test_loads import COLUMN, build, model_of
 from test_water_effects import HULL, WATER, acts, irregular
 
 import jaxhydro as jh
-from calibration.discovery.candidates import sought
-from calibration.discovery.catalogue import catalogue
-from calibration.discovery.listed import Scales
-from jaxhydro.interop.quadratic_transfer import COLUMNS, read_transfer
+from calibration.discovery.effects.candidates import sought
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.listed import Scales
+from jaxhydro.dynamics.statics import linearised
+from jaxhydro.errors import InputError
+from jaxhydro.interop.wamit_drift import COLUMNS, read_transfer
 from jaxhydro.loads import DriftTransfer
-from jaxhydro.problems import InputError
-from jaxhydro.statics import linearised
-from jaxhydro.sweep.run import _platform_text
+from jaxhydro.sweep.run_sweep import _platform_text
 from jaxhydro.waves.support_sea import Clock
 from jaxhydro.waves.transfer import Transfer
 

@@ -14,13 +14,13 @@ from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
-from jaxhydro import runge_kutta
-from jaxhydro.command import print_rest
-from jaxhydro.integrate import Grid, integrate
-from jaxhydro.response import Response
+from jaxhydro.cli.simulate_command import print_rest
+from jaxhydro.dynamics.integrate import Grid, integrate
+from jaxhydro.dynamics.response import Response
+from jaxhydro.dynamics.solve6 import accelerate, inverse6
+from jaxhydro.dynamics.statics import stable_modes
+from jaxhydro.integrators import runge_kutta
 from jaxhydro.rotations import angular_velocity, attitude_rates, rotation
-from jaxhydro.solve6 import accelerate, inverse6
-from jaxhydro.statics import stable_modes
 
 RHO, G = 1025.0, 9.81
 STILL = jh.StillWater()

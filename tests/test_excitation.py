@@ -13,16 +13,16 @@ from test_water_effects import HULL, WATER, acts, irregular, with_values
 from typer.testing import CliRunner
 
 import jaxhydro as jh
-from calibration.campaign import load_campaign
-from calibration.discovery.candidates import sought
-from calibration.discovery.catalogue import catalogue
-from calibration.discovery.listed import Scales
-from jaxhydro import cli
-from jaxhydro.interop.excitation import read_excitation
+from calibration.campaign.load_campaign import load_campaign
+from calibration.discovery.effects.candidates import sought
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.listed import Scales
+from jaxhydro.cli import app as cli
+from jaxhydro.errors import InputError
+from jaxhydro.interop.wamit_excitation import read_excitation
 from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia, WaveGaugePosition
-from jaxhydro.problems import InputError
 from jaxhydro.sweep import load_sweep
-from jaxhydro.sweep.run import _platform_text, prepared
+from jaxhydro.sweep.run_sweep import _platform_text, prepared
 from jaxhydro.waves import Clock
 from jaxhydro.waves.excitation import Excitation
 

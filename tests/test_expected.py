@@ -11,16 +11,16 @@ from numpy.testing import assert_allclose
 from test_water_effects import irregular
 
 import jaxhydro as jh
-from calibration.discovery.bands import Rows, bands_of
-from calibration.discovery.evidence import SeaRecord
-from calibration.discovery.expected import beside, impedance, spectrum
-from calibration.discovery.linear import deviances, weights
-from calibration.discovery.looks import Prior, Series
-from calibration.discovery.pose import ANCHORED, ANCHORED_DAMPING, Posed, width_of
-from calibration.discovery.search import Search
+from calibration.discovery.eliminated_least_squares import deviances, weights
+from calibration.discovery.expected_residuals import beside, impedance, spectrum
+from calibration.discovery.frequency_bands import Rows, bands_of
+from calibration.discovery.greedy_search import Search
+from calibration.discovery.linearisations import Prior, Series
+from calibration.discovery.residuals import SeaRecord
+from calibration.discovery.set_up import ANCHORED, ANCHORED_DAMPING, Posed, width_of
 from calibration.discovery.study import Study
-from calibration.parameters import VAGUE, Free, ParameterSpace
-from calibration.transforms import Scaled
+from calibration.parameters.space import VAGUE, Free, ParameterSpace
+from calibration.parameters.transforms import Scaled
 from jaxhydro.waves.support_sea import Clock
 
 MASS, STIFFNESS, B11 = 8e6, 2e5, 3e5

@@ -14,14 +14,14 @@ from scipy.integrate import solve_ivp
 
 import jaxhydro as jh
 from calibration import calibrate, load_campaign
-from calibration.applied import OF_CAMPAIGN
-from calibration.directions import family
-from calibration.parameters import default_free, parameter_space
+from calibration.identifiability.directions import family
+from calibration.parameters.space import default_free, parameter_space
+from calibration.results.applied_calibration import OF_CAMPAIGN
+from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import GuidedMasses
-from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import InputError, validate
+from jaxhydro.platform.schema import Platform
 from jaxhydro.rotations import rotation
-from jaxhydro.statics import equilibrium, natural_modes
 
 MASS, TURNING, CARRIAGE = 9e5, 6e7, 2e5  # kg, kg m2, kg
 SURGE, PITCH = 5e4, 3e7  # N/m, N m/rad

@@ -13,10 +13,10 @@ import jaxhydro as jh
 from benchmarks.evidence.hulls_cases import CASES, scaled, two_members
 from benchmarks.evidence.hulls_reference import Hull
 from benchmarks.evidence.hulls_runs import model_of, motion, periods, platform_of
-from calibration.model_damping import motion_shape
-from calibration.still import natural_period
-from jaxhydro.model import Model
-from jaxhydro.platform_schema import load_platform
+from calibration.decay_analysis.model_damping import motion_shape
+from calibration.residuals.static import natural_period
+from jaxhydro.dynamics.model import Model
+from jaxhydro.platform.schema import load_platform
 
 POTENTIAL = json.loads((Path(__file__).parents[1] / "benchmarks" / "hulls" / "potential-flow.json").read_text("utf-8"))
 # relative, beyond the published rounding: what strips of one added mass coefficient and linearised lines leave

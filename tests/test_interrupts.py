@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import jax.numpy as jnp
 import pytest
 
-from calibration.descent import descend
-from jaxhydro.console import progress
+from calibration.fitting.levenberg_marquardt import descend
+from jaxhydro.cli.console import progress
 from jaxhydro.interrupts import ended_by_signals, stop_if_asked, stoppable_threads, stopping
 
 SENT = [signal.SIGINT, signal.SIGTERM]

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import jaxhydro as jh
-from jaxhydro.integrate import clock, integrate
+from jaxhydro.dynamics.integrate import clock, integrate
 from jaxhydro.waves import Clock, Cylinders
 from jaxhydro.waves.supports import Box, cosine_sine, supports, weights
 

@@ -13,17 +13,17 @@ from test_sea_laws import HULL, OPTIONS, STEP, rows
 
 import jaxhydro as jh
 from calibration import load_campaign
-from calibration.joint import calibrate_jointly
-from calibration.parameters import parameter_space
-from calibration.residuals import softened
-from calibration.seas import seas_of, with_diffraction
-from calibration.still import natural_period, pose_offsets, pose_periods
-from calibration.stretches import stretches, walk
+from calibration.fitting.joint_fit import calibrate_jointly
+from calibration.parameters.space import parameter_space
+from calibration.residuals.decays import softened
+from calibration.residuals.measured_seas import seas_of, with_diffraction
+from calibration.residuals.static import natural_period, pose_offsets, pose_periods
+from calibration.residuals.stretches import stretches, walk
+from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError
 from jaxhydro.loads.stiffness import Stiffness
-from jaxhydro.platform import build
-from jaxhydro.problems import InputError
-from jaxhydro.statics import held_at
+from jaxhydro.platform.build import build
 
 pytestmark = pytest.mark.slow
 

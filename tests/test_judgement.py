@@ -9,15 +9,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from calibration.discovery import judgement
-from calibration.discovery.bands import Rows, bands_of, powers
-from calibration.discovery.blocks import COUNT, parts
-from calibration.discovery.candidates import Candidate
-from calibration.discovery.conclusion import much
-from calibration.discovery.descent import fit
-from calibration.discovery.doubts import in_doubt, in_motion, like, outdone
-from calibration.discovery.gathering import series_of_sea
-from calibration.discovery.judgement import (
+from calibration.campaign.records import Record
+from calibration.discovery import acceptance as judgement
+from calibration.discovery.acceptance import (
     BLOCKS,
     FITTED,
     HELD_OUT,
@@ -30,12 +24,18 @@ from calibration.discovery.judgement import (
     refusal,
     worse,
 )
-from calibration.discovery.linear import inverted, likelihoods
-from calibration.discovery.looks import Look, Prior, Series
-from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
+from calibration.discovery.candidate_trials import Tried, in_order
+from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
+from calibration.discovery.diagnosis_conclusion import much
+from calibration.discovery.doubts import in_doubt, in_motion, like, outdone
+from calibration.discovery.effect_descent import fit
+from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.eliminated_least_squares import inverted, likelihoods
+from calibration.discovery.frequency_bands import Rows, bands_of, powers
+from calibration.discovery.gather import series_of_sea
+from calibration.discovery.held_out_blocks import COUNT, parts
+from calibration.discovery.linearisations import Look, Prior, Series
 from calibration.discovery.study import Study
-from calibration.discovery.trials import Tried, in_order
-from calibration.records import Record
 
 CUT = bands_of(400.0, 0.1, 4000, 14, 1.0)
 TIME = 0.1 * np.arange(4000)

@@ -12,17 +12,17 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from calibration.campaign import load_campaign
-from calibration.discovery import kept
+from calibration.campaign.load_campaign import load_campaign
+from calibration.discovery import checkpoint as kept
+from calibration.discovery.checkpoint import keep, resumed
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.kept import keep, resumed
-from calibration.discovery.outputs import write_diagnosis
-from calibration.discovery.pose import pose
-from calibration.discovery.search import Search
-from calibration.seas import Options
+from calibration.discovery.greedy_search import Search
+from calibration.discovery.set_up import pose
+from calibration.residuals.measured_seas import Options
+from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro import fingerprint as fingerprints
+from jaxhydro.errors import CheckpointWarning
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
-from jaxhydro.problems import CheckpointWarning
 from tests.test_discovery import campaign_of
 
 
@@ -282,17 +282,17 @@ def test_the_fingerprint_is_of_files_not_of_where_they_are(tmp_path):
 
 def test_sources_are_all_files_of_both_packages(tmp_path, monkeypatch):
     """A load's, too, not only the diagnosis's."""
-    for package in ("jaxhydro/loads", "calibration"):
+    for package in ("jaxhydro/loads", "calibration/fitting"):
         (tmp_path / package).mkdir(parents=True)
     (tmp_path / "jaxhydro/loads/drag.py").write_text("1")
-    (tmp_path / "calibration/fit.py").write_text("1")
+    (tmp_path / "calibration/fitting/decay_fit.py").write_text("1")
 
     def spec(name):
         return SimpleNamespace(submodule_search_locations=[str(tmp_path / name)])
 
     monkeypatch.setattr(fingerprints, "find_spec", spec)
     seen = {fingerprints.sources.__wrapped__()}
-    for name in ("jaxhydro/loads/drag.py", "calibration/fit.py"):
+    for name in ("jaxhydro/loads/drag.py", "calibration/fitting/decay_fit.py"):
         (tmp_path / name).write_text("2")
         seen.add(fingerprints.sources.__wrapped__())
     (tmp_path / "calibration/another.py").write_text("")

@@ -16,18 +16,18 @@ from scipy.integrate import solve_ivp
 from scipy.signal import hilbert
 from test_discovery import NOISE, PLATFORM
 
-from calibration.discovery.gathering import highest_of
-from calibration.discovery.latent import forces_of, latent_forces, latent_of
-from calibration.discovery.latent_law import IN_STILL_WATER, LAGGED, Part, best, law_of
-from calibration.discovery.latent_record import Force, Moved
-from calibration.discovery.latent_words import described, law_in_words
-from calibration.discovery.outputs import write_diagnosis
-from calibration.discovery.result import Law, LawTerm
-from calibration.discovery.saved import read_diagnosis
-from calibration.report import write_report
+from calibration.discovery.diagnosis import Law, LawTerm
+from calibration.discovery.gather import highest_of
+from calibration.discovery.latent_force.describe_force import described, law_in_words
+from calibration.discovery.latent_force.force_law import IN_STILL_WATER, LAGGED, Part, best, law_of
+from calibration.discovery.latent_force.recover_force import forces_of, latent_forces, latent_of
+from calibration.discovery.latent_force.recovered_force import Force, Moved
+from calibration.report.write_report import write_report
 from calibration.result import Series, TestFit
-from jaxhydro.platform import load_model
-from jaxhydro.simulate import free_decay
+from calibration.results.read_diagnosis import read_diagnosis
+from calibration.results.write_diagnosis import write_diagnosis
+from jaxhydro.dynamics.simulate import free_decay
+from jaxhydro.platform.build import load_model
 from jaxhydro.waves.sea import StillWater
 
 TIME = np.arange(0.0, 60.0, 0.05)

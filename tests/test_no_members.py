@@ -10,12 +10,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 import jaxhydro as jh
-from jaxhydro.platform import load_model
-from jaxhydro.simulate import excursion_of
+from jaxhydro.dynamics.simulate import excursion_of
+from jaxhydro.platform.build import load_model
 from jaxhydro.sweep.batch import setup_of
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.resources import supports_of
-from jaxhydro.sweep.schema import Sweep
+from jaxhydro.sweep.sweep_schema import Sweep
 from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.spectra import jonswap
 from jaxhydro.waves.supports import Box

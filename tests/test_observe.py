@@ -15,27 +15,27 @@ from test_diagnosis_in_waves import PLATFORM, excited, write_table
 
 import jaxhydro as jh
 from calibration import load_campaign
-from calibration.applied import applied
-from calibration.command import simulate_campaign
-from calibration.discovery.candidates import with_effects
-from calibration.discovery.conclusion import tests_of as fitted_tests
-from calibration.discovery.looks import Place
-from calibration.discovery.outputs import write_diagnosis
-from calibration.discovery.pose import pose
-from calibration.parameters import parameter_space
-from calibration.residuals import Unknowns
+from calibration.commands.calibrate_command import simulate_campaign
+from calibration.discovery.diagnosis_conclusion import tests_of as fitted_tests
+from calibration.discovery.effects.candidates import with_effects
+from calibration.discovery.linearisations import Place
+from calibration.discovery.set_up import pose
+from calibration.parameters.space import parameter_space
+from calibration.residuals.decays import Unknowns
+from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
+from calibration.residuals.seas import look, pose_in_waves
+from calibration.residuals.shooting import pose_blocks, shoot
+from calibration.residuals.static import pose_offsets
 from calibration.result import Calibration, Estimate
-from calibration.sea_residuals import look, pose_in_waves
-from calibration.seas import Options, compare, seas_of, with_diffraction
-from calibration.shooting import pose_blocks, shoot
-from calibration.still import pose_offsets
+from calibration.results.applied_calibration import applied
+from calibration.results.write_diagnosis import write_diagnosis
+from jaxhydro.dynamics.integrate import Grid
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.observe import motion_behind, observe
+from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
-from jaxhydro.integrate import Grid
 from jaxhydro.loads import SensorLag, SensorReference
-from jaxhydro.model import Model
-from jaxhydro.observe import motion_behind, observe
 from jaxhydro.rotations import rotation
-from jaxhydro.statics import held_at
 
 OPTIONS = Options(order=1, diffraction="none", cutoff=0.2)
 CHANNELS = {"surge": "m", "heave": "m", "pitch": "rad"}

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import jaxhydro as jh
-from jaxhydro.response import decay_cycles
+from jaxhydro.dynamics.response import decay_cycles
 
 FOLDER = Path(__file__).resolve().parents[2] / "shared" / "reference" / "openfast"
 pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason=f"OpenFAST's runs are not at {FOLDER}")

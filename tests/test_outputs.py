@@ -15,16 +15,17 @@ from fake_calibration import small
 from PIL import Image
 
 import calibration
-from calibration import outputs, plot
-from calibration.classical import classical
-from calibration.conclusion import strays
+from calibration.decay_analysis.linear_quadratic import classical
+from calibration.fitting.fit_conclusion import strays
 from calibration.formatting import number, percent, with_deviation
-from calibration.outputs import NotFinite, dataset, document, write_calibration
-from calibration.report import write_report
+from calibration.plots import decay_figures as plot
+from calibration.report.write_report import write_report
 from calibration.result import BandError, Calibration, Estimate
-from calibration.saved import read_saved, read_values
+from calibration.results import write_calibration as outputs
+from calibration.results.read_calibration import read_saved, read_values
+from calibration.results.write_calibration import NotFinite, dataset, document, write_calibration
+from jaxhydro.errors import InputError
 from jaxhydro.files import check_folder, staged
-from jaxhydro.problems import InputError
 
 SCHEMAS = [
     Path(calibration.__file__).parent / "outputs.schema.json",

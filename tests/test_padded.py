@@ -7,12 +7,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-import calibration.fit
 from calibration import load_campaign
-from calibration.campaign import Campaign
-from calibration.fit import prepare
-from calibration.ladder import padded_size
-from calibration.residuals import Problem, condensed
+from calibration.campaign.load_campaign import Campaign
+from calibration.fitting import decay_fit
+from calibration.fitting.decay_fit import prepare
+from calibration.residuals.decays import Problem, condensed
+from calibration.residuals.ladder import padded_size
 
 DECAYS = "jaxhydro/campaigns/volturnus-s-decays"
 
@@ -55,7 +55,7 @@ def test_records_of_nearly_the_same_length_are_traced_once(campaign, monkeypatch
     counts = []
     for share in shares:
         fit = prepare(cut(campaign, share, ids))
-        weight = calibration.fit.weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(1))
+        weight = decay_fit.weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(1))
         jax.block_until_ready(condensed(fit.unknowns, fit.problem, jnp.asarray(weight), jnp.asarray(fit.ends)))
         counts.append(len(traces))
     assert counts[0] > 0 and counts[1:] == counts[:1] * 2, traces
@@ -70,7 +70,7 @@ def test_padding_changes_no_result(campaign, monkeypatch) -> None:
         return fit.problem.data, fit.problem.products(fit.unknowns, fit.ends)
 
     padded, found = products()
-    monkeypatch.setattr("calibration.residuals.padded_size", lambda count: count)
+    monkeypatch.setattr("calibration.residuals.decays.padded_size", lambda count: count)
     exact, expected = products()
     assert padded.time.shape[1] > exact.time.shape[1] and padded.capacity > exact.capacity
     scale = np.sqrt(np.einsum("rckk->rck", expected))

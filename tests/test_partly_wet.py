@@ -12,11 +12,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import jaxhydro as jh
+from jaxhydro.dynamics.model import Model
+from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import Buoyancy
-from jaxhydro.model import Model
-from jaxhydro.platform import build
-from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import InputError, validate
+from jaxhydro.platform.build import build
+from jaxhydro.platform.schema import Platform
 from jaxhydro.rotations import rotation
 
 RHO, G = 1025.0, 9.80665

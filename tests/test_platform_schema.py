@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from jaxhydro.platform_schema import (
+from jaxhydro.errors import SHOWN, InputError, read_yaml, validate
+from jaxhydro.platform.schema import (
     Line,
     LinearSprings,
     Member,
@@ -17,7 +18,6 @@ from jaxhydro.platform_schema import (
     builtin_platforms,
     load_platform,
 )
-from jaxhydro.problems import SHOWN, InputError, read_yaml, validate
 
 SHARED = Path(__file__).parents[1].parent / "shared"
 GOOD = """

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from calibration.campaign import load_campaign
-from calibration.plausible import check_plausible
-from calibration.readers import read_table
-from jaxhydro.problems import InputError
+from calibration.campaign.load_campaign import load_campaign
+from calibration.campaign.plausible import check_plausible
+from jaxhydro.errors import InputError
+from jaxhydro.interop.data_files import read_table
 
 DEMO = Path(__file__).parents[1] / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 

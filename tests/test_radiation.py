@@ -16,18 +16,18 @@ from scipy.integrate import quad
 from test_loads import BODY, COEFFICIENTS, COLUMN, build, model_of, only
 
 import jaxhydro as jh
-from calibration.discovery.candidates import sought, with_candidates
-from calibration.discovery.catalogue import catalogue
-from calibration.discovery.listed import Scales
-from jaxhydro.interop.capytaine import read_capytaine
-from jaxhydro.interop.coefficients import RadiationCoefficients
-from jaxhydro.interop.wamit import read_wamit
+from calibration.discovery.effects.candidates import sought, with_candidates
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.listed import Scales
+from jaxhydro.dynamics.simulate import default_step, memory_step
+from jaxhydro.errors import InputError
+from jaxhydro.interop.capytaine_radiation import read_capytaine
+from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
+from jaxhydro.interop.retardation import Damping, Realisation, realise
+from jaxhydro.interop.wamit_radiation import read_wamit
 from jaxhydro.loads import ComputedRadiation, Stiffness
-from jaxhydro.platform_schema import load_platform
-from jaxhydro.problems import InputError
-from jaxhydro.retardation import Damping, Realisation, realise
-from jaxhydro.simulate import default_step, memory_step
-from jaxhydro.sweep.run import _platform_text
+from jaxhydro.platform.schema import load_platform
+from jaxhydro.sweep.run_sweep import _platform_text
 
 REFERENCE = Path(__file__).resolve().parents[2] / "shared" / "reference"
 WAMIT = REFERENCE / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.1"

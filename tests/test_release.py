@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.campaign import load_campaign
-from calibration.checks import check_records
-from calibration.manifest import read_manifest
-from calibration.records import load_records
-from calibration.release import free_motion
+from calibration.campaign.checks import check_records
+from calibration.campaign.load_campaign import load_campaign
+from calibration.campaign.manifest import read_manifest
+from calibration.campaign.records import load_records
+from calibration.campaign.release import free_motion
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 PERIOD, STEP, RATIO = 9.2, 0.1, 0.03

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from jaxhydro.response import Cycles, decay_cycles, extremes
+from jaxhydro.dynamics.response import Cycles, decay_cycles, extremes
 
 OMEGA = 2 * math.pi / 25.0
 

@@ -14,15 +14,15 @@ from numpy.testing import assert_allclose
 
 import jaxhydro as jh
 from calibration import calibrate
-from calibration.manifest import Manifest
-from calibration.records import load_records
+from calibration.campaign.manifest import Manifest
+from calibration.campaign.records import load_records
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import EquilibriumError, equilibrium, natural_modes
+from jaxhydro.errors import validate
 from jaxhydro.loads import Hysteresis
-from jaxhydro.model import Model
-from jaxhydro.platform import build as built
-from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import validate
+from jaxhydro.platform.build import build as built
+from jaxhydro.platform.schema import Platform
 from jaxhydro.scales import covered, entered
-from jaxhydro.statics import EquilibriumError, equilibrium, natural_modes
 from jaxhydro.waves.irregular import spectrum_components
 from jaxhydro.waves.spectra import jonswap
 from jaxhydro.waves.supports import Box

@@ -11,15 +11,15 @@ from test_cli import cache, run  # noqa: F401
 from test_seas import made  # noqa: F401  (a fixture: a run of the NumPy model)
 
 from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaign
-from calibration.outputs import document, write_calibration
-from calibration.parameters import parameter_space
-from calibration.sea_errors import in_bands
-from calibration.sea_residuals import CELLS, LEAST, energies_of, joined, pose_in_waves
-from calibration.seas import Options, compare, seas_of, with_diffraction
-from jaxhydro.analysis import band_integral, band_weights, power_spectrum
+from calibration.parameters.space import parameter_space
+from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
+from calibration.residuals.sea_errors import in_bands
+from calibration.residuals.seas import CELLS, LEAST, energies_of, joined, pose_in_waves
+from calibration.results.write_calibration import document, write_calibration
+from jaxhydro.analysis.spectral import band_integral, band_weights, power_spectrum
 from jaxhydro.environment import DOFS
-from jaxhydro.platform import build
-from jaxhydro.problems import InputError
+from jaxhydro.errors import InputError
+from jaxhydro.platform.build import build
 
 OPTIONS = Options(order=2, diffraction="none", cutoff=0.2)
 LABELS = ("column.Cd_t", "pontoon.Cd_z")

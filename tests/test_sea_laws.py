@@ -11,23 +11,23 @@ from test_seas import HULL
 
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
-from calibration.applied import applied
-from calibration.fit import Interrupted, Progress
-from calibration.laws import base_of, of_law, reference_of, with_drag, with_laws
-from calibration.outputs import write_calibration
-from calibration.sea_laws import LawFit, SeaLaws, choose_law, error, with_uses
-from calibration.sea_laws_outputs import document as document_of_laws
-from calibration.sea_laws_outputs import write_laws
-from calibration.sea_laws_tables import laws_table, sentence, states_table
-from calibration.seas import Options, compare, seas_of, with_diffraction
-from calibration.stretches import sea_state, stretches, walk
+from calibration.fitting.decay_fit import Interrupted, Progress
+from calibration.fitting.law_choice import LawFit, SeaLaws, choose_law, error, with_uses
+from calibration.fitting.law_parameters import base_of, of_law, reference_of, with_drag, with_laws
+from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
+from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
+from calibration.residuals.stretches import sea_state, stretches, walk
+from calibration.results.applied_calibration import applied
+from calibration.results.write_calibration import write_calibration
+from calibration.results.write_laws import document as document_of_laws
+from calibration.results.write_laws import write_laws
 from calibration.vocabulary import LAW_NAMES
-from jaxhydro.calibrated_model import with_calibration
-from jaxhydro.drag_laws import drag_laws_of, surface_number
+from jaxhydro.cli.calibrated_model import with_calibration
 from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError
 from jaxhydro.loads.sea_state_law import reference_of as reference_of_loads
-from jaxhydro.platform import build
-from jaxhydro.problems import InputError
+from jaxhydro.platform.build import build
+from jaxhydro.platform.drag_laws import drag_laws_of, surface_number
 from jaxhydro.waves.sea_state import SeaState
 
 pytestmark = pytest.mark.slow  # nearly all need its fit
@@ -165,7 +165,7 @@ def found(campaign, fitted, calls):
 
     said = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("calibration.sea_laws.calibrate_in_waves", fake)
+        patch.setattr("calibration.fitting.law_choice.calibrate_in_waves", fake)
         laws = choose_law(
             campaign, laws=("constant", "significant_height"), free=LABELS, options=OPTIONS, start=start_of(campaign),
             progress=said.append,
@@ -203,7 +203,7 @@ def test_laws_that_are_stopped(campaign, fitted, made_before: int) -> None:
         return fitted
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("calibration.sea_laws.calibrate_in_waves", fake)
+        patch.setattr("calibration.fitting.law_choice.calibrate_in_waves", fake)
         if made_before == 0:
             with pytest.raises(Interrupted):
                 choose_law(campaign, laws=("constant", "significant_height"), options=OPTIONS)
@@ -224,7 +224,7 @@ def test_seas_left_out_in_turn(campaign, fitted) -> None:
         return fitted
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("calibration.sea_laws.calibrate_in_waves", fake)
+        patch.setattr("calibration.fitting.law_choice.calibrate_in_waves", fake)
         laws = choose_law(every, laws=("constant", "significant_height"), options=OPTIONS)
     assert laws.left_out and laws.judged_by == ("sea-1", "sea-2", "sea-3") and laws.chosen.name == "constant"
     assert [held for over, held in left if over] == [[], ["sea-1"], ["sea-2"], ["sea-3"]]

@@ -10,14 +10,14 @@ from test_calibration import SHIP, SHIP_TRUE, model_of, roll_decay, write
 
 import jaxhydro as jh
 from calibration import load_campaign
-from calibration.campaign import Campaign
-from calibration.fit import Fit, Progress, run
-from calibration.residuals import Unknowns, first_guess
-from calibration.search import Found, SearchInterrupted, posed, search
-from calibration.searches import CMAES, METHODS, AbstractSearch, Budget, DifferentialEvolution, Genetic, MultiStart, Task
-from calibration.searches.base import BAD, even
-from calibration.searches.objective import coordinates, ranges
-from jaxhydro.problems import InputError
+from calibration.campaign.load_campaign import Campaign
+from calibration.fitting.decay_fit import Fit, Progress, run
+from calibration.global_search import CMAES, METHODS, AbstractSearch, Budget, DifferentialEvolution, Genetic, MultiStart, Task
+from calibration.global_search.base import BAD, even
+from calibration.global_search.objective import coordinates, ranges
+from calibration.global_search.run_search import Found, SearchInterrupted, posed, search
+from calibration.residuals.decays import Unknowns, first_guess
+from jaxhydro.errors import InputError
 
 NOISE, OFFSET = 2e-4, 3e-3  # rad
 # one size of batch, CMA-ES's apart: less to compile

@@ -10,17 +10,17 @@ import xarray as xr
 from ruamel.yaml import YAML
 
 from benchmarks.reference_waves import WaveModel, Waves, march
-from calibration.applied import applied
-from calibration.campaign import load_campaign
-from calibration.command import simulate_campaign
-from calibration.fit import calibrate
-from calibration.runs import Run, evenly, runs
-from calibration.sea_errors import bands_of
-from calibration.seas import MISMATCH, Options, sea_of
+from calibration.campaign.load_campaign import load_campaign
+from calibration.campaign.runs import Run, evenly, runs
+from calibration.commands.calibrate_command import simulate_campaign
+from calibration.fitting.decay_fit import calibrate
+from calibration.residuals.measured_seas import MISMATCH, Options, sea_of
+from calibration.residuals.sea_errors import bands_of
+from calibration.results.applied_calibration import applied
+from jaxhydro.cli.options import results_folder
 from jaxhydro.environment import Environment
-from jaxhydro.options import results_folder
-from jaxhydro.platform import load_model
-from jaxhydro.problems import InputError
+from jaxhydro.errors import InputError
+from jaxhydro.platform.build import load_model
 
 ROOT = Path(__file__).resolve().parents[1]
 HULL = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays" / "platform.yaml"
@@ -275,7 +275,7 @@ def test_focal_campaign_2():
     """The first sea's run from the record's first 1600 s: signs, clock and gauge are right."""
     import dataclasses
 
-    from calibration.seas import compare
+    from calibration.residuals.measured_seas import compare
 
     campaign = load_campaign(FOCAL)
     record = campaign.record("sea-3m")

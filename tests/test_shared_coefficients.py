@@ -14,15 +14,15 @@ from test_loads import BEAM, BODY, COLUMN, HIGH_PASS, KEULEGAN_CARPENTER, LEG, P
 
 import jaxhydro as jh
 from calibration import calibrate, load_campaign
-from calibration.discovery.candidates import with_effects
-from calibration.discovery.catalogue import catalogue
-from calibration.discovery.listed import Scales
-from calibration.model_damping import model_damping
-from calibration.parameters import choose
+from calibration.decay_analysis.model_damping import model_damping
+from calibration.discovery.effects.candidates import with_effects
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.listed import Scales
+from calibration.parameters.space import choose
+from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import WaveExcitation
 from jaxhydro.loads.sea_state_law import SeaStateLaw
-from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import InputError, validate
+from jaxhydro.platform.schema import Platform
 from jaxhydro.waves.sea_state import SeaState
 
 OWN = {"Ca_t": 0.9, "Ca_z": 0.6, "Cd_t": 1.1, "Cd_z": 2.3}

@@ -10,18 +10,18 @@ from numpy.testing import assert_allclose
 
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
-from calibration.identifiability import memory
-from calibration.joint import calibrate_jointly
-from calibration.parameters import parameter_space
-from calibration.residuals import Unknowns
-from calibration.sea_residuals import pose_in_waves
-from calibration.seas import Options, seas_of, with_diffraction
-from calibration.shooting import shoot
-from calibration.shooting_fit import ShootingFit, objective
-from calibration.stretches import stretches, walk
-from jaxhydro.integrate import clock
-from jaxhydro.platform import build
-from jaxhydro.problems import InputError
+from calibration.fitting.joint_fit import calibrate_jointly
+from calibration.fitting.shooting_fit import ShootingFit, objective
+from calibration.identifiability.standard_deviations import memory
+from calibration.parameters.space import parameter_space
+from calibration.residuals.decays import Unknowns
+from calibration.residuals.measured_seas import Options, seas_of, with_diffraction
+from calibration.residuals.seas import pose_in_waves
+from calibration.residuals.shooting import shoot
+from calibration.residuals.stretches import stretches, walk
+from jaxhydro.dynamics.integrate import clock
+from jaxhydro.errors import InputError
+from jaxhydro.platform.build import build
 
 pytestmark = pytest.mark.slow
 

@@ -10,10 +10,10 @@ import yaml
 from typer.testing import CliRunner
 
 from calibration import load_campaign
-from jaxhydro.cli import app
-from jaxhydro.platform import build, load_model
-from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import validate
+from jaxhydro.cli.app import app
+from jaxhydro.errors import validate
+from jaxhydro.platform.build import build, load_model
+from jaxhydro.platform.schema import Platform
 
 ANCHORS = ([60, 0, -100], [-30, 52, -100], [-30, -52, -100])
 FAIRLEADS = ([5, 0, -5], [-2.5, 4.33, -5], [-2.5, -4.33, -5])

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from calibration.discovery.splitting import modes_of, split, swinging
+from calibration.discovery.effects.mode_splitting import modes_of, split, swinging
 
 STEP = 0.16  # s
 

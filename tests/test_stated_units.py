@@ -8,11 +8,11 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from calibration.campaign import load_campaign
-from calibration.readers import read_table
-from calibration.stated_units import stated_unit
-from jaxhydro import sea_options
-from jaxhydro.problems import InputError
+from calibration.campaign.load_campaign import load_campaign
+from jaxhydro.cli import sea_options
+from jaxhydro.errors import InputError
+from jaxhydro.interop.data_files import read_table
+from jaxhydro.interop.stated_units import stated_unit
 
 T = np.arange(0.0, 300.0, 0.1)
 

@@ -5,14 +5,14 @@ from typing import Any
 
 import pytest
 
-from calibration import tables
-from calibration.checks import Finding
+from calibration.campaign.checks import Finding
+from calibration.campaign.grouped_findings import grouped
 from calibration.formatting import counted, percent_span, readable_unit
-from calibration.grouped import grouped
-from calibration.saved import Saved
-from calibration.summary import CalibrationSummary, calibration_sentence, summary_of
-from calibration.sweep_page import SweepSummary, sweep_sentence
-from calibration.uncertainty_saved import IntervalSummary, interval_sentence
+from calibration.report import tables
+from calibration.report.summary import CalibrationSummary, calibration_sentence, summary_of
+from calibration.report.sweep_page import SweepSummary, sweep_sentence
+from calibration.results.read_calibration import Saved
+from calibration.results.read_uncertainty import IntervalSummary, interval_sentence
 
 
 def error(relative: float, scored: bool = True) -> dict[str, Any]:

@@ -10,18 +10,18 @@ import pytest
 from fake_sweep import SWEEP, written
 
 import jaxhydro as jh
-from calibration.report import write_report
-from jaxhydro.problems import InputError, validate
-from jaxhydro.simulate import largest_step
+from calibration.report.write_report import write_report
+from jaxhydro.dynamics.simulate import largest_step
+from jaxhydro.errors import InputError, validate
 from jaxhydro.sweep.batch import Setup, prepared_for, sea_of
 from jaxhydro.sweep.cases import Plan, plan_of
 from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted
-from jaxhydro.sweep.load import load_sweep
-from jaxhydro.sweep.notes import impossible, notes, shares_in_band
-from jaxhydro.sweep.plot import exceedance_figure, scatter_figure
 from jaxhydro.sweep.resources import bytes_of_run, chosen, supports_of
-from jaxhydro.sweep.schema import Sweep
-from jaxhydro.sweep.statistics import equivalent_ranges, frequencies, kept_of
+from jaxhydro.sweep.run_statistics import equivalent_ranges, frequencies, kept_of
+from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
+from jaxhydro.sweep.sweep_file import load_sweep
+from jaxhydro.sweep.sweep_remarks import impossible, notes, shares_in_band
+from jaxhydro.sweep.sweep_schema import Sweep
 
 
 def plan(**changes) -> Plan:

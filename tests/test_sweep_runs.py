@@ -21,15 +21,15 @@ from fake_sweep import BREAKING, PLATFORM, SWEEP, written
 from typer.testing import CliRunner
 
 import jaxhydro as jh
-from jaxhydro import cli
 from jaxhydro import fingerprint as fingerprints
+from jaxhydro.cli import app as cli
 from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
 from jaxhydro.sweep.batch import outcome, outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
 from jaxhydro.sweep.local import Worker
-from jaxhydro.sweep.notes import shares_in_band
-from jaxhydro.sweep.run import opened, prepared
+from jaxhydro.sweep.run_sweep import opened, prepared
 from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store, alone
+from jaxhydro.sweep.sweep_remarks import shares_in_band
 from jaxhydro.waves.sea_state import state_of
 
 VARIABLES = ("statistics", "density", "bands", "ranges", "series")
@@ -218,14 +218,14 @@ def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatc
         return {}
 
     with monkeypatch.context() as late:  # all is written: it is done
-        late.setattr("jaxhydro.sweep.command._print_results", stop)
+        late.setattr("jaxhydro.cli.sweep_command._print_results", stop)
         assert f"Results are in {whole}" in command("sweep", file, "--out", whole, status=3)
-    monkeypatch.setattr("jaxhydro.sweep.command.summary_of", stop)
+    monkeypatch.setattr("jaxhydro.cli.sweep_command.summary_of", stop)
     assert f"stopped; what is done is in {whole / RESULTS}" in command("sweep", file, "--out", whole, status=130)
     before = signal.getsignal(signal.SIGINT)
-    monkeypatch.setattr("jaxhydro.sweep.run.impossible", swallowed)
+    monkeypatch.setattr("jaxhydro.sweep.run_sweep.impossible", swallowed)
     assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)
-    monkeypatch.setattr("jaxhydro.sweep.command.load_sweep", stop)
+    monkeypatch.setattr("jaxhydro.cli.sweep_command.load_sweep", stop)
     assert "stopped; nothing was written" in command("sweep", file, "--out", tmp_path / "o", status=130)
     assert not (tmp_path / "o").exists() and signal.getsignal(signal.SIGINT) is before
 
@@ -242,8 +242,8 @@ def test_a_scheduler_that_is_lost_is_told(file, tmp_path, monkeypatch) -> None:
     def lost(*_):
         raise ConnectionResetError("reset by peer")
 
-    monkeypatch.setattr("jaxhydro.sweep.command.workers_of", lambda scheduler: 2)
-    monkeypatch.setattr("jaxhydro.sweep.command.run_all", lost)
+    monkeypatch.setattr("jaxhydro.cli.sweep_command.workers_of", lambda scheduler: 2)
+    monkeypatch.setattr("jaxhydro.cli.sweep_command.run_all", lost)
     text = command("sweep", file, "--out", tmp_path / "o", "--scheduler", "tcp://x:1", status=130)
     assert "the scheduler at tcp://x:1 was lost (reset by peer); what is done is in" in text
 

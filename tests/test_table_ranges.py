@@ -10,12 +10,12 @@ from test_tables import CYLINDER, model_of
 from typer.testing import CliRunner
 
 import jaxhydro as jh
-from calibration.campaign import load_campaign
-from jaxhydro import cli
-from jaxhydro.command import told_of_bed
+from calibration.campaign.load_campaign import load_campaign
+from jaxhydro.cli import app as cli
+from jaxhydro.cli.simulate_command import told_of_bed
+from jaxhydro.dynamics.table_ranges import TableRange, outside_tables, table_ranges
 from jaxhydro.sweep import load_sweep
-from jaxhydro.sweep.run import prepared
-from jaxhydro.table_ranges import TableRange, outside_tables, table_ranges
+from jaxhydro.sweep.run_sweep import prepared
 from jaxhydro.waves.excitation import Excitation
 
 PLATFORM = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")

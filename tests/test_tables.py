@@ -10,20 +10,20 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import jaxhydro as jh
-from jaxhydro import cli
-from jaxhydro.computed_hydrostatics import hydrostatic_stiffness
-from jaxhydro.interop.capytaine import read_capytaine
+from jaxhydro.cli import app as cli
+from jaxhydro.dynamics.statics import linearised
+from jaxhydro.errors import InputError
+from jaxhydro.interop.capytaine_radiation import read_capytaine
 from jaxhydro.interop.capytaine_waves import read_capytaine_excitation, read_capytaine_hydrostatics
-from jaxhydro.interop.excitation import read_excitation
-from jaxhydro.interop.hydrostatics import read_hydrostatics
-from jaxhydro.interop.quadratic_transfer import read_transfer
-from jaxhydro.interop.wamit import read_wamit
+from jaxhydro.interop.retardation import realise
+from jaxhydro.interop.wamit_drift import read_transfer
+from jaxhydro.interop.wamit_excitation import read_excitation
+from jaxhydro.interop.wamit_hydrostatics import read_hydrostatics
+from jaxhydro.interop.wamit_radiation import read_wamit
 from jaxhydro.loads import Buoyancy
-from jaxhydro.problems import InputError
-from jaxhydro.retardation import realise
-from jaxhydro.statics import linearised
-from jaxhydro.sweep.run import _platform_text
-from jaxhydro.table_checks import LongWaves, asymmetry, excitation_column
+from jaxhydro.platform.computed_hydrostatics import hydrostatic_stiffness
+from jaxhydro.platform.table_checks import LongWaves, asymmetry, excitation_column
+from jaxhydro.sweep.run_sweep import _platform_text
 from jaxhydro.waves.dispersion import wavenumber
 
 CYLINDER = Path(__file__).parent / "data" / "capytaine-cylinder.nc"  # by Capytaine 3.0: radius 1 m, draught 3 m, 50 m of water

@@ -12,11 +12,11 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 import jaxhydro as jh
+from jaxhydro.dynamics.model import Model
+from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import Buoyancy, EndDrag, EndInertia
-from jaxhydro.model import Model
-from jaxhydro.platform import build as built
-from jaxhydro.platform_schema import Platform
-from jaxhydro.problems import InputError, validate
+from jaxhydro.platform.build import build as built
+from jaxhydro.platform.schema import Platform
 from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.second_order import bound_waves

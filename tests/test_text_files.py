@@ -11,11 +11,11 @@ import pytest
 import xarray as xr
 from scipy.io import savemat
 
-from calibration.campaign import load_campaign
-from calibration.manifest import read_manifest
-from calibration.readers import read_table
-from calibration.records import load_records
-from jaxhydro.problems import InputError
+from calibration.campaign.load_campaign import load_campaign
+from calibration.campaign.manifest import read_manifest
+from calibration.campaign.records import load_records
+from jaxhydro.errors import InputError
+from jaxhydro.interop.data_files import read_table
 
 CASES = Path(__file__).resolve().parents[2] / "shared" / "cases"
 COUNT = 60

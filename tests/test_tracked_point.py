@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from calibration.manifest import read_manifest
-from calibration.records import load_records
-from calibration.tracked_point import at_reference
+from calibration.campaign.manifest import read_manifest
+from calibration.campaign.records import load_records
+from calibration.campaign.tracked_point import at_reference
 from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError
 from jaxhydro.loads import SensorReference
-from jaxhydro.problems import InputError
 
 SCALE = 50.0
 POINT = (0.04, 0.0, -0.3)  # m at the scale of the files

@@ -13,17 +13,17 @@ import pytest
 from scipy.signal import lfilter
 from test_calibration import MEASURED, SHIP, SHIP_NOISE, SHIP_TRUE, measured, roll_decay, write
 
-from calibration import sampling
-from calibration.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
-from calibration.campaign import Campaign, load_campaign
-from calibration.colour import Colour, coloured, colours, periodogram, whittle
-from calibration.fit import calibrate
-from calibration.likelihood import Likelihood, likelihood
-from calibration.profile import Profile, profile
-from calibration.sampling import potential, sample, whitening
-from calibration.uncertainty_plot import draws_figure, profile_figure
-from jaxhydro.plot import style
-from jaxhydro.problems import InputError
+from calibration.campaign.load_campaign import Campaign, load_campaign
+from calibration.fitting.decay_fit import calibrate
+from calibration.identifiability.residual_spectra import Colour, coloured, colours, periodogram, whittle
+from calibration.plots.uncertainty_figures import draws_figure, profile_figure
+from calibration.uncertainty import nuts as sampling
+from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
+from calibration.uncertainty.likelihood import Likelihood, likelihood
+from calibration.uncertainty.nuts import potential, sample, whitening
+from calibration.uncertainty.profile import Profile, profile
+from jaxhydro.errors import InputError
+from jaxhydro.plots.style import style
 
 FREE = ["added_mass.A44", "linear_damping.B44", "quadratic_damping.B44"]
 N, STEP = 400, 0.1
@@ -227,7 +227,7 @@ def test_groups_of_repeats() -> None:
 
 
 def test_no_repeats_is_told(ship: Likelihood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("calibration.bootstrap.repeats", lambda of: {id: (id,) for id in of})
+    monkeypatch.setattr("calibration.uncertainty.bootstrap.repeats", lambda of: {id: (id,) for id in of})
     with pytest.raises(InputError) as caught:
         bootstrap_repeats(ship, 4)
     assert "repeat_of" in str(caught.value) and "roll-2" in str(caught.value)

@@ -9,11 +9,11 @@ from test_cli import cache, run  # noqa: F401
 from test_uncertainty import FREE, campaign_of
 
 from calibration import calibrate, load_campaign
-from calibration.bootstrap import bootstrap_blocks, bootstrap_repeats
 from calibration.formatting import interval, to_width
-from calibration.likelihood import Likelihood, likelihood
-from calibration.outputs import write_calibration
-from calibration.profile import profile
+from calibration.results.write_calibration import write_calibration
+from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats
+from calibration.uncertainty.likelihood import Likelihood, likelihood
+from calibration.uncertainty.profile import profile
 
 
 @pytest.fixture(scope="module")

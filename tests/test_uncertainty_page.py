@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 from test_cli import cache, run  # noqa: F401
 from test_outputs import Page
 
-from calibration import uncertainty_outputs
-from calibration.folder import DIAGNOSIS, UNCERTAINTY
-from calibration.report import write_report
-from calibration.uncertainty_outputs import write_uncertainty
-from jaxhydro.problems import InputError
+from calibration.report.write_report import write_report
+from calibration.results import write_uncertainty as uncertainty_outputs
+from calibration.results.result_folder import DIAGNOSIS, UNCERTAINTY
+from calibration.results.write_uncertainty import write_uncertainty
+from jaxhydro.errors import InputError
 
 MASS = {
     "value": 18.4088, "unit": "kg m2", "meaning": "added mass in roll", "identifiable": True, "at_bound": False,

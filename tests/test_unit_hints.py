@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from calibration.fitting.unit_hints import unit_hints
 from calibration.result import Estimate
-from calibration.unit_hints import unit_hints
 
 
 def hints(value: float, start: float, deviation: float | None = None, known: bool = True) -> list[str]:

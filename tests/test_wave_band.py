@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from calibration import load_campaign
-from calibration.manifest import Manifest, read_manifest
-from calibration.seas import options_of
-from calibration.wave_band import wave_band
-from jaxhydro.problems import InputError
+from calibration.campaign.manifest import Manifest, read_manifest
+from calibration.campaign.wave_band import wave_band
+from calibration.residuals.measured_seas import options_of
+from jaxhydro.errors import InputError
 
 
 def manifest(**changes) -> Manifest:

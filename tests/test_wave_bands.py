@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import jaxhydro as jh
-from jaxhydro.problems import validate
-from jaxhydro.requested_sea import Asked, Record
+from jaxhydro.dynamics.requested_sea import Asked, Record
+from jaxhydro.errors import validate
 from jaxhydro.sweep.cases import plan_of
-from jaxhydro.sweep.schema import Sweep
-from jaxhydro.wave_bands import CUTOFF, LOW, of_records, of_spectra, wave_energy
+from jaxhydro.sweep.sweep_schema import Sweep
+from jaxhydro.waves.wave_bands import CUTOFF, LOW, of_records, of_spectra, wave_energy
 
 
 def sea(peak: float, samples_per_wave: float = 20.0, waves: int = 400, seed: int = 0, height: float = 1.0):
@@ -104,7 +104,7 @@ def test_simulate_and_sweep_have_one_rule(tp, pace) -> None:
 
 
 def test_simulate_and_calibrate_have_one_rule() -> None:
-    from calibration.wave_band import wave_band
+    from calibration.campaign.wave_band import wave_band
 
     x, step = sea(3.0)
     time = step * np.arange(len(x))

@@ -13,10 +13,10 @@ from fake_calibration import small
 from fake_diagnosis import fake_diagnosis
 from test_uncertainty_page import CONTENT
 
-from calibration.discovery.outputs import write_diagnosis
-from calibration.outputs import write_calibration
-from calibration.report import write_report
-from calibration.web_page import SHORT, breakable, framed, result_box, table
+from calibration.report.web_page import SHORT, breakable, framed, result_box, table
+from calibration.report.write_report import write_report
+from calibration.results.write_calibration import write_calibration
+from calibration.results.write_diagnosis import write_diagnosis
 
 LONG = "a static offset (a force, or a sensor's zero) in roll; wrong mass properties; radiation memory in roll"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

@@ -36,7 +36,7 @@ def of_factor(name: str) -> dict[str, Any]:
     import jaxhydro as jh
     from benchmarks.reference_model import ReferenceModel
     from calibration import calibrate, load_campaign, model_damping
-    from calibration.classical import classical
+    from calibration.decay_analysis.linear_quadratic import classical
 
     factor = float(name)
     maker = ReferenceModel(document(factor))
@@ -129,7 +129,7 @@ hold the truth. Of the strongest damping they reach {100 * wide[0]:.0f} and {100
 
 def draw(results: list[dict[str, Any]], path: Path) -> Path:
     """Ratios to the truth against damping."""
-    from jaxhydro.plot import MEASURED, SIMULATED, header, save, stack, style
+    from jaxhydro.plots.style import MEASURED, SIMULATED, header, save, stack, style
 
     with style():
         figure, axes = stack([1.2, 1.2])

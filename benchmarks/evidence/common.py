@@ -121,7 +121,7 @@ class _Named:
 
 def within(x: np.ndarray, low: float, high: float, step: float) -> np.ndarray:
     """`band_pass` of a series in steps (s); samples that are none are left out."""
-    from jaxhydro.analysis import band_pass
+    from jaxhydro.analysis.spectral import band_pass
 
     x = x[np.isfinite(x)]
     return band_pass(step * np.arange(len(x)), x, low, high)

@@ -28,11 +28,11 @@ METHODS = {
 def of_campaign(name: str) -> dict[str, Any]:
     """Intervals of one campaign by method and label, as [lower, upper], None where open, and absent where there is none."""
     from benchmarks.evidence.coverage_campaigns import make
-    from calibration.bootstrap import bootstrap_blocks
-    from calibration.campaign import load_campaign
-    from calibration.fit import conclude, prepare, run
-    from calibration.likelihood import likelihood_of
-    from calibration.profile import profile
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.fitting.decay_fit import conclude, prepare, run
+    from calibration.uncertainty.bootstrap import bootstrap_blocks
+    from calibration.uncertainty.likelihood import likelihood_of
+    from calibration.uncertainty.profile import profile
 
     index = int(name.removeprefix("campaign-"))
     folder = CACHE / "coverage-campaigns" / name
@@ -63,9 +63,9 @@ def of_campaign(name: str) -> dict[str, Any]:
 
 def of_measured(name: str) -> dict[str, list[float]]:
     """Of a measured decay: relative deviations with the residual as it is, as if it were white, and their ratio, by label."""
-    from calibration.campaign import load_campaign
-    from calibration.fit import conclude, prepare, run
-    from calibration.likelihood import likelihood_of
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.fitting.decay_fit import conclude, prepare, run
+    from calibration.uncertainty.likelihood import likelihood_of
 
     campaign = load_campaign(SHARED / "measured" / name)
     fit = prepare(campaign)
@@ -173,7 +173,7 @@ def draw(results: dict[int, dict[str, Any]], path: Path) -> Path:
     """Coverage by coefficient and method, with its binomial interval."""
     from matplotlib.figure import Figure
 
-    from jaxhydro.plot import BEFORE, GREY, MEASURED, SIMULATED, WAVE, WIDTH, header, save, style
+    from jaxhydro.plots.style import BEFORE, GREY, MEASURED, SIMULATED, WAVE, WIDTH, header, save, style
 
     looks = {"coloured": (SIMULATED, "o"), "profile": (MEASURED, "s"), "blocks": (WAVE, "^"), "white": (BEFORE, "D")}
     with style():

@@ -105,7 +105,7 @@ def listed(effect: str, motion: str | None) -> str:
 
 def of_case(name: str) -> dict[str, Any]:
     """What a diagnosis says of one campaign."""
-    from calibration.campaign import load_campaign
+    from calibration.campaign.load_campaign import load_campaign
     from calibration.discovery.diagnose import diagnose
 
     campaign = load_campaign(folder_of(name))
@@ -168,9 +168,9 @@ def found(result: dict[str, Any]) -> list[str]:
 def doubts(result: dict[str, Any]) -> list[str | None]:
     """What each effect found is in doubt for, None where it is for nothing: worked out from errors, and from what was tried
     where a result is from before diagnoses told."""
+    from calibration.discovery.acceptance import Verdict
+    from calibration.discovery.diagnosis import HELD_OUT_ERROR
     from calibration.discovery.doubts import outdone, risen
-    from calibration.discovery.judgement import Verdict
-    from calibration.discovery.result import HELD_OUT_ERROR
 
     if risen(*result["error"]):
         return [HELD_OUT_ERROR] * len(result["effects"])
@@ -385,7 +385,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
 def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
     """What candidates reach where nothing is missing, rule by rule, and how many campaigns would be told of an effect by the
     other rules alone; "" where there are no such campaigns."""
-    from calibration.discovery import judgement as by
+    from calibration.discovery import acceptance as by
 
     rules = {
         "bic": ("fall of BIC in the fitted tests", by.LEAST_BIC),
@@ -425,7 +425,7 @@ def draw(results: dict[Case, dict[str, Any]], path: Path) -> Path:
     """What was said first, of what is missing, by strength."""
     from matplotlib.figure import Figure
 
-    from jaxhydro.plot import GREY, WIDTH, header, save, style
+    from jaxhydro.plots.style import GREY, WIDTH, header, save, style
 
     def first(result: dict[str, Any]) -> str:
         return "unexplained" if in_doubt(result) else next(iter(found(result)), result["verdict"])

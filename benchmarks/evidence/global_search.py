@@ -20,7 +20,7 @@ POPULATIONS = ("cma-es", "de", "ga")
 
 def campaign():
     """The built-in campaign with one decay of each motion."""
-    from calibration.campaign import load_campaign
+    from calibration.campaign.load_campaign import load_campaign
 
     whole = load_campaign(DEMO)
     return dataclasses.replace(whole, records=tuple(whole.record(id) for id in RECORDS))
@@ -28,8 +28,8 @@ def campaign():
 
 def of_seed(name: str) -> dict[str, Any]:
     """One search; `name` is its method and its seed."""
-    from calibration.search import search
-    from calibration.searches import Budget
+    from calibration.global_search import Budget
+    from calibration.global_search.run_search import search
 
     method, seed = name.rsplit("-", 1)
     found = search(campaign(), method=method, seed=int(seed), budget=Budget(seconds=BUDGET))
@@ -43,9 +43,9 @@ def handicap(values: dict[str, float]) -> float:
     """J of the best coefficients with the releases that population searches are given."""
     import jax.numpy as jnp
 
-    from calibration.search import posed
-    from calibration.searches import Budget, Task
-    from calibration.searches.descents import releases
+    from calibration.global_search import Budget, Task
+    from calibration.global_search.descents import releases
+    from calibration.global_search.run_search import posed
 
     problem, records = posed(campaign())
     task = Task(problem, records, None, Budget())

@@ -22,7 +22,7 @@ def draw(results: dict[str, list[dict[str, Any]]], names: dict[str, str], best: 
     from matplotlib.figure import Figure
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    from jaxhydro.plot import MEASURED, WIDTH, header, save, style
+    from jaxhydro.plots.style import MEASURED, WIDTH, header, save, style
 
     with style():
         figure, artists = Figure(figsize=(2 * WIDTH, 3.3), layout="constrained"), {}

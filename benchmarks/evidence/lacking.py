@@ -56,11 +56,11 @@ def written_to(name: str) -> Path:
 
 def work(name: str) -> dict[str, Any]:
     """A campaign diagnosed, as the command line does it, and what its files say."""
-    from calibration.campaign import load_campaign
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.discovery.checkpoint import FILE
     from calibration.discovery.diagnose import diagnose
-    from calibration.discovery.kept import FILE
-    from calibration.discovery.outputs import write_diagnosis
-    from calibration.folder import DIAGNOSIS
+    from calibration.results.result_folder import DIAGNOSIS
+    from calibration.results.write_diagnosis import write_diagnosis
 
     folder = written_to(name)
     folder.mkdir(parents=True, exist_ok=True)
@@ -75,9 +75,9 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
     """What a folder of results says, and how well slow motions are followed in time."""
     import xarray as xr
 
-    from calibration.campaign import load_campaign
-    from calibration.folder import DIAGNOSIS
-    from jaxhydro.analysis import bands
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.results.result_folder import DIAGNOSIS
+    from jaxhydro.analysis.spectral import bands
 
     found = json.loads((folder / DIAGNOSIS).read_text())
     tests = load_campaign(campaign_of(name)).manifest.tests
@@ -116,9 +116,9 @@ def draw(name: str, path: Path) -> None:
     """Slow surge and pitch in the sea that was held out: measured, of the declared model fitted, and with what was found."""
     import xarray as xr
 
-    from calibration.campaign import load_campaign
-    from jaxhydro.analysis import bands
-    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style
+    from calibration.campaign.load_campaign import load_campaign
+    from jaxhydro.analysis.spectral import bands
+    from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, stack, style
     from jaxhydro.units import unit_of
 
     campaign = load_campaign(campaign_of(name))

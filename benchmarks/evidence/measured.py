@@ -18,12 +18,12 @@ CASES = {
 
 def work(name: str, figures: Path) -> dict[str, Any]:
     """One campaign calibrated; its figures written."""
-    from calibration.campaign import load_campaign
-    from calibration.fit import calibrate
-    from calibration.plot import decay_figure, test_figure
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.fitting.decay_fit import calibrate
+    from calibration.plots.decay_figures import decay_figure, test_figure
     from jaxhydro import natural_modes
-    from jaxhydro.plot import save, style
-    from jaxhydro.response import decay_cycles
+    from jaxhydro.dynamics.response import decay_cycles
+    from jaxhydro.plots.style import save, style
     from jaxhydro.units import for_people
 
     result = calibrate(load_campaign(FOLDER / name))

@@ -39,8 +39,8 @@ def values_of(which: str, key: str) -> dict[str, float]:
 
 def fitted() -> dict[str, Any]:
     """What campaign 4's one surge decay says."""
-    from calibration.campaign import load_campaign
-    from calibration.fit import calibrate
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.fitting.decay_fit import calibrate
 
     found = calibrate(load_campaign(FOLDER / "focal-c4")).parameters
     return {"values": {k: p.value for k, p in found.items()}, "vague": [k for k, p in found.items() if not p.identifiable]}
@@ -48,11 +48,11 @@ def fitted() -> dict[str, Any]:
 
 def case(key: str, name: str) -> dict[str, Any]:
     """One set of coefficients and options against all three seas."""
-    from calibration.campaign import load_campaign
-    from calibration.sea_errors import in_bands
-    from calibration.seas import Options, compare
-    from jaxhydro.platform import build
-    from jaxhydro.statics import natural_modes
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.residuals.measured_seas import Options, compare
+    from calibration.residuals.sea_errors import in_bands
+    from jaxhydro.dynamics.statics import natural_modes
+    from jaxhydro.platform.build import build
 
     which, order, diffraction, elements = CASES[name]
     campaign = load_campaign(FOLDER / "focal-c2")
@@ -80,8 +80,8 @@ def case(key: str, name: str) -> dict[str, Any]:
 def lower(test: Any) -> dict[str, Any]:
     """Simulated surge `KEEL` above still water: band integrals, mean, transfer function; and what the point that was measured
     does in pitch's resonance, surge over pitch and sway over roll (m/rad, the real part), with coherence."""
-    from calibration.sea_errors import channels, density
-    from jaxhydro.analysis import band_integral, bands, transfer_function
+    from calibration.residuals.sea_errors import channels, density
+    from jaxhydro.analysis.spectral import band_integral, bands, transfer_function
 
     time, both = test.fit.time, channels(test)
     seen = both["surge"][1] + KEEL * np.radians(both["pitch"][1])
@@ -105,8 +105,8 @@ def lower(test: Any) -> dict[str, Any]:
 
 def spectra(test: Any) -> dict[str, Any]:
     """Of measured and simulated: mean, standard deviation, spectra, and transfer functions from the measured wave."""
-    from calibration.sea_errors import channels, density
-    from jaxhydro.analysis import transfer_function
+    from calibration.residuals.sea_errors import channels, density
+    from jaxhydro.analysis.spectral import transfer_function
 
     found: dict[str, Any] = {"mean": {}, "deviation": {}, "density": {}, "response": {}}
     time, both = test.fit.time, channels(test)
@@ -128,8 +128,8 @@ def potential() -> dict[str, list[list[float]]]:
     """Amplitude (m, deg per m) and phase (deg) at AT of linear motions by WAMIT, with campaign 2's mass and mooring."""
     import jax.numpy as jnp
 
-    from jaxhydro.platform import load_model
-    from jaxhydro.statics import equilibrium, linearised
+    from jaxhydro.dynamics.statics import equilibrium, linearised
+    from jaxhydro.platform.build import load_model
     from jaxhydro.waves.dispersion import wavenumber
 
     model = load_model(FOLDER / "focal-c2" / "platform.yaml")
@@ -188,9 +188,9 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from calibration.sea_errors import bands_of
-    from calibration.seas_plot import LOW_BAND, WAVE_BAND
-    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, style
+    from calibration.plots.sea_figures import LOW_BAND, WAVE_BAND
+    from calibration.residuals.sea_errors import bands_of
+    from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, style
 
     with style():
         figure = Figure(figsize=(6.9, 5.6), layout="constrained")

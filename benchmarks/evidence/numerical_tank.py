@@ -53,7 +53,7 @@ def known_of(law: dict[str, dict[str, float]]) -> dict[str, Any]:
 
 def draw(found: dict[str, Any], path: Path) -> None:
     """Surge of the sea that was held out: measured, of the fitted declared model and with what was found; its slow part."""
-    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style
+    from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, stack, style
 
     motions = found["motions"][runs.HELD]
     time = np.array(motions["time"])

@@ -106,7 +106,7 @@ def errors_of(found: Any) -> dict[str, Any]:
 
 def errors_in_waves(tests: Any) -> dict[str, Any]:
     """The same of tests that `compare` simulated."""
-    from calibration.sea_errors import in_bands
+    from calibration.residuals.sea_errors import in_bands
 
     found = {}
     for test in tests:
@@ -125,9 +125,9 @@ def declared() -> dict[str, Any]:
     import jax.numpy as jnp
 
     import jaxhydro as jh
-    from calibration.campaign import load_campaign
-    from calibration.discovery.records import options_for
-    from calibration.seas import compare
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.discovery.wave_records import options_for
+    from calibration.residuals.measured_seas import compare
 
     campaign = load_campaign(CAMPAIGN)
     model, errors = campaign.model, {}
@@ -148,9 +148,9 @@ def declared() -> dict[str, Any]:
 def calibrated() -> dict[str, Any]:
     """The declared model calibrated to the three decays as `calibrate` does, and what it then makes of the sea."""
     from calibration import calibrate
-    from calibration.campaign import load_campaign
-    from calibration.discovery.records import options_for
-    from calibration.seas import compare
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.discovery.wave_records import options_for
+    from calibration.residuals.measured_seas import compare
 
     campaign = load_campaign(CAMPAIGN)
     result = calibrate(campaign)
@@ -167,7 +167,7 @@ def values_of(parameters: Any) -> dict[str, Any]:
 def diagnosed(which: str) -> dict[str, Any]:
     """What `diagnose` says: of `all`, of the `decays` alone, of which blocks are left out in turn, or of all with `tables`
     among the candidates. Killed, it goes on."""
-    from calibration.campaign import load_campaign
+    from calibration.campaign.load_campaign import load_campaign
     from calibration.discovery.diagnose import diagnose
 
     campaign = load_campaign(WITH_TABLES if which == "tables" else CAMPAIGN)

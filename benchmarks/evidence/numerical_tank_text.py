@@ -6,10 +6,10 @@ from typing import Any
 from benchmarks.evidence.common import TRUE, table
 from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT, setup
 from benchmarks.evidence.numerical_tank_truth import REACH
-from calibration.discovery.effect_names import called
-from calibration.discovery.judgement import LOST, TIMES
-from calibration.discovery.words import plain
+from calibration.discovery.acceptance import LOST, TIMES
+from calibration.discovery.effects.effect_names import called
 from calibration.formatting import listed, number, percent, quantity
+from calibration.report.diagnosis_words import plain
 
 HALVES = {FITTED: "fitted", HELD: "held out"}
 BANDS = {"low_frequency": "low", "wave_frequency": "wave"}

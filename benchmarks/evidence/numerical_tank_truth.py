@@ -21,8 +21,8 @@ from benchmarks.evidence.numerical_tank_runs import (
     platform,
     setup,
 )
-from jaxhydro.analysis import BANDS
-from jaxhydro.interop.wamit import read_wamit
+from jaxhydro.analysis.spectral import BANDS
+from jaxhydro.interop.wamit_radiation import read_wamit
 
 DENSITY, GRAVITY = 1025.0, 9.81
 # MoorDyn's md.dat: three lines at 120 deg

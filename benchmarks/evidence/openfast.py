@@ -60,7 +60,7 @@ def decay(dof: str) -> dict[str, Any]:
 
 def compared(found: dict[str, Any]) -> dict[str, np.ndarray]:
     """Cycle by cycle over the first ten: period and amplitude over OpenFAST's less 1; largest difference."""
-    from jaxhydro.response import decay_cycles
+    from jaxhydro.dynamics.response import decay_cycles
 
     time, reference, motion = (np.asarray(found[k]) for k in ("time", "openfast", "jaxhydro"))
     theirs, ours = decay_cycles(time, reference), decay_cycles(time, motion)
@@ -132,7 +132,7 @@ def run(figures: Path) -> Section:
 
 def draw(found: dict[str, Any], path: Path) -> None:
     """Pitch by both, and their difference."""
-    from jaxhydro.plot import MEASURED, SIMULATED, header, save, stack, style
+    from jaxhydro.plots.style import MEASURED, SIMULATED, header, save, stack, style
 
     time, reference, motion = (np.asarray(found[k]) for k in ("time", "openfast", "jaxhydro"))
     shown = time <= 270

@@ -36,7 +36,7 @@ LOADS_GOAL, MOTION_GOAL = 0.02, 0.05
 
 def energies(times: np.ndarray, motions: dict[str, np.ndarray], period: float) -> dict[str, float]:
     """Integrals of the spectrum (m2, deg2) in the paper's bands from 300 s on, and the mean surge (m)."""
-    from jaxhydro.analysis import band_integral, bands, power_spectrum
+    from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
 
     late = times >= (300 if times[-1] > 900 else 0)
     found = {"mean": float(motions["surge"][late].mean())}
@@ -83,7 +83,7 @@ def free(name: str) -> dict[str, Any]:
 def changed(sea: str) -> dict[str, Any]:
     """Energies of case 3 in a sea with each of `CHANGES`; spectra for the figure; the set-down (m)."""
     from benchmarks.evidence import openfast_sea as of
-    from jaxhydro.analysis import power_spectrum
+    from jaxhydro.analysis.spectral import power_spectrum
     from jaxhydro.waves.second_order import elevation_spectrum
 
     run = of.read(SEAS[sea])._replace(case=of.CASES["c3"])
@@ -198,7 +198,7 @@ def run(figures: Path) -> Section:
 
 def draw(found: dict[str, Any], path: Path) -> None:
     """Spectra of ss1_c3 by OpenFAST and here, in its conventions and the default ones."""
-    from jaxhydro.plot import BEFORE, MEASURED, SIMULATED, header, save, stack, style
+    from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, stack, style
     from jaxhydro.units import unit_of
 
     looks = {"OpenFAST": (MEASURED, 2.0), "base": (BEFORE, 1.0), DEFAULT: (SIMULATED, 1.0)}

@@ -54,10 +54,10 @@ def worked_out() -> dict[str, Any]:
     from scipy.optimize import least_squares
 
     from jaxhydro import equilibrium, load_model, natural_modes
+    from jaxhydro.dynamics.statics import linearised
     from jaxhydro.loads.hydrostatics import buoyancy
-    from jaxhydro.platform import members_of
-    from jaxhydro.platform_schema import load_platform
-    from jaxhydro.statics import linearised
+    from jaxhydro.platform.build import members_of
+    from jaxhydro.platform.schema import load_platform
 
     model = load_model("volturnus-s")
 

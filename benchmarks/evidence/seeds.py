@@ -14,8 +14,8 @@ GOAL = 0.85
 
 def calibrated(folder: str) -> dict[str, Any]:
     """A campaign calibrated from its platform file's values."""
-    from calibration.campaign import load_campaign
-    from calibration.fit import calibrate
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.fitting.decay_fit import calibrate
 
     result = calibrate(load_campaign(folder))
     return {
@@ -106,7 +106,7 @@ def draw(scores: dict[str, np.ndarray], path: Path) -> Path:
     """z by coefficient, one dot per seed."""
     from matplotlib.figure import Figure
 
-    from jaxhydro.plot import GREY, SIMULATED, WIDTH, header, save, style
+    from jaxhydro.plots.style import GREY, SIMULATED, WIDTH, header, save, style
 
     with style():
         figure = Figure(figsize=(1.5 * WIDTH, 2.7), layout="constrained")

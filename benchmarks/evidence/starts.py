@@ -17,7 +17,7 @@ SAME = 1.01
 def starts(count: int) -> list[dict[str, Any]]:
     """Starting values log-uniform within FACTOR of the truth, of those whose natural periods are within OFF of the true
     ones: values, and the natural periods over the true ones."""
-    from calibration.campaign import load_campaign
+    from calibration.campaign.load_campaign import load_campaign
     from jaxhydro import build, natural_modes
 
     model, random, drawn = build(load_campaign(DEMO).platform), np.random.default_rng(SEED), []
@@ -37,8 +37,8 @@ def starts(count: int) -> list[dict[str, Any]]:
 
 def of_start(name: str) -> dict[str, Any]:
     """The calibration from one start; `name` is its number and how many there are."""
-    from calibration.campaign import load_campaign
-    from calibration.fit import calibrate
+    from calibration.campaign.load_campaign import load_campaign
+    from calibration.fitting.decay_fit import calibrate
 
     index, count = map(int, name.split("-of-"))
     start = starts(count)[index - 1]

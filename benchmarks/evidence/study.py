@@ -36,7 +36,7 @@ CASES = {
 
 def rounded(platform: Any, case: Case) -> Any:
     """The platform file of a case."""
-    from jaxhydro.convergence import with_elements
+    from jaxhydro.platform.convergence import with_elements
 
     options = {"wetting": case.wetting, "diffraction": case.diffraction}
     return with_elements(platform, "pontoon", case.elements, 1).model_copy(update=options)
@@ -73,7 +73,7 @@ def times() -> np.ndarray:
 
 def spectra(position: np.ndarray) -> dict[str, Any]:
     """Spectra (m2/Hz, deg2/Hz) after the transient, by motion."""
-    from jaxhydro.analysis import power_spectrum
+    from jaxhydro.analysis.spectral import power_spectrum
 
     kept = times() >= TRANSIENT
     unit = {"surge": (0, 1.0), "heave": (2, 1.0), "pitch": (4, 180 / np.pi)}
@@ -82,7 +82,7 @@ def spectra(position: np.ndarray) -> dict[str, Any]:
 
 def integrals(position: np.ndarray, sea: str) -> list[float]:
     """Band integrals (m2, deg2) in the order of COLUMNS, and mean surge (m)."""
-    from jaxhydro.analysis import band_integral, bands
+    from jaxhydro.analysis.spectral import band_integral, bands
 
     found, period = spectra(position), SEAS[sea][1]
     kept = times() >= TRANSIENT
@@ -92,7 +92,7 @@ def integrals(position: np.ndarray, sea: str) -> list[float]:
 def of_seed(sea: str, seed: int) -> dict[str, Any]:
     """Band integrals and spectra of all cases in one seed's sea, and the spectra of its elevation."""
     from jaxhydro import simulate
-    from jaxhydro.analysis import power_spectrum
+    from jaxhydro.analysis.spectral import power_spectrum
 
     result: dict[str, Any] = {"integrals": {}, "spectra": {}}
     for name, case in CASES.items():

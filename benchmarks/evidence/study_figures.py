@@ -24,7 +24,7 @@ def elevation(found: Found, seas: dict[str, tuple[float, float]], cutoff: float,
     """Spectra of the elevation at the origin, of first order and with second, mean over the seeds."""
     from matplotlib.figure import Figure
 
-    from jaxhydro.plot import BEFORE, GREY, MEASURED, WIDTH, header, save, style
+    from jaxhydro.plots.style import BEFORE, GREY, MEASURED, WIDTH, header, save, style
 
     with style():
         figure = Figure(figsize=(2 * WIDTH, 2.6), layout="constrained")
@@ -48,8 +48,8 @@ def densities(found: Found, seas: dict[str, tuple[float, float]], path: Path) ->
     """Spectra of the motions by case, mean over the seeds, the bands shaded."""
     from matplotlib.figure import Figure
 
-    from jaxhydro.analysis import bands
-    from jaxhydro.plot import WIDTH, header, save, style
+    from jaxhydro.analysis.spectral import bands
+    from jaxhydro.plots.style import WIDTH, header, save, style
 
     with style():
         figure = Figure(figsize=(2 * WIDTH, 5.6), layout="constrained")
@@ -82,7 +82,7 @@ def bars(found: Found, seas: dict[str, tuple[float, float]], path: Path) -> Path
     """Band integrals by case: mean over the seeds, their range as a line."""
     from matplotlib.figure import Figure
 
-    from jaxhydro.plot import MEASURED, WIDTH, header, save, style
+    from jaxhydro.plots.style import MEASURED, WIDTH, header, save, style
 
     columns = [(dof, band) for dof in UNIT for band in ("low", "wave")]
     with style():

@@ -36,7 +36,7 @@ def stiffer(platform: Any) -> Any:
 def focal(platform: Any) -> Any:
     """Body, lines and water of FOCAL's campaign 2 with this platform's coefficients."""
     from jaxhydro import load_platform
-    from jaxhydro.convergence import with_elements
+    from jaxhydro.platform.convergence import with_elements
 
     kept = ("coefficients", "linear_damping", "wetting", "diffraction")
     other = load_platform(FOCAL).model_copy(update={key: getattr(platform, key) for key in kept})
@@ -46,7 +46,7 @@ def focal(platform: Any) -> Any:
 
 def fine(platform: Any) -> Any:
     """Pontoons in ten elements of two points."""
-    from jaxhydro.convergence import with_elements
+    from jaxhydro.platform.convergence import with_elements
 
     return with_elements(platform, "pontoon", 10)
 
@@ -82,7 +82,7 @@ def at_rest_parts() -> tuple[Any, Any]:
     import jax.numpy as jnp
 
     from jaxhydro import AbstractSea
-    from jaxhydro.integrate import integrate
+    from jaxhydro.dynamics.integrate import integrate
 
     class AtRest(AbstractSea):
         sea: Any
@@ -109,7 +109,7 @@ def at_rest(model: Any, sea: Any, times: np.ndarray, step: float = 0.25) -> np.n
     import jax.numpy as jnp
 
     from jaxhydro import State, equilibrium
-    from jaxhydro.integrate import clock
+    from jaxhydro.dynamics.integrate import clock
 
     kind, motion = at_rest_parts()
     hull, steps = model.hull, round(float(times[-1] + times[1]) / step)

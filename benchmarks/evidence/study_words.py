@@ -64,7 +64,8 @@ def words(found: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
     return (
         f"**What makes the differences.** One thing changed at a time, {SEEDS} seeds, Hs 3.1 m; a dash where the case has "
         f"nothing to change:\n\n{table(head, rows)}\n{reasons(found)}\n"
-        "**Pontoon elements** (`jaxhydro.convergence`, case 3, one seed): natural periods, and integrals against ten elements "
+        "**Pontoon elements** (`jaxhydro.platform.convergence`, case 3, one seed): natural periods, and integrals against "
+        "ten elements "
         f"of two points:\n\n{table(pontoons, lines)}\n{of_pontoons(cut)}\n"
     )
 

@@ -44,7 +44,7 @@ def tuned(key: str, name: str) -> dict[str, Any]:
     from dataclasses import replace
 
     from calibration import calibrate_in_waves, load_campaign
-    from calibration.laws import LAWS as OF_LAW
+    from calibration.fitting.law_parameters import LAWS as OF_LAW
 
     campaign, law, start = load_campaign(FOLDER / "focal-c2"), LAWS.get(name, "constant"), {}
     if name.endswith(ALONE):

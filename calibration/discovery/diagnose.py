@@ -6,24 +6,24 @@ import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from calibration.campaign import Campaign
-from calibration.discovery.anatomy import anatomy
-from calibration.discovery.candidates import Candidate
-from calibration.discovery.conclusion import conclude, much
-from calibration.discovery.conventions import Conventions, conventions_of
-from calibration.discovery.judgement import State, given_up
-from calibration.discovery.kept import keep, resumed
-from calibration.discovery.pose import pose
-from calibration.discovery.records import by_a_program, options_for
-from calibration.discovery.result import Diagnosis
-from calibration.discovery.search import ROUNDS, Search
-from calibration.discovery.signs import in_words, reversed_channels, turned
-from calibration.fit import Progress
-from calibration.grouped import grouped
-from calibration.seas import NO_ZERO, Options
+from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.load_campaign import Campaign
+from calibration.discovery.acceptance import State, given_up
+from calibration.discovery.channel_signs import in_words, reversed_channels, turned
+from calibration.discovery.checkpoint import keep, resumed
+from calibration.discovery.diagnosis import Diagnosis
+from calibration.discovery.diagnosis_conclusion import conclude, much
+from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.greedy_search import ROUNDS, Search
+from calibration.discovery.residual_anatomy import anatomy
+from calibration.discovery.set_up import pose
+from calibration.discovery.strip_trials import Conventions, conventions_of
+from calibration.discovery.wave_records import by_a_program, options_for
+from calibration.fitting.decay_fit import Progress
+from calibration.residuals.measured_seas import NO_ZERO, Options
+from jaxhydro.dynamics.model import Model
+from jaxhydro.errors import CheckpointWarning
 from jaxhydro.interrupts import stopping
-from jaxhydro.model import Model
-from jaxhydro.problems import CheckpointWarning
 
 ABSOLUTE = f"{NO_ZERO}, so that a sensor's zero elsewhere is taken for ballast, or for a force"
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibration.discovery.candidates import Candidate
-from calibration.discovery.effect_names import called
-from calibration.discovery.result import HELD_OUT_ERROR, SECOND_ORDER, Finding
+from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Finding
+from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.effects.effect_names import called
 from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.judgement import State, Verdict
-    from calibration.discovery.search import Search
+    from calibration.discovery.acceptance import State, Verdict
+    from calibration.discovery.greedy_search import Search
 
 MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
 MEMORY = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")

@@ -10,24 +10,17 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.cores import cores
-from calibration.discovery.bands import Rows, step_of
-from calibration.discovery.evidence import (
-    Frame,
-    SeaRecord,
-    decay_residuals,
-    decay_slopes,
-    sea_residuals,
-    sea_slopes,
-)
-from calibration.discovery.looks import Look, Place, Seen, Series
-from calibration.parameters import ParameterSpace
-from calibration.records import Record
-from calibration.residuals import Problem
-from calibration.seas import Options, moving
-from calibration.transforms import LogInterval, Scaled
+from calibration.campaign.records import Record
+from calibration.discovery.frequency_bands import Rows, step_of
+from calibration.discovery.linearisations import Look, Place, Seen, Series
+from calibration.discovery.residuals import Frame, SeaRecord, decay_residuals, decay_slopes, sea_residuals, sea_slopes
+from calibration.fitting.cores import cores
+from calibration.parameters.space import ParameterSpace
+from calibration.parameters.transforms import LogInterval, Scaled
+from calibration.residuals.decays import Problem
+from calibration.residuals.measured_seas import Options, moving
+from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
-from jaxhydro.model import Model
 
 LOST = 1e100  # motions and slopes that are as large are of a simulation that overflows: nothing is known there
 
@@ -37,7 +30,7 @@ class Study:
     """All records of a campaign that take part, against one model. Directions (d, p), orthogonal, are what is free: most are
     one parameter each, some move several together. `width` is how many are looked along at a time; `cuts` are the rows of the
     decays and of every sea; `other_seas` the seas as they may be instead, by `fits.Order`; `options` how all of them are made.
-    `expected` (n,) is how large rows are expected beside their floor (`calibration.discovery.expected`), None where that is not
+    `expected` (n,) is how large rows are expected beside their floor (`expected_residuals`), None where that is not
     known."""
 
     space: ParameterSpace

@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from jaxhydro.environment import STANDARD_GRAVITY
-from jaxhydro.interop.capytaine import PAIR, Dataset, along_omega, computed, motions, open_capytaine, single
-from jaxhydro.interop.hydrostatics import FileHydrostatics
-from jaxhydro.interop.tables import same_heading
-from jaxhydro.problems import shown
+from jaxhydro.errors import shown
+from jaxhydro.interop.capytaine_radiation import PAIR, Dataset, along_omega, computed, motions, open_capytaine, single
+from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics
+from jaxhydro.interop.wamit_tables import same_heading
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.excitation import Excitation
 

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from jaxhydro.environment import Environment
-from jaxhydro.hull import Hull, Wetted
+from jaxhydro.hull.hull import Hull, Wetted
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.hull import Hull
+from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import Instant, Parameter
 from jaxhydro.loads.end_inertia import spread_ends
 from jaxhydro.loads.strip_inertia import spread

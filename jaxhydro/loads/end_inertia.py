@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.ends import Ends
+from jaxhydro.hull.ends import Ends
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 
 

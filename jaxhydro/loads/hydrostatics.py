@@ -10,11 +10,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.hull.strips import ENTERING, Member
+from jaxhydro.hull.waterplane import chord, segment
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
-from jaxhydro.strips import ENTERING, Member
-from jaxhydro.waterplane import chord, segment
 
 ALONG, ACROSS = 16, 4  # slabs and slices of a member that lies at the surface
 

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.hull import Hull
+from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import about, end_area, lines_of, of_ends, of_strips, on_all, quadratic, strip_area
 

@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.hull.strips import Elements
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.strips import Elements
 
 
 def spread(

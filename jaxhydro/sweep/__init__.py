@@ -1,8 +1,8 @@
 """Sweeps: one platform in every sea state of a scatter table, with every heading, with every seed: `run_sweep`."""
 
-from jaxhydro.sweep.load import load_sweep
-from jaxhydro.sweep.run import Progress, run_sweep
-from jaxhydro.sweep.schema import Sweep
+from jaxhydro.sweep.run_sweep import Progress, run_sweep
 from jaxhydro.sweep.sensitivity import Sensitivity, lifetime_sensitivity
+from jaxhydro.sweep.sweep_file import load_sweep
+from jaxhydro.sweep.sweep_schema import Sweep
 
 __all__ = ["Progress", "Sensitivity", "Sweep", "lifetime_sensitivity", "load_sweep", "run_sweep"]

@@ -9,10 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Complex, Float
 
-from jaxhydro.integrate import clock, integrate
-from jaxhydro.model import Model, State
-from jaxhydro.simulate import excursion_of, farthest, steps_in
-from jaxhydro.statics import EquilibriumError, equilibrium
+from jaxhydro.dynamics.integrate import clock, integrate
+from jaxhydro.dynamics.model import Model, State
+from jaxhydro.dynamics.simulate import excursion_of, farthest, steps_in
+from jaxhydro.dynamics.statics import EquilibriumError, equilibrium
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.preparation import Preparation
 from jaxhydro.waves.sea_state import state_of

@@ -12,20 +12,20 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from jaxhydro.calibrated_model import Used, with_calibration
+from jaxhydro.cli.calibrated_model import Used, with_calibration
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.requested_sea import Asked, build_sea
+from jaxhydro.dynamics.simulate import largest_step, simulate
+from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem
 from jaxhydro.loads import MooringLines
-from jaxhydro.model import Model
-from jaxhydro.platform import model_of
-from jaxhydro.platform_schema import load_platform
-from jaxhydro.problems import InputError, Problem
-from jaxhydro.requested_sea import Asked, build_sea
+from jaxhydro.platform.build import model_of
+from jaxhydro.platform.schema import load_platform
 from jaxhydro.rotations import rotation
-from jaxhydro.simulate import largest_step, simulate
-from jaxhydro.statics import EquilibriumError
 from jaxhydro.sweep.at_once import in_halves, shared_by
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.statistics import Kept, kept_of
+from jaxhydro.sweep.run_statistics import Kept, kept_of
 from jaxhydro.units import for_people
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple, TypeAlias
 
-from jaxhydro.problems import InputError, Problem, shown
-from jaxhydro.sweep.schema import Grid, SeaState, Sweep
-from jaxhydro.wave_bands import of_spectra
+from jaxhydro.errors import InputError, Problem, shown
+from jaxhydro.sweep.sweep_schema import Grid, SeaState, Sweep
+from jaxhydro.waves.wave_bands import of_spectra
 
 State: TypeAlias = tuple[float, float, float | None]
 
@@ -146,7 +146,7 @@ def _short(value: Any) -> str:
 def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[str]]:
     """The plan of a sweep whose files are read, for a platform of a `pace`, and what is to be known of how it was made.
 
-    Where the sweep has no band, it is that of its sea states by `jaxhydro.wave_bands`, by Hs^2 and share of the time.
+    Where the sweep has no band, it is that of its sea states by `jaxhydro.waves.wave_bands`, by Hs^2 and share of the time.
 
     Shares of sea states and of headings multiply, and are divided by their sum; those of a sea state that is in the table more
     than once add up. Raises InputError that names `source` where none is above 0.

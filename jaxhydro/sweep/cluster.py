@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from jaxhydro.problems import InputError, Problem
+from jaxhydro.errors import InputError, Problem
 from jaxhydro.sweep.worker import Found, fail_runs, simulate_runs
 
 RETRIES = 3

@@ -9,8 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import psutil
 
-from jaxhydro.problems import InputError, Problem
-from jaxhydro.simulate import excursion_of
+from jaxhydro.dynamics.simulate import excursion_of
+from jaxhydro.errors import InputError, Problem
 from jaxhydro.sweep.at_once import power_of_two
 from jaxhydro.sweep.batch import Setup
 from jaxhydro.waves.dispersion import wavenumber

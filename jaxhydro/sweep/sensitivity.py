@@ -12,13 +12,13 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import unknown
+from jaxhydro.dynamics.integrate import integrate
+from jaxhydro.dynamics.model import Model, State
+from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.environment import DOFS
-from jaxhydro.integrate import integrate
-from jaxhydro.model import Model, State
-from jaxhydro.statics import equilibrium
 from jaxhydro.sweep.batch import pace_of_platform, prepared_for, sea_of, setup_of
 from jaxhydro.sweep.cases import plan_of
-from jaxhydro.sweep.schema import Sweep
+from jaxhydro.sweep.sweep_schema import Sweep
 from jaxhydro.waves.sea_state import SeaState, state_of
 from jaxhydro.waves.support_sea import SupportSea
 

@@ -19,12 +19,12 @@ from filelock import FileLock, Timeout
 from jaxtyping import Float
 
 import jaxhydro
+from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import staged
 from jaxhydro.fingerprint import computed_with, content_hash, fingerprint
-from jaxhydro.problems import InputError, Problem
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.statistics import BANDS, STATISTICS, Kept, bands_in, frequencies, unit
+from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, Kept, bands_in, frequencies, unit
 
 RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2

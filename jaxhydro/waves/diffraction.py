@@ -5,7 +5,7 @@ import math
 import jax.numpy as jnp
 from jaxtyping import Array, Complex, Float
 
-from jaxhydro.bessel import scaled_bessel_primes
+from jaxhydro.waves.bessel import scaled_bessel_primes
 
 LONG = 0.3  # ka (rad) of the waves for which a cylinder's tuned coefficient has faded out by 1/e in `long_waves`
 

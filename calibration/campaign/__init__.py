@@ -1,0 +1,1 @@
+"""Campaigns: manifest, records, runs in waves, data quality."""

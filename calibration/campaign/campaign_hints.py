@@ -1,0 +1,226 @@
+"""Units, scales and signs that all records of a campaign tell together: told once, with the manifest's key that explains it."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from calibration.campaign.manifest import quantity
+from calibration.campaign.records import Record
+from calibration.campaign.signals import dominant_period
+from jaxhydro.dynamics.statics import Modes
+from jaxhydro.environment import DOFS
+
+NEAR = 0.15  # of a logarithm: a ratio that is a factor
+ALIKE = 0.1  # of a logarithm: ratios of different motions that are one and the same
+TWICE = math.log(2.0)  # a smaller common ratio may be the declared model's own error
+COUPLED = 0.05  # of the released motion, in metres of the hull: a smaller motion beside it is not the mode's alone
+STRAIGHT = 0.3  # imaginary over real part: a motion further out of phase is not the mode's
+CLOSE = 0.25  # of a logarithm: a ratio that is 1, or 1 of the other sign
+LARGE, SMALL = 1.0, 1e-3  # of the radius of gyration: releases beyond are no platform's
+USUAL = (0.003, 0.6)  # of the radius of gyration, or rad: releases as they are
+LARGE_ANGLE, SMALL_ANGLE = math.radians(60.0), 4e-3
+FOLLOWED = 0.7  # correlation of measured and simulated motion, of either sign, from which their ratio says something
+TURN = 180 / math.pi
+
+
+class Hint(NamedTuple):
+    """What a campaign's records tell together: the first of them, its channel, and the words."""
+
+    record: Record
+    channel: str
+    message: str
+
+
+def campaign_hints(
+    records: Sequence[Record], modes: Modes, widths: Float[np.ndarray, "6"], length: float, scale: float
+) -> tuple[Hint, ...]:
+    """Return what all decays tell together about units, scale and signs.
+
+    Args:
+        records: the decays that are used, SI at full scale.
+        modes: natural modes of the declared model.
+        widths: (6,) what rotations are times in their shapes.
+        length: m, its radius of gyration.
+        scale: the manifest's.
+    """
+    times = tuple(_of_times(records, modes, scale))
+    sizes = tuple(_of_sizes(records, length, scale, {"length"} if times else set()))  # lengths go with times, by the scale
+    known = {quantity(hint.channel) for hint in (*times, *sizes)}
+    return (*times, *sizes, *_of_relations(records, modes, widths, length, scale, known))
+
+
+def _of_times(records: Sequence[Record], modes: Modes, scale: float) -> Iterator[Hint]:
+    """Are all natural periods off by one factor?"""
+    found: dict[str, list[float]] = {}
+    for record in records:
+        dof = str(record.degree_of_freedom)
+        period = dominant_period(record.time, record.values[dof])
+        if period is not None and np.isfinite(own := modes.of(dof)):
+            found.setdefault(dof, []).append(math.log(period / own))
+    if sum(map(len, found.values())) < 2:
+        return
+    every = [one for some in found.values() for one in some]
+    ratio = float(np.median(every))
+    first, dofs = records[0], " and ".join(found)
+    times = f"{math.exp(ratio):.3g} times" if ratio > 0 else f"1/{math.exp(-ratio):.3g} of"
+    said = f"all measured periods, of {dofs}, are {times} the declared model's"
+    for factor, why in _time_factors(scale):
+        if all(abs(one - math.log(factor)) < NEAR for one in every):
+            yield Hint(first, "time", f"{said}: {why}")
+            return
+    if scale == 1 and len(found) > 1 and abs(ratio) > TWICE and max(abs(one - ratio) for one in every) < ALIKE and ratio < 0:
+        yield Hint(first, "time", f"{said}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be: is `scale` left out?")
+
+
+def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
+    if scale != 1:
+        root = f"the square root of `scale`, {scale**0.5:.3g}"
+        full = "are the records at full scale already (then `scale` is 1), or is the platform at the model's scale?"
+        yield scale**0.5, f"longer by {root}: {full}" if scale > 1 else f"shorter by {root}: is `scale` turned round?"
+        yield scale**-0.5, f"off by {root}: were times scaled down before?"
+        turned = f"is `scale` turned round (1:{1 / scale:.3g} is `scale: {1 / scale:.3g}`)?"
+        yield scale, "longer by `scale`: times go with its square root, were they scaled before?" if scale > 1 else turned
+        yield 1 / scale, "shorter by `scale` itself: were times scaled down before?"
+    for unit, factor in (("milliseconds", 1000.0), ("minutes", 60.0)):
+        yield factor, f"`channels.time.unit`: {unit} and seconds mixed up?"
+        yield 1 / factor, f"`channels.time.unit`: {unit} and seconds mixed up?"
+
+
+def _of_sizes(records: Sequence[Record], length: float, scale: float, known: set[str]) -> Iterator[Hint]:
+    """Are all released displacements, all angles, or all of one motion of a size that no release has?"""
+    told: set[str] = set()
+    for name, dofs in {"displacement": DOFS[:3], "angle": DOFS[3:], **{dof: (dof,) for dof in DOFS}}.items():
+        released = [record for record in records if record.degree_of_freedom in dofs]
+        if len(released) < 2 or told & set(dofs) or quantity(dofs[0]) in known:
+            continue
+        turns = quantity(dofs[0]) == "angle"
+        sizes = [_size(record) / (1.0 if turns else length) for record in released]
+        lowest, highest = (SMALL_ANGLE, LARGE_ANGLE) if turns else (SMALL, LARGE)
+        if not (max(sizes) < lowest or min(sizes) > highest):
+            continue
+        large = min(sizes) > highest
+        fitting = [
+            (f"{factor:.4g}", units) for factor, units in _size_factors(turns, scale)
+            if all(USUAL[0] < (size / factor if large else size * factor) < USUAL[1] for size in sizes)
+        ]  # fmt: skip
+        if fitting:
+            told |= set(dofs)
+            times, units = (" or ".join(words) for words in zip(*fitting, strict=True))
+            keys = ", ".join(f"`channels.{dof}.unit`" for dof in dict.fromkeys(r.degree_of_freedom for r in released))
+            message = f"all releases in {name} are as if {times} times too {'large' if large else 'small'}"
+            yield Hint(released[0], str(released[0].degree_of_freedom), f"{message}: {units} mixed up ({keys})?")
+
+
+def _size_factors(turns: bool, scale: float) -> Iterator[tuple[float, str]]:
+    if turns:
+        yield from ((TURN, "degrees and radians"), (1000.0, "milliradians and radians"))
+        return
+    yield from ((1000.0, "millimetres and metres"), (100.0, "centimetres and metres"))
+    if scale > 1:
+        yield scale, "lengths at the model's and at full scale (`scale`)"
+
+
+def _of_relations(
+    records: Sequence[Record], modes: Modes, widths: Float[np.ndarray, "6"], length: float, scale: float,
+    known: set[str],
+) -> Iterator[Hint]:  # fmt: skip
+    """Do two motions of a mode go together as the model's do? What is `known` to be off is left aside."""
+    found: dict[tuple[str, str], list[float]] = {}
+    first: dict[tuple[str, str], Record] = {}
+    for record in records:
+        dof = str(record.degree_of_freedom)
+        if not np.isfinite(modes.of(dof)):
+            continue
+        mode = min(range(len(modes.period)), key=lambda i: abs(modes.period[i] - modes.of(dof)))
+        shape = dict(zip(DOFS, map(float, modes.shape[mode] / widths), strict=True))
+        for other in record.values:
+            expected = shape[other] / shape[dof]
+            if other == dof or abs(expected) * _arm(other, length) / _arm(dof, length) < COUPLED:
+                continue
+            ratio = _ratio(record, dof, other)
+            if ratio is not None:
+                pair = tuple(sorted((dof, other), key=DOFS.index))
+                value = ratio / expected if pair[0] == other else expected / ratio
+                found.setdefault((pair[0], pair[1]), []).append(value)
+                first.setdefault((pair[0], pair[1]), record)
+    for (one, two), values in found.items():
+        message = _of_factor(one, two, values, scale, known)
+        if message is not None:
+            yield Hint(first[one, two], two, f"in {len(values)} {'decay' if len(values) == 1 else 'decays'} {message}")
+
+
+def _of_factor(one: str, two: str, values: Sequence[float], scale: float, known: set[str]) -> str | None:
+    """In words, by what the ratio of motion `one` to motion `two` misses the model's, all records the same."""
+    if all(value < 0 for value in values) and all(abs(math.log(-value)) < CLOSE for value in values):
+        keys = f"(`channels.{one}.sign` or `channels.{two}.sign`)"
+        return (f"{one} and {two} go together as the declared model's do, with the other sign: an axis reversed {keys}, or "
+                "recorded at another point (`tracked_point`)?")  # fmt: skip
+    turns = quantity(one) != quantity(two)
+    if {quantity(one), quantity(two)} & known or (turns and "time" in known):
+        return None
+    sizes = [math.log(abs(value)) for value in values]
+    larger, smaller = (one, two) if sizes[0] > 0 else (two, one)
+    factors = [(1000.0, f"millimetres and metres mixed up (`channels.{one}.unit`)")]
+    if turns:
+        factors.append((TURN, f"degrees and radians mixed up (`channels.{two}.unit`)"))
+        factors += [(max(scale, 1 / scale), "lengths not at the scale that `scale` states")] if scale != 1 else []
+    said = [why for factor, why in factors
+            if all(abs(size - math.copysign(math.log(factor), sizes[0])) < CLOSE for size in sizes)]  # fmt: skip
+    times = f"{math.exp(abs(float(np.median(sizes)))):.3g} times"
+    return f"{larger} is {times} too large beside {smaller}, by the declared model: {' or '.join(said)}?" if said else None
+
+
+def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Iterator[str]:
+    """Yield what all tests in waves tell together of a channel, measured and simulated in the same waves.
+
+    Args:
+        tests: of each, channel -> measured and simulated motion (n,), of what moves in the simulation.
+    """
+    ratios: dict[str, list[tuple[float, float]]] = {}
+    for channels in tests:
+        for name, (measured, simulated) in channels.items():
+            a, b = measured - np.mean(measured), simulated - np.mean(simulated)
+            deviations = math.sqrt(float(a @ a)), math.sqrt(float(b @ b))
+            if min(deviations) > 0:
+                correlation = float(a @ b) / (deviations[0] * deviations[1])
+                ratios.setdefault(name, []).append((math.log(deviations[0] / deviations[1]), correlation))
+    followed = [name for name, some in ratios.items() if all(abs(correlation) > FOLLOWED for _, correlation in some)]
+    turned = [name for name in followed if all(one < 0 and abs(size) < 2 * CLOSE for size, one in ratios[name])]
+    if turned:
+        every = len(turned) == len(followed) > 1
+        key = "`wave_channel.sign` or its `position`" if every else ", ".join(f"`channels.{name}.sign`" for name in turned)
+        yield f"of the other sign than simulated in all tests in waves: {', '.join(turned)}. An axis reversed ({key})?"
+    for name, values in ratios.items():
+        units, factor = ("degrees and radians", TURN) if quantity(name) == "angle" else ("millimetres and metres", 1000.0)
+        for sign, word in ((1, "large"), (-1, "small")):
+            if all(abs(size - sign * math.log(factor)) < 2 * CLOSE for size, _ in values):
+                yield (f"{name} is {factor:.4g} times too {word}, against that simulated in all {len(values)} tests in waves: "
+                       f"{units} mixed up (`channels.{name}.unit`)?")  # fmt: skip
+
+
+def _size(record: Record) -> float:
+    values = record.values[str(record.degree_of_freedom)]
+    return float(np.percentile(np.abs(values - np.median(values)), 99))
+
+
+def _arm(dof: str, length: float) -> float:
+    return length if quantity(dof) == "angle" else 1.0
+
+
+def _ratio(record: Record, dof: str, other: str) -> float | None:
+    """Motion `other` over `dof` at the period of `dof`; None where they are out of phase."""
+    period = dominant_period(record.time, record.values[dof])
+    if period is None:
+        return None
+    time = np.linspace(record.time[0], record.time[-1], len(record.time))
+    wave = np.hanning(len(time)) * np.exp(-2j * np.pi * time / period)
+
+    def part(name: str) -> complex:
+        values = np.interp(time, record.time, record.values[name])
+        return complex(((values - values.mean()) * wave).sum())
+
+    ratio = part(other) / part(dof)
+    return ratio.real if abs(ratio.imag) < STRAIGHT * abs(ratio.real) else None

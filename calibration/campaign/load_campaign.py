@@ -1,0 +1,108 @@
+"""A campaign as calibration takes it: manifest, platform, records and findings; whole or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+
+from calibration.campaign.checks import Finding, check_records
+from calibration.campaign.manifest import IN_WAVES, Manifest, platform_source, read_manifest
+from calibration.campaign.plausible import CampaignFinding, check_plausible
+from calibration.campaign.records import Record, read_series, records_of
+from calibration.campaign.table_findings import check_tables, of_platform
+from calibration.campaign.wave_band import wave_band
+from jaxhydro.choices import unknown
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import EquilibriumError
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.platform.build import build
+from jaxhydro.platform.schema import Platform, load_platform
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """Everything that was read. Records are SI at full scale; `findings` are warnings. `own` is a model in place of the
+    platform file's."""
+
+    manifest: Manifest
+    folder: Path
+    platform: Platform
+    records: tuple[Record, ...]
+    findings: tuple[Finding, ...]
+    own: Model | None = None
+
+    @property
+    def model(self) -> Model:
+        """The declared model, that calibrations begin with. Raises InputError for a platform that is none."""
+        return build(self.platform) if self.own is None else self.own
+
+    def with_model(self, model: Model) -> Campaign:
+        """With a model of one's own, which may have loads that no platform file has, to be calibrated and diagnosed."""
+        return replace(self, own=model)
+
+    def used(self, use: str) -> tuple[Record, ...]:
+        """The records of one use: fit, holdout or ignore."""
+        return tuple(record for record in self.records if record.use == use)
+
+    def record(self, id: str) -> Record:
+        """The record of one test. Raises UnknownName for an id that no test has."""
+        records = {record.id: record for record in self.records}
+        if id not in records:
+            raise unknown("test", id, records)
+        return records[id]
+
+
+def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]:
+    """Tests in waves of another heading than the platform's tables are of."""
+    for i, test in enumerate(manifest.tests):
+        other = platform.of_other_waves(test.sea.heading) if test.kind in IN_WAVES and test.use != "ignore" else None
+        if other is not None:
+            expected = f"{other[1]:g} deg, the {other[0]} of {manifest.platform}"
+            yield Problem(f"tests[{i}].sea.heading", expected, f"{test.sea.heading:g} deg")
+
+
+def load_campaign(path: str | PathLike[str]) -> Campaign:
+    """The campaign in a folder, or of a campaign.yaml.
+
+    Raises InputError, and nothing else, for whatever is wrong: the manifest's mistakes first, then those of the
+    platform and the data files together, then the records' errors. A test marked `ignore` that is faulty, the zero test
+    aside, is left out with a warning.
+    """
+    manifest, folder = read_manifest(path)
+    source = str(folder / "campaign.yaml" if Path(path).is_dir() else path)
+    problems: list[Problem] = []
+    try:
+        platform = load_platform(platform_source(manifest, folder))
+    except InputError as error:
+        problems += [Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint)
+                     for p in error.problems]
+    else:
+        problems += _of_other_waves(manifest, platform)
+    try:
+        series = read_series(manifest, folder)
+    except InputError as error:
+        problems += error.problems
+    if problems:
+        raise InputError(source, problems)
+    findings = check_records(manifest, folder, series)
+    spared = {test.id for test in manifest.tests if test.use == "ignore"} - {manifest.zero and manifest.zero.test}
+    errors = [finding for finding in findings if finding.severity == "error"]
+    if grave := [finding.problem for finding in errors if finding.test not in spared]:
+        raise InputError(source, grave)
+    faulty = {finding.test for finding in errors}
+    findings = tuple(replace(f, severity="warning", message=f"left out: {f.message}") if f in errors else f
+                     for f in findings)
+    records = tuple(record for record in records_of(manifest, series) if record.id not in faulty)
+    campaign = Campaign(manifest, folder, platform, records, findings)
+    model = campaign.model
+    try:
+        doubtful = check_plausible(records, model, manifest.zero is not None, manifest.scale)
+    except EquilibriumError as error:
+        raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
+    band = wave_band(manifest, model, records)
+    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model, band), *doubtful)
+    if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
+        raise InputError(source, [*(one.problem for one in doubtful if isinstance(one, CampaignFinding)), *grave])
+    return replace(campaign, findings=(*findings, *doubtful))

@@ -1,0 +1,123 @@
+"""Are records of the size and pace of the platform? With a wrong unit or scale they are not, which no fit should find out."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from calibration.campaign.campaign_hints import Hint, campaign_hints
+from calibration.campaign.checks import Finding, Severity
+from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.records import Record
+from calibration.campaign.signals import dominant_period, peak_frequency, wave_height
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import characteristic_length, equilibrium, natural_modes, widths
+from jaxhydro.environment import DOFS
+from jaxhydro.units import for_people, unit_of
+
+ODD, WRONG = 3.0, 20.0  # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
+HEAVE = (0.5, 3.0)  # motions that are odd or wrong: of the radius of gyration
+LEVEL = (3.0, 6.0)  # ... in surge and sway, where moorings may be slack
+TURNED = (np.radians(60.0), np.radians(180.0))
+SMALL, SMALL_ANGLE = 1e-3, 4e-3  # of the radius of gyration, rad: what nobody would release a platform from
+NEAR = 0.15  # of a logarithm: a ratio that is the square root of the scale
+OFF = 0.02  # of the radius of gyration, or rad: where a platform is at rest
+STEEP = (1 / 7, 1.0)  # height over length: beyond 1/7 no wave stands (Michell 1893, Phil. Mag. 36)
+FULL, WHAT = "(full scale)", "a unit, or the scale?"
+NOISY = 0.5  # of a motion's deviation
+AGREE = "records that agree with the manifest and the declared model"
+
+
+class CampaignFinding(Finding):
+    """A finding that all records of a campaign make together; its test and channel are the first."""
+
+
+def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale: float = 1.0) -> tuple[Finding, ...]:
+    """Findings on the records that are used, at full scale, against the declared model. `zeroed`: a zero was taken off them;
+    `scale` is the manifest's."""
+    used = [record for record in records if record.use != "ignore"]
+    decays = [record for record in used if record.kind == "decay"]
+    length, gravity = characteristic_length(model), float(model.environment.gravity)
+    periods: dict[str, float] = {}
+    found: list[Finding] = []
+    hints: tuple[Hint, ...] = ()
+    if decays:
+        rest = equilibrium(model)
+        modes = natural_modes(model, rest)
+        periods = {dof: modes.of(dof) for dof in DOFS if np.isfinite(modes.of(dof))}
+        hints = campaign_hints(decays, modes, widths(model), length, scale)
+        found += [CampaignFinding("warning", h.record.file, h.record.id, h.channel, None, h.message, AGREE) for h in hints]
+        found += [] if zeroed else _at_rest(decays, dict(zip(DOFS, map(float, rest))), length)
+    told = any(hint.channel == "time" for hint in hints)
+    return (*found, *(one for record in used for one in _of(record, length, gravity, periods, scale, told)))
+
+
+def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
+    """Where nobody took a zero: do decays end where the platform floats?"""
+    for name in DOFS:
+        there = [float(np.mean(one.values[name][len(one.time) // 2 :])) for one in decays if name in one.values]
+        limit = OFF * (1.0 if name in DOFS[3:] else length)
+        if there and abs(where := float(np.median(there)) - rest[name]) > limit:
+            message = (
+                f"decays end {_in_words(name, where)} from where the declared platform floats: `zero` would say where still "
+                "water is, without it that is taken for ballast or a force"
+            )
+            yield Finding("warning", decays[0].file, decays[0].id, name, None, message)
+
+
+def _of(
+    record: Record, length: float, gravity: float, periods: dict[str, float], scale: float, told: bool
+) -> Iterator[Finding]:
+    """Findings on one record. `told`: that all periods are off is said of the campaign."""
+
+    def found(limits: tuple[float, float], ratio: float, channel: str, message: str, expected: str) -> Iterator[Finding]:
+        if ratio > limits[0]:
+            severity: Severity = "error" if ratio > limits[1] else "warning"
+            yield Finding(severity, record.file, record.id, channel, None, message, expected)
+
+    if record.kind == "decay" and record.degree_of_freedom in periods:
+        name, own = record.degree_of_freedom, periods[record.degree_of_freedom]
+        period = dominant_period(record.time, record.values[name])
+        if period is not None:
+            why, by_scale = _of_time(period / own, scale)
+            message = f"a period of {period:.3g} s {FULL}, the declared model's is {own:.3g} s: {why}"
+            limits, ratio = (WRONG if told else 1.0 if by_scale else ODD, WRONG), max(period / own, own / period)
+            yield from found(limits, ratio, name, message, f"a period of about {own:.3g} s")
+    for name, values in record.values.items():
+        size = float(np.percentile(np.abs(values - np.median(values)), 99))
+        turns = name in DOFS[3:]
+        if name == record.degree_of_freedom and size < (SMALL_ANGLE if turns else SMALL * length):
+            what = "degrees or radians?" if turns else WHAT
+            yield Finding("warning", record.file, record.id, name, None, f"moves by {_in_words(name, size)} only: {what}")
+        if turns:
+            message = f"an angle of {_in_words(name, size)}: degrees or radians?"
+            yield from found(TURNED, size, name, message, "an angle that a platform may have")
+        else:
+            message = f"a motion of {size:.3g} m {FULL}, and the platform's radius of gyration is {length:.3g} m: {WHAT}"
+            limits = HEAVE if name == "heave" else LEVEL
+            yield from found(limits, size / length, name, message, "a motion that a platform may have")
+    if record.noise_declared and record.degree_of_freedom is not None:
+        name = record.degree_of_freedom
+        spread, noise = float(np.std(record.values[name])), record.noise[name]
+        message = f"noise is stated as {_in_words(name, noise)}, where the motion's own deviation is {_in_words(name, spread)}"
+        yield from found((NOISY, np.inf), noise / spread, name, message, "")
+    if record.wave is not None and record.kind in IN_WAVES:
+        step = float(np.median(np.diff(record.time)))
+        height = wave_height(record.wave, record.kind == "irregular")
+        wavelength = gravity / (2 * np.pi * peak_frequency(record.wave, step) ** 2)
+        message = f"waves {height:.3g} m high and {wavelength:.3g} m long {FULL}: {WHAT}"
+        yield from found(STEEP, height / wavelength, "wave", message, "waves that do not break, less than 1/7 as high as long")
+
+
+def _of_time(ratio: float, scale: float) -> tuple[str, bool]:
+    """What may explain a measured period over the model's, and whether `scale` does."""
+    if scale != 1 and abs(np.log(ratio / scale**0.5)) < NEAR:
+        return f"longer by the square root of `scale`, {scale**0.5:.3g}: are the records at full scale already?", True
+    if scale != 1 and abs(np.log(ratio * scale**0.5)) < NEAR:
+        return f"shorter by the square root of `scale`, {scale**0.5:.3g}: were times scaled down before?", True
+    if scale == 1 and 1 / WRONG < ratio < 1 / ODD:
+        return f"a unit of time, or a `scale` of about {ratio**-2:.2g}, as model-scale records would need?", False
+    return "a unit of time, or the scale?", False
+
+
+def _in_words(dof: str, value: float) -> str:
+    return f"{float(for_people(dof, value)):.3g} {unit_of(dof)}"

@@ -1,0 +1,205 @@
+"""The free part of a decay record: from the release, or the end of a push, to the next push or to where the model is caught."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy import ndimage, signal
+
+from calibration.campaign.signals import noise_level
+
+STILL = 0.2                     # period, for which stillness is looked for; a free peak moves by 0.19 of its amplitude in it
+FLAT = 0.08                     # of the amplitude of the motion that follows: less is stillness
+CAUGHT = 0.03                   # of the amplitude before: less is more than damping does
+LARGE = 0.3                     # of the first amplitude: friction alone may stop less
+HOLD = 0.35                     # period: what lasts less between motions is no hold, but two motions that cancel
+SMOOTH = 0.06                   # period, over which noise is averaged
+NOISE = 3.0                     # deviations of the averaged noise, by which stillness may move
+PROMINENT = 0.1                 # of the largest amplitude: what counts as a turn
+LEAST_TURNS = 3                 # of a free motion
+SHORT_HOLD = 0.05               # period: a hold that is shorter is not told from a release
+SLOW = 0.3                      # of the range: turns of a slow motion that is the main one
+UNLIKE = 0.012                  # of the amplitude, by which a short hold and its release may miss a level and a cosine
+AT_REST = 0.15                  # of the amplitude: a hold closer to rest is none
+OFF_REST, ABRUPT = 0.3, 0.8     # of the amplitude: where a caught model stands, and its speed just before over omega
+AFTER = 0.02                    # period after the release, at which the test begins
+GROWTH, OF_RANGE = 1.25, 0.18    # by which a swing exceeds the two before it, and by how much of the whole range
+ALIKE = 0.15                    # period, by which half a period may differ: another motion is no second push
+COARSEST = 8                    # samples per cycle
+
+
+@dataclass(frozen=True)
+class FreeMotion:
+    """The rows of a decay that move freely, [first, last), and what comes before and after them.
+
+    `held_until` is when the release or push ended the stillness (the time's unit), `level` where it stood (the channel's
+    unit); `ended_at` is when the free motion was ended.
+    """
+
+    first: int
+    last: int
+    start: Literal["record", "release", "push"] = "record"
+    end: Literal["record", "catch", "push"] = "record"
+    held_until: float = np.nan
+    level: float = np.nan
+    ended_at: float = np.nan
+
+
+def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
+    """Find the first free decay in a record: all rows where nothing else is found.
+
+    Args:
+        time: (n,) increasing times.
+        values: (n,) the motion that was released.
+    """
+    whole = FreeMotion(0, len(time))
+    if len(time) < 4 * COARSEST or np.ptp(values) == 0 or not (np.diff(time) > 0).all():
+        return whole
+    step = float(np.median(np.diff(time)))
+    even = np.arange(time[0], time[-1] + 0.5 * step, step)
+    x = np.interp(even, time, values)
+    noise = noise_level(even, x)
+    period = _period(x, step, noise)
+    slow = ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
+    apart = np.diff(_turns(slow, 0, len(x), SLOW * float(np.ptp(x))))
+    if len(apart) and float(np.median(apart)) < 4 * period / step:      # the fast motion is not what was released
+        period = _period(slow, step, 0.0)
+    gap = float(np.diff(time).max())
+    if not COARSEST * step < period < 0.7 * (time[-1] - time[0]) or gap > max(STILL * period, 1.5 * step):
+        return whole
+    y = ndimage.uniform_filter1d(x, max(int(SMOOTH * period / step), 1), mode="nearest")
+    found = _first_decay(x, y, period / step, noise)
+    if found is None:
+        return whole
+    first, last, start, end, held, level = found
+    at = even[0] + step * np.array([first, last, held])
+    rows = np.searchsorted(time, at[:2] - 1e-9 * step)
+    return FreeMotion(int(rows[0]) if start != "record" else 0, int(rows[1]) if end != "record" else len(time),
+                      start, end, float(at[2]), level, float(at[1]))  # fmt: skip
+
+
+def _first_decay(
+    x: np.ndarray, y: np.ndarray, period: float, sigma: float
+) -> tuple[float, float, Literal["record", "release", "push"], Literal["record", "catch", "push"], float, float] | None:
+    """The bounds of the first decay, what bounds it, the end of the stillness before it and its level; in samples."""
+    size, width, cycle = 0.5 * float(np.ptp(y)), round(STILL * period), round(period)
+    noise = NOISE * sigma / max(SMOOTH * period, 1) ** 0.5
+    spread = _range(y, width)
+    after = 0.5 * np.roll(_range(y, cycle), -width)
+    after[len(y) - width:] = 0.0
+    moves = after > max(PROMINENT * size, 0.8 * noise / FLAT)
+    runs = [run for run in _runs((spread < FLAT * after + noise) & moves) if run[1] - run[0] + width > HOLD * period]
+    begins = [0, *(last + width for _, last in runs)]
+    ends = [*(max(first, 1) for first, _ in runs), len(y)]
+    lasts = [*(last + width for _, last in runs), len(y)]
+    for i, (begin, end, still) in enumerate(zip(begins, ends, lasts)):
+        turns = _turns(y, begin, end, max(PROMINENT * size, 3 * noise))
+        if len(turns) < LEAST_TURNS:
+            continue
+        peaks = y[turns[:7]]
+        rest = float(np.median((peaks[:-2] + 2 * peaks[1:-1] + peaks[2:]) / 4))
+        amplitude = float(np.abs(peaks - rest).max())
+        cycle = round(2 * float(np.median(np.diff(turns[:7]))))
+        first, start, held = float(begin), "record", 0.0
+        since = runs[i - 1][0] if i else 0
+        level = float(np.median(x[since: begin])) if i else float(x[: max(cycle // 30, 1)].mean())
+        if i and abs(level - rest) < AT_REST * amplitude:
+            start, held = "push", float(begin)
+            large = [turn for turn in turns if abs(y[turn] - rest) > 0.5 * amplitude]
+            first = float(large[0] if large else turns[0])
+        elif abs(level - rest) > 0.5 * amplitude:
+            least, most = max(since, begin - cycle // 3), begin + cycle // (5 if i else 2)
+            held, left = _released(x, least, most, level - rest, cycle)
+            if i or (held - begin > SHORT_HOLD * cycle and left < UNLIKE * amplitude + 1.5 * sigma):
+                start, first = "release", held + AFTER * cycle
+        later = np.diff(_turns(y, still, min(still + 12 * cycle, len(y)), max(PROMINENT * size, 3 * noise))) / cycle
+        pushed = len(later) > 0 and abs(float(np.median(later)) - 0.5) < ALIKE
+        stop, how = _stop(y, turns, rest, cycle, noise, end, still if pushed else None)
+        return first, stop, start, how, held, level  # type: ignore[return-value]
+    return None
+
+
+def _stop(
+    y: np.ndarray, turns: np.ndarray, rest: float, cycle: int, noise: float, end: int, pushed: int | None
+) -> tuple[float, Literal["record", "catch", "push"]]:
+    """Where a free motion ends (samples) and by what."""
+    swings = np.abs(np.diff(y[turns]))
+    apart, whole = np.diff(turns) / cycle, float(np.ptp(y))
+    for k in range(2, len(swings) - 1):
+        before = max(swings[k - 1], swings[k - 2])
+        grown = swings[k: k + 3] > max(GROWTH * before, before + OF_RANGE * whole)
+        if grown[0] and (grown[1:] & (np.abs(apart[k + 1: k + 3] - 0.5) < ALIKE)).any():
+            while k > 2 and swings[k - 1] > GROWTH * max(swings[k - 2], swings[k - 3]):
+                k -= 1                           # a pull before the release is part of it
+            return float(turns[k]), "push"
+    width = round(STILL * cycle)
+    spread, before = _range(y, width), np.zeros(len(y))
+    before[cycle:] = 0.5 * _range(y, cycle)[:-cycle]
+    still = (spread < CAUGHT * before + noise) & (noise < FLAT * before) & (before > LARGE * 0.5 * swings.max())
+    still &= (np.arange(len(y)) > turns[0]) & (np.arange(len(y)) < len(y) - width)
+    for first, last in _runs(still):
+        if first >= end:
+            break
+        if last - first + width < HOLD * cycle:
+            continue
+        speed = np.abs(np.diff(y[max(first - cycle // 8, 0): first + 1])).max(initial=0.0) * cycle / (2 * np.pi)
+        off = abs(float(np.median(y[first: first + width])) - rest)
+        if max(off / OFF_REST, speed / ABRUPT) > before[first]:
+            return float(first - SMOOTH * cycle), "catch"
+    return (float(pushed - AFTER * cycle), "push") if pushed is not None else (float(len(y)), "record")
+
+
+def _released(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> tuple[float, float]:
+    """When (samples) a held motion is let go, by least squares: level until then, and the begin of a cosine; what is left."""
+    best = (np.inf, float(first))
+    for at in np.arange(first, last, 0.25):
+        rows = np.arange(first, min(int(at) + cycle // 8 + 2, len(x)))
+        left = x[rows] + np.where(rows > at, fall * (1 - np.cos(2 * np.pi * (rows - at) / cycle)), 0.0)
+        best = min(best, (float(np.mean((left - left.mean()) ** 2)), float(at)))
+    return best[1], best[0] ** 0.5
+
+
+def _turns(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
+    """Where a motion turns, high and low in turn."""
+    part = y[begin: end]
+    high, low = (signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
+    both = sorted([*((k, 1) for k in high), *((k, -1) for k in low)])
+    kept: list[tuple[int, int]] = []
+    for place, sign in both:
+        if kept and kept[-1][1] == sign:
+            if sign * part[place] > sign * part[kept[-1][0]]:
+                kept[-1] = (place, sign)
+        else:
+            kept.append((place, sign))
+    return np.array([place + begin for place, _ in kept], int)
+
+
+def _range(y: np.ndarray, width: int) -> np.ndarray:
+    """(n,) largest less smallest value from each sample on, over `width` samples."""
+    shift = -(width // 2)
+    high = ndimage.maximum_filter1d(y, width, origin=shift, mode="nearest")
+    return high - ndimage.minimum_filter1d(y, width, origin=shift, mode="nearest")  # type: ignore[no-any-return]
+
+
+def _runs(flag: np.ndarray) -> list[tuple[int, int]]:
+    """First and last index of every stretch that is true."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flag, [False]]).astype(int)))
+    return [(int(first), int(last) - 1) for first, last in zip(edges[::2], edges[1::2])]
+
+
+def _period(x: np.ndarray, step: float, noise: float) -> float:
+    """The period in which the speed has its highest peak, a tenth of the frequency wide, above what the noise has there."""
+    speed = np.diff(x)
+    frequency = np.fft.rfftfreq(4 * len(speed), step)
+    power = np.abs(np.fft.rfft(speed, 4 * len(speed))) ** 2
+    known = np.flatnonzero(frequency <= 1 / (COARSEST * step))[1:]
+    if not len(known):
+        return np.inf
+    total = np.concatenate([[0.0], np.cumsum(power)])
+    low, high = np.floor(known / 1.05).astype(int), np.minimum(np.ceil(known * 1.05).astype(int) + 1, len(power))
+    mean = (total[high] - total[low]) / (high - low)
+    mean -= 2 * len(speed) * (2 * noise * np.sin(np.pi * frequency[known] * step)) ** 2
+    best = int(np.argmax(mean))
+    return float(1 / frequency[low[best] + max(int(np.argmax(power[low[best]: high[best]])), low[best] == 0)])

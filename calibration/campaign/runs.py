@@ -1,0 +1,109 @@
+"""Runs in waves: the whole record of each file, and the tests that are windows of it. SI at full scale."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import IN_WAVES, WAVE, platform_source
+from calibration.campaign.records import Record, factors, there, whole_series
+from jaxhydro.errors import InputError, Problem
+
+LEAST = 20  # samples
+UNEVEN = 0.2  # of a step, by which a time may miss the even clock that fits all best: rounding in a file does half of it
+LONGEST_GAP = 3  # samples of the wave that may be missing in a row, and are drawn straight
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One file, driven by one record: even times (s), elevation (m, still water at 0), gauge (m), heading (rad), tests."""
+
+    file: str
+    time: np.ndarray
+    wave: np.ndarray
+    position: tuple[float, float]
+    heading: float
+    records: tuple[Record, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def step(self) -> float:
+        """s between samples."""
+        return float(self.time[1] - self.time[0])
+
+    def samples(self, record: Record) -> np.ndarray:
+        """Index into `time` of every sample of a record: times in a file are rounded, the clock behind them is not."""
+        return np.clip(np.rint((record.time - self.time[0]) / self.step).astype(int), 0, len(self.time) - 1)
+
+
+def runs(campaign: Campaign) -> tuple[Run, ...]:
+    """The runs of all tests in waves that are not ignored. Raises InputError where there is none, or a wave record has no even
+    clock, gaps or nothing."""
+    source = str(campaign.folder / "campaign.yaml")
+    groups: dict[tuple[str, float, str], list[Record]] = {}
+    for record in campaign.records:
+        if record.kind in IN_WAVES and record.use != "ignore":
+            test = record.test
+            key = (test.file, test.sea.heading, repr(campaign.manifest.channels_of(test)))
+            groups.setdefault(key, []).append(record)
+    if not groups:
+        found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
+        expected = "at least one irregular or regular test that is not ignored"
+        hint = f"A decay: jaxhydro simulate {platform_source(campaign.manifest, campaign.folder)} --release MOTION=VALUE."
+        raise InputError(source, [Problem("tests", expected, found, hint)])
+    problems: list[Problem] = []
+    found_runs = []
+    for group in groups.values():
+        try:
+            found_runs.append(_run(campaign, group))
+        except InputError as error:
+            problems += error.problems
+    if problems:
+        raise InputError(source, dict.fromkeys(problems))
+    return tuple(found_runs)
+
+
+def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
+    manifest, test = campaign.manifest, records[0].test
+    series, still = whole_series(manifest, campaign.folder, test)
+    where = f"{test.file}, channel {WAVE}"
+    if WAVE not in series.values:
+        raise InputError(where, [Problem(f"{where} of test {test.id}", "a wave channel, since waves drive it", "none")])
+    scale = factors(manifest, series.channels)
+    kept = there(series.time) & there(series.values[WAVE])
+    time, wave = series.time[kept], series.values[WAVE][kept]
+    first = np.concatenate([[True], np.diff(time) != 0])
+    even, wave, missing = evenly(time[first], wave[first], where, series.channels["time"].unit)
+    notes = [f"{where}: {missing} samples are missing, and drawn straight"] if missing else []
+    position = records[0].wave_position
+    assert position is not None
+    return Run(test.file, even * scale["time"], wave * scale[WAVE] - still.get(WAVE, 0.0), position,
+               math.radians(test.sea.heading), tuple(sorted(records, key=lambda r: r.time[0])), tuple(notes))  # fmt: skip
+
+
+def evenly(time: np.ndarray, values: np.ndarray, where: str, unit: str) -> tuple[np.ndarray, np.ndarray, int]:
+    """The even clock behind written times, values on it, and how many had to be drawn straight. Raises InputError."""
+
+    def wrong(expected: str, found: str) -> InputError:
+        return InputError(where, [Problem(where, expected, found)])
+
+    steps = np.diff(time)
+    if len(time) < LEAST:
+        raise wrong(f"{LEAST} samples or more", str(len(time)))
+    if not (steps > 0).all():
+        raise wrong("times that increase", f"a step back after {time[:-1][steps <= 0][0]:.6g} {unit}")
+    index = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / np.median(steps)), 1))]).astype(int)
+    slope, start = np.polyfit(index, time, 1)
+    off = np.abs(time - start - slope * index)
+    worst = int(np.argmax(off))
+    if off[worst] > UNEVEN * slope:
+        raise wrong("even sampling, since a sea is made of the whole record",
+                    f"{time[worst]:.6g} {unit}, which is {off[worst]:.3g} off an even step of {slope:.6g} {unit}")  # fmt: skip
+    gap = int(np.argmax(np.diff(index)))
+    if index[gap + 1] - index[gap] - 1 > LONGEST_GAP:
+        missed = f"{index[gap + 1] - index[gap] - 1} missing after {time[gap]:.6g} {unit}"
+        raise wrong(f"a whole record, no more than {LONGEST_GAP} samples missing in a row", missed)
+    whole = np.arange(index[-1] + 1)
+    return start + slope * whole, np.interp(whole, index, values), len(whole) - len(index)

@@ -1,0 +1,46 @@
+"""How strips are loaded, in the words of a platform file: read from a model, given to another."""
+
+from dataclasses import replace
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+from jaxhydro.dynamics.model import Model
+from jaxhydro.errors import Flag
+
+
+class Strips(BaseModel):
+    """`directions` of strips, `drag_speed` (one of a vector, or component by component) and whether there is a `centripetal`
+    part of their acceleration: keys of a platform file. Coefficients that were found with one way mean others with another."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+    directions: Literal["body", "earth"]
+    drag_speed: Literal["vector", "component"]
+    centripetal: Flag
+
+    @classmethod
+    def of(cls, model: Model) -> "Strips":
+        """Those of a model."""
+        coupled = all(getattr(load, "coupled", True) for load in model.loads)
+        return cls.model_validate({
+            "directions": model.directions, "drag_speed": "vector" if coupled else "component",
+            "centripetal": model.centripetal,
+        })  # fmt: skip
+
+    def given_to(self, model: Model) -> Model:
+        """The model with strips so loaded; itself where they are."""
+        if self == Strips.of(model):
+            return model
+        coupled = self.drag_speed == "vector"
+        loads = tuple(
+            replace(load, coupled=coupled) if hasattr(load, "coupled") else load  # type: ignore[call-arg]
+            for load in model.loads
+        )
+        return replace(model, directions=self.directions, centripetal=self.centripetal, loads=loads)
+
+    def __str__(self) -> str:
+        return ", ".join(f"{key}: {str(value).lower()}" for key, value in self.model_dump().items())
+
+
+USUAL = Strips(directions="body", drag_speed="vector", centripetal=True)

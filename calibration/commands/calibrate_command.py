@@ -1,0 +1,266 @@
+"""The commands on campaigns, from a folder to files and tables: calibrate, and simulate in measured waves."""
+
+import time as clock
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.load_campaign import Campaign, load_campaign
+from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.wave_band import band_sentence
+from calibration.fitting.decay_fit import Interrupted, calibrate
+from calibration.fitting.joint_fit import calibrate_jointly
+from calibration.fitting.joint_state import Loss
+from calibration.fitting.law_choice import SeaLaws, choose_law
+from calibration.fitting.law_parameters import LAWS, of_law
+from calibration.fitting.sea_fit import calibrate_in_waves
+from calibration.global_search import Budget
+from calibration.global_search.run_search import SearchInterrupted, search
+from calibration.report import sea_tables, tables
+from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
+from calibration.report.summary import calibration_sentence, summary_of
+from calibration.report.write_report import write_report
+from calibration.residuals import sea_errors
+from calibration.residuals.measured_seas import Diverged, Options, compare, options_of, unusual
+from calibration.residuals.seas import Objective
+from calibration.result import Calibration
+from calibration.results import comparison as seas_results
+from calibration.results.applied_calibration import Applied, applied
+from calibration.results.read_calibration import Saved, read_saved
+from calibration.results.result_folder import MOTION, RESULT
+from calibration.results.write_calibration import NotFinite, write_calibration
+from calibration.results.write_comparison import write_comparison
+from calibration.results.write_laws import write_laws
+from jaxhydro.cli.console import complain, progress, say, table
+from jaxhydro.dynamics.statics import stable_modes
+from jaxhydro.errors import InputError, Problem
+
+SECONDS = 60.0  # CPU time of a search
+ENDED = {
+    "settled": "ended of its own", "reached": "ended of its own", "budget": "cut off by --search-seconds",
+    "interrupted": "stopped by the user",
+}  # fmt: skip
+
+
+def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.tests_counted) -> Campaign:
+    """The campaign, its warnings printed. Raises InputError, also where results would replace its own data."""
+    campaign = load_campaign(path)
+    for test in campaign.manifest.tests:
+        if (campaign.folder / test.file).resolve() == (out / MOTION).resolve():
+            found = f"{str(out)!r}, where {MOTION} is the data of test {test.id}"
+            raise InputError("--out", [Problem("", "another folder", found)])
+    say(f"{campaign.manifest.name}: {counted(campaign)}")
+    if (band := band_sentence(campaign.manifest, campaign.model, campaign.records)) is not None:
+        say(f"{band[0].upper()}{band[1:]}")
+    if campaign.findings:
+        table("Warnings", *tables.findings(campaign.findings), left=4, stderr=True)
+    return campaign
+
+
+def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campaign, str]:
+    """`load` for a calibration, and to which tests it is: as asked for ("decays", "waves", "all"), else to the decays, or where
+    there is none to fit, to the tests in waves."""
+
+    def kind(campaign: Campaign) -> str:
+        kinds = {test.kind for test in campaign.manifest.tests if test.use == "fit"}
+        return tests or ("waves" if "decay" not in kinds and kinds & set(IN_WAVES) else "decays")
+
+    used = {"decays": ("decay",), "waves": IN_WAVES, "all": ("decay", *IN_WAVES, "static")}
+    loaded = load(path, out, counted=lambda campaign: tables.tests_counted(campaign, used[kind(campaign)]))
+    return loaded, kind(loaded)
+
+
+def run(
+    campaign: Campaign,
+    out: Path,
+    figures: bool = True,
+    *,
+    tests: str = "decays",
+    objective: Objective = "bands",
+    law: str = "constant",
+    loss: Loss = "squares",
+    truth: Mapping[str, float] | None = None,
+    start: Path | None = None,
+    method: str | None = None,
+    seed: int = 0,
+    seconds: float = SECONDS,
+) -> Calibration | None:
+    """Calibrate, write and print the result; of a fit that the user stops, what was reached; None if that is no number.
+
+    `tests`: to "decays", to those in "waves" or to "all" kinds; in waves by `objective`. `law`, of tests in waves alone: how
+    coefficients depend on the sea state, a `Law` or "choose". `loss` is that of all kinds together. `start` is a calibration
+    whose values are begun from; `method` a global search of the decays' coefficients that finds them, from a `seed` and in so
+    many CPU `seconds`. `truth` are a synthetic campaign's true coefficients: they are compared with, and a report page is
+    made. Raises InputError, and Interrupted where nothing was reached.
+    """
+    if law != "constant" and tests != "waves":
+        raise InputError("--law", [Problem("", f"--tests waves beside {law.replace('_', '-')}", f"--tests {tests}")])
+    if loss != "squares" and tests != "all":
+        raise InputError("--loss", [Problem("", f"--tests all beside {loss}", f"--tests {tests}")])
+    if objective != "bands" and tests == "decays":
+        expected = "--tests waves or all beside it: decays are fitted to their motion"
+        raise InputError("--objective", [Problem("", expected, "--tests decays")])
+    if method is None and (seed, seconds) != (0, SECONDS):
+        raise InputError("--method", [Problem("", "a search beside --search-seed and --search-seconds", "none")])
+    if law == "choose" and objective != "bands":
+        raise InputError("--objective", [Problem("", "bands, by which laws are chosen", objective)])
+    if method is not None and tests == "waves":
+        raise InputError("--method", [Problem("", "--tests decays or all, since decays are searched with", f"--tests {tests}")])
+    if method is not None and start is not None:
+        raise InputError("--method", [Problem("", "no --start beside it", f"--start {start}")])
+    laws: SeaLaws | None = None
+    begin: dict[str, Any] = {}
+    if start is not None:
+        declared = campaign.model
+        used = applied(start, declared, campaign.platform.name)
+        # what a law adds is begun from in waves only; effects found are not declared
+        known = [k for k in used.values if k in declared.values or (tests == "waves" and of_law(k))]
+        begin = {"start": {k: used.values[k] for k in known}}
+        _told(used._replace(values=begin["start"]), start, campaign)
+        if used.strips is not None:
+            complain(f"warning: values are begun from, strips stay as the platform file has them: {start} has {used.strips}")
+        if tests != "decays" and used.seas is not None and (said := unusual(used.seas)):
+            complain(f"warning: waves are taken with all that they bind; for {start} they were not: {said}")
+    words: tuple[str, ...] = ()
+    if method is not None:
+        values, said = _searched(campaign, method, seed, seconds)
+        begin, words = {"begin": values}, (f"begun from a search: {said}",)
+    try:
+        with progress() as show:
+            if law == "choose":
+                laws = choose_law(campaign, progress=show, **begin)
+                result = laws.chosen.calibration if laws.finished else tables.unfinished(laws.chosen.calibration)
+            elif tests == "all":
+                result = calibrate_jointly(campaign, progress=show, objective=objective, loss=loss, **begin)
+            elif tests == "waves":
+                over, drag = LAWS[law]
+                result = calibrate_in_waves(campaign, progress=show, objective=objective, over=over, drag=drag, **begin)
+            else:
+                result = calibrate(campaign, progress=show, **begin)
+    except Diverged as error:
+        complain(f"{error}; nothing was written")
+        return None
+    except Interrupted as stopped:
+        if stopped.partial is None:
+            raise
+        result = tables.unfinished(stopped.partial)
+    result = replace(result, notes=(*words, *result.notes))
+    try:
+        write_calibration(result, out, figures, truth)
+        if laws is not None:
+            write_laws(laws, out, figures)
+    except NotFinite as error:
+        complain(f"not converged: {error}; nothing was written")
+        return None
+    saved, source = read_saved(out / RESULT), str(out / RESULT)
+    _print_results(saved, source)
+    if laws is not None:
+        table("Laws over the sea state: error of ln(energy) in bands, root mean square", *laws_table(laws), left=1)
+        table("Coefficients of one sea alone | by the chosen law", *states_table(laws), left=1)
+        say(sentence(laws))
+    warned = {str(finding) for finding in grouped(campaign.findings)}
+    for note in result.notes:
+        if note not in warned:
+            say(f"Note: {note}")
+    say(tables.outcome(saved))
+    if truth is not None:
+        table("Against the true coefficients", *tables.against(saved))
+        say(tables.agreement_with_truth(saved))
+    say(f"Results are in {out}" if truth is None else f"Open {write_report(out)}")
+    if not result.converged:
+        complain("not converged: the results are marked so")
+    say(calibration_sentence(summary_of(saved, source)), "bold")
+    return result
+
+
+def _print_results(saved: Saved, source: str) -> None:
+    """Print the tables of a written calibration."""
+    heads, rows = tables.parameters(saved)
+    table("Parameters", (heads[0], *heads[2:]), [(row[0], *row[2:]) for row in rows])
+    heads, rows = tables.errors(saved, source)
+    table("Errors: RMSE over the motion's standard deviation, before and after", heads, rows, left=5)
+    if (damping := tables.linear_quadratic(saved))[1]:
+        table(tables.CLASSICAL, *damping)
+    if (energies := tables.bands(saved, source))[1]:
+        table("Errors of energy in bands", *energies, left=4)
+
+
+def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tuple[dict[str, float], str]:
+    """Where a global search ends, and what it took; stopped by the user, where it has got to."""
+    try:
+        with progress() as show:
+            found = search(campaign, method=method, seed=seed, budget=Budget(seconds), progress=show)
+    except ValueError as error:
+        raise InputError("--method", [Problem("", "a search that can be run", str(error))]) from None
+    except SearchInterrupted as stopped:
+        if stopped.partial is None:
+            raise
+        found = stopped.partial
+    spent = f"{found.simulations:.0f} simulations, {found.seconds:.0f} s CPU"
+    words = f"{found.method}, seed {seed}, J {found.objective:.4g}, {spent}; {ENDED[found.ended]}"
+    say(f"Search: {words}")
+    return found.values, words
+
+
+def simulate_campaign(
+    campaign: Path,
+    out: Path,
+    *,
+    calibration: Path | None,
+    asked: Mapping[str, Any] | None = None,
+    figures: bool = True,
+) -> bool:
+    """Simulate a campaign's tests in their measured waves, compare, write and print; False where a motion grows without bound.
+
+    `asked` are fields of `Options`; others are those of a diagnosis of this campaign, but for how waves are bound and act where
+    the order is asked for. Raises InputError, EquilibriumError.
+    """
+    begun = clock.monotonic()
+    loaded = load(campaign, out, sea_tables.counted)
+    model, used = loaded.model, None
+    if calibration is not None:
+        used = applied(calibration, model, loaded.platform.name)
+        model = used.model
+        _told(used, calibration, loaded)
+        if used.strips is not None:
+            say(f"Strips as they were when these were found: {used.strips}")
+    asked = asked or {}
+    seas = used.seas if used is not None and used.campaign == loaded.manifest.name else None
+    if seas is not None and "order" in asked:  # with all of theory's second order, then
+        seas = replace(seas, **{name: getattr(Options(), name) for name in ("kinds", "highest_difference", "acting")})
+    options = replace(seas or options_of(loaded), **asked)
+    if not options.cutoff > options.low:
+        expected = f"a number above {options.low:g} Hz, where first-order waves begin"
+        raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])
+    if seas is not None and (said := unusual(options, asked)):
+        say(f"Seas as they were when these were found: {said}")
+    stable_modes(model)
+    try:
+        found = compare(loaded, model, options, lambda line: say(line, stderr=True))
+    except Diverged as error:
+        complain(f"{error}; nothing was written")
+        return False
+    source = None if calibration is None else str(calibration)
+    about = {"campaign": loaded.manifest.name, "platform": loaded.platform.name, "calibration": source}
+    write_comparison(found, seas_results.document(found, options, about, used), out, figures)
+    for note in found.notes:
+        complain(f"warning: {note}")
+    table("Waves", *sea_tables.seas_table(found), left=3)
+    table("Motions", *sea_tables.motions_table(found), left=2)
+    say(f"Spectra: {sea_errors.WELCH}")
+    table("Energy in bands", *sea_tables.bands_table(found), left=3)
+    say(f"Results are in {out}, after {clock.monotonic() - begun:.0f} s")
+    return True
+
+
+def _told(used: Applied, source: Path, campaign: Campaign) -> None:
+    """Which calibrated values are used, and what is to be said of them."""
+    if used.campaign != campaign.manifest.name:
+        complain(f"warning: {source} is a calibration of {used.campaign!r}, used for {campaign.manifest.name!r}")
+    say(f"Calibrated values used: {', '.join(used.values)}")
+    if used.left:
+        say(f"Not used, the campaign has its own: {', '.join(used.left)}")
+    if used.vague:
+        complain(f"warning: the records of that calibration did not determine {', '.join(used.vague)}: they say little")

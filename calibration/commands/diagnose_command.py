@@ -1,0 +1,98 @@
+"""The diagnose command, from a campaign to files and tables."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.manifest import IN_WAVES
+from calibration.commands.calibrate_command import load
+from calibration.discovery.checkpoint import FILE
+from calibration.discovery.diagnosis import Diagnosis
+from calibration.report import diagnosis_tables as tables
+from calibration.report import diagnosis_words as words
+from calibration.report import tables as calibrations
+from calibration.residuals.measured_seas import Diverged
+from calibration.results.read_diagnosis import SavedDiagnosis, read_diagnosis
+from calibration.results.result_folder import DIAGNOSIS
+from calibration.results.write_calibration import NotFinite
+from calibration.results.write_diagnosis import write_diagnosis
+from jaxhydro.cli.console import complain, progress, say, table
+
+
+def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
+    """Diagnose a campaign, write and print the result; of a search that the user stops, what was reached. One that was stopped
+    or killed goes on from the last effect that it had let in.
+
+    False where a fit did not converge: the result is marked so, or there is none. Raises InputError, and KeyboardInterrupt
+    where nothing was reached.
+    """
+    from calibration.discovery.diagnose import diagnose
+
+    stopped = False
+    campaign = load(path, out, lambda c: calibrations.tests_counted(c, ("decay", *IN_WAVES)))
+    try:
+        with progress() as show:
+            result = diagnose(campaign.model, campaign, progress=show, kept=out / FILE)
+    except Diverged as error:
+        complain(f"{error}; nothing was written")
+        return False
+    except KeyboardInterrupt as stop:
+        partial, stopped = getattr(stop, "partial", None), True
+        if not isinstance(partial, Diagnosis):
+            if (out / FILE).exists():
+                raise KeyboardInterrupt(f"stopped; the same command goes on from what was reached, which is in {out}") from None
+            raise
+        result = unfinished(partial)
+    try:
+        write_diagnosis(result, out, figures)
+    except NotFinite as error:
+        complain(f"not converged: {error}; nothing was written")
+        return False
+    if not stopped:
+        (out / FILE).unlink(missing_ok=True)
+    saved = read_diagnosis(out / DIAGNOSIS)
+    warned = {str(finding) for finding in grouped(campaign.findings)}
+    show_diagnosis(saved, [note for note in saved.notes if note not in warned])
+    say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
+    if stopped:
+        complain("stopped before it was done: the results are marked so, and the same command goes on from what was reached")
+    elif not saved.converged:
+        complain("not converged: the results are marked so")
+    return saved.converged
+
+
+def unfinished(partial: Diagnosis) -> Diagnosis:
+    """What was reached when the user stopped the search, marked as not complete and not converged.
+
+    That nothing is missing is for a whole search to say: the verdict of a stopped one is then "unexplained".
+    """
+    verdict = "unexplained" if partial.verdict == "nothing_missing" else partial.verdict
+    fitted, notes = replace(partial.augmented, converged=False), (words.STOPPED, *partial.notes)
+    return replace(partial, augmented=fitted, notes=notes, verdict=verdict, complete=False)
+
+
+def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
+    """Print what was found, errors before and after, what was rejected, and the verdict last, where one looks first."""
+    if (rows := tables.anatomy(saved))[1]:
+        table("What the declared model, fitted, leaves over", *rows, left=4)
+    table("Coefficients, fitted before and after", *tables.coefficients(saved))
+    if (rows := tables.nearly_known(saved))[1]:
+        table(tables.VARIED, *rows)
+    if (rows := tables.rejected(saved))[1]:
+        table("Tried and rejected", *rows, left=2)
+    table("Errors over the motion's standard deviation, before and after", *tables.errors(saved), left=3)
+    if (rows := tables.bands(saved))[1]:
+        table("Errors of energy in bands", *rows, left=4)
+    if (rows := tables.effects(saved))[1]:
+        table("What was found", *rows, left=2)
+    for note in notes:
+        say(f"Note: {note}")
+    say(f"\n{words.verdict(saved)}", "bold")
+    for one in saved.missing.effects:
+        name = words.capital(words.called(one.effect, one.degree_of_freedom))
+        say(f"{name}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
+    say(words.left_over(saved))
+    for force in saved.missing.unexplained.forces:
+        say(force.words)
+    if saved.next_test:
+        say(f"Next test: {saved.next_test}")

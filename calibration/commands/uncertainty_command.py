@@ -1,0 +1,190 @@
+"""The uncertainty command: from a campaign and a finished calibration of its decays to intervals of the parameters."""
+
+import fnmatch
+from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.commands.calibrate_command import load
+from calibration.fitting.decay_fit import Progress, run
+from calibration.formatting import number
+from calibration.results.applied_calibration import no_place
+from calibration.results.read_calibration import Saved, read_as, read_saved
+from calibration.results.read_uncertainty import SavedUncertainty, interval_sentence, intervals, other_ways, summary_of
+from calibration.results.result_folder import RESULT, UNCERTAINTY
+from calibration.results.write_uncertainty import Uncertainty, write_uncertainty
+from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats, repeats
+from calibration.uncertainty.likelihood import Likelihood, likelihood_of, reposed
+from calibration.uncertainty.nuts import Samples, sample
+from calibration.uncertainty.profile import Profile, profile
+from jaxhydro.cli.console import complain, counting, progress, say, table
+from jaxhydro.errors import InputError, Problem, suggest
+from jaxhydro.interrupts import stopping
+
+MOVED = 0.1  # standard deviations by which a refit may miss the file's values; of the same fit it is some 1e-8
+CHAINS, WARMUP, DRAWS = 4, 150, 350  # of NUTS
+REFIT = 0.5  # its share of the time, where profiles follow
+
+
+def quantify(
+    path: Path,
+    calibration: Path,
+    out: Path,
+    *,
+    profiles: Sequence[str] = (),
+    draws: int | None = None,
+    nuts: bool = False,
+    level: float = 0.95,
+    seed: int = 0,
+    figures: bool = True,
+) -> bool:
+    """Find, write and print intervals of a calibration's parameters; False where the refit of its records did not converge: the
+    result is marked so.
+
+    `profiles` are labels or patterns, `draws` how many resamplings, `level` the probability of an interval. Raises InputError
+    for what does not fit together, before anything takes time where that can be seen.
+    """
+    _check(draws, nuts, level)
+    campaign = load(path, out)
+    calibration = calibration / RESULT if calibration.is_dir() else calibration
+    saved = finished(campaign, calibration)
+    labels = chosen(profiles, saved)
+    likely, along = _likelihood(campaign, saved, calibration, labels, level)
+    bootstraps = {} if draws is None else _resampled(likely, draws, seed)
+    samples = _sampled(likely, seed) if nuts else None
+    found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
+    write_uncertainty(found, out, figures)
+    written = read_as(SavedUncertainty, out / UNCERTAINTY)
+    table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals(written))
+    if (rows := other_ways(written))[1]:
+        table(f"{written.percent} intervals in other ways", *rows)
+    for note in written.notes:
+        say(f"Note: {note}")
+    say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
+    if not written.converged:
+        complain("not converged: the results are marked so")
+    say(interval_sentence(summary_of(written)), "bold")
+    return written.converged
+
+
+def _check(draws: int | None, nuts: bool, level: float) -> None:
+    """Raises InputError for options that make no sense by themselves."""
+    if not 0 < level < 1:
+        hint = f"For {level:g} % say {level / 100:g}." if 1 < level < 100 else ""
+        raise InputError("--level", [Problem("", "a number between 0 and 1", f"{level:g}", hint)])
+    # a quantile beyond the outermost draw is none
+    least = int(np.ceil(2 / (1 - level) - 1e-9))
+    if draws is not None and draws < least:
+        raise InputError("--bootstrap", [Problem("", f"{least} resamplings or more, for {100 * level:.4g} %", str(draws))])
+    if nuts and find_spec("numpyro") is None:
+        raise InputError("--nuts", [Problem("", "numpyro", "that it is not installed", "pip install 'jaxhydro[nuts]'")])
+
+
+def finished(campaign: Campaign, path: Path) -> Saved:
+    """The finished calibration of the campaign's decays in a calibration.json. Raises InputError for what is none."""
+    saved = read_saved(path)
+    for fault in _faults(saved, campaign):
+        raise InputError(str(path), [fault])
+    model = campaign.model
+    if unknown := [label for label in saved.values() if label not in model.values]:
+        raise no_place(saved, unknown, model, campaign.platform.name, path)
+    return saved
+
+
+def _faults(saved: Saved, campaign: Campaign) -> Iterator[Problem]:
+    if saved.augmented is not None:
+        yield Problem("", f"a {RESULT}, as `jaxhydro calibrate` writes it", "a diagnosis")
+    if saved.campaign != campaign.manifest.name:
+        yield Problem("campaign", repr(campaign.manifest.name), repr(saved.campaign), "It is another campaign's calibration.")
+    if saved.platform and saved.platform != campaign.platform.name:
+        yield Problem("platform", repr(campaign.platform.name), repr(saved.platform), "Calibrate this platform first.")
+    used = {id: test.kind for id, test in saved.tests.items() if test.use == "fit"}
+    if others := sorted({kind for kind in used.values() if kind != "decay"}):
+        expected = "a calibration to free decays alone (`jaxhydro calibrate --tests decays`)"
+        ids = [id for id, kind in used.items() if kind != "decay"]
+        yield Problem("tests", expected, f"fitted tests that are {' and '.join(others)} ({', '.join(ids)})")
+    decays = [record.id for record in campaign.used("fit") if record.kind == "decay"]
+    if set(used) != set(decays):
+        hint = "The campaign has changed since: calibrate again."
+        yield Problem("tests", f"the decays marked fit ({', '.join(decays) or 'none'})", ", ".join(used) or "none", hint)
+    if not saved.baseline.parameters:
+        yield Problem("baseline.parameters", "at least one calibrated parameter", "none")
+    if not saved.baseline.converged:
+        yield Problem("baseline.converged", "true, a finished calibration", "false")
+    for label, one in saved.baseline.parameters.items():
+        if one.start is None:
+            yield Problem(f"baseline.parameters.{label}.start", "the value that the fit began from", "nothing")
+
+
+def chosen(profiles: Sequence[str], saved: Saved) -> list[str]:
+    """The parameters that labels or patterns (`column.*`) name, each once. Raises InputError for what names none."""
+    known = list(saved.values())
+    for one in profiles:
+        if not fnmatch.filter(known, one):
+            expected = f"a calibrated parameter ({', '.join(known)})"
+            raise InputError("--profile", [Problem("", expected, repr(one), suggest(one, known))])
+    return [label for label in known if any(fnmatch.fnmatch(label, one) for one in profiles)]
+
+
+def _likelihood(
+    campaign: Campaign, saved: Saved, path: Path, labels: Sequence[str], level: float
+) -> tuple[Likelihood, dict[str, Profile]]:
+    """The calibration's likelihood, and profiles along parameters."""
+    share, found = REFIT if labels else 1.0, saved.baseline.parameters
+    with progress() as show:
+
+        def report(stage: str, iteration: int, objective: float, fraction: float) -> None:
+            show(Progress(f"fitting again: {stage}", iteration, objective, share * fraction))
+
+        began = {label: one.start for label, one in found.items()}
+        fit = reposed(campaign, began, saved.values(), report)
+        there = np.asarray(fit.unknowns.shared)
+        run(fit)
+        show(Progress("information and colour of the errors", 0, float("nan"), share))
+        likely = likelihood_of(fit)
+        _same(likely, there, saved, path)
+        along = {}
+        for i, label in enumerate(labels):
+            show(Progress(f"profile of {label}", 0, float("nan"), share + (1 - share) * i / len(labels)))
+            along[label] = profile(likely, label, level)
+    return likely, along
+
+
+def _same(likely: Likelihood, there: np.ndarray, saved: Saved, path: Path) -> None:
+    """Raises InputError where a fit to the campaign's decays does not end at the file's values."""
+    p = len(likely.labels)
+    moved = np.abs(likely.estimate[:p] - there) / likely.deviation()
+    worst = int(np.argmax(moved))
+    if moved[worst] < MOVED:
+        return
+    label = likely.labels[worst]
+    end, value = likely.value(label, likely.estimate[worst]), saved.values()[label]
+    expected = f"{number(end)}, where a fit to this campaign's decays ends"
+    found = f"{number(value)}, {number(float(moved[worst]), 2)} standard deviations away"
+    hint = "Has the campaign changed since, or were other tests fitted too (--tests all)? Calibrate its decays again."
+    raise InputError(str(path), [Problem(f"baseline.parameters.{label}.value", expected, found, hint)])
+
+
+def _resampled(likely: Likelihood, draws: int, seed: int) -> dict[str, Bootstrap]:
+    """Bootstrap over blocks, and over repeats where there are any."""
+    found = {}
+    with counting(draws, 0, "resamplings") as count:
+        found["blocks"] = bootstrap_blocks(likely, draws, seed, lambda done, _: count(done, "of the residuals in blocks"))
+    groups = repeats({record.id: record.test.repeat_of for record in likely.fit.records})
+    if any(len(group) > 1 for group in groups.values()):
+        with counting(draws, 0, "resamplings") as count:
+            found["repeats"] = bootstrap_repeats(likely, draws, seed, lambda done, _: count(done, "of repeated tests"))
+    return found
+
+
+def _sampled(likely: Likelihood, seed: int) -> Samples | None:
+    """NUTS; of a run that the user stops, what there is, if it is enough."""
+    with counting(CHAINS * (WARMUP + DRAWS), 0, f"draws of {CHAINS} chains, {WARMUP} of each to find its step") as count:
+        try:
+            return sample(likely, draws=DRAWS, warmup=WARMUP, chains=CHAINS, seed=seed, progress=count)
+        except KeyboardInterrupt:
+            stopping()
+            return None

@@ -1,0 +1,110 @@
+"""Channels recorded with the other sign: what the declared model does in waves, turned round.
+
+Looked at before anything is fitted to the waves, at their own frequencies, where motions follow from the waves by first-order
+theory: a phase of half a turn in every test is no physics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import IN_WAVES, WAVE
+from calibration.campaign.signals import peak_frequency
+from calibration.discovery.diagnosis import Effect, Evidence
+from calibration.discovery.diagnosis_conclusion import tests_of
+from calibration.formatting import listed
+from calibration.residuals.sea_errors import bands_of
+from calibration.result import Estimate
+
+if TYPE_CHECKING:
+    from calibration.discovery.greedy_search import Search
+
+AGAINST = -0.6  # correlation of what is measured with the model, in every fitted test, below which it is turned round
+SEEN = 5.0  # times the noise, that a motion has to be to say anything
+
+
+class Met(NamedTuple):
+    """A motion in the waves of a test, as the declared model has it: correlation, and squares of the error as it is recorded
+    and turned round."""
+
+    channel: str
+    use: str
+    correlation: float
+    error: float
+    turned: float
+
+
+def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
+    """Effects by channel (motion, or `wave`): what has to be turned round. Of all motions alike it is the wave."""
+    if not search.study.seas:
+        return {}
+    met = _met(campaign, search)
+    fitted = [one for one in met if one.use == "fit"]
+    told = list(dict.fromkeys(one.channel for one in fitted))
+    wrong = [name for name in told if all(one.correlation < AGAINST for one in fitted if one.channel == name)]
+    if wrong == told and len(told) > 1:
+        return {WAVE: _effect(WAVE, met, ())}
+    alike = (f"sensor_sign ({WAVE})",) if wrong == told else ()
+    return {name: _effect(name, [one for one in met if one.channel == name], alike) for name in wrong}
+
+
+def turned(campaign: Campaign, channels: Sequence[str]) -> Campaign:
+    """The campaign with these channels' signs changed."""
+    manifest = campaign.manifest.turned(channels)
+    tests = {test.id: test for test in manifest.tests}
+    records = []
+    for one in campaign.records:
+        values = {name: -row if name in channels else row for name, row in one.values.items()}
+        wave = -one.wave if one.wave is not None and WAVE in channels else one.wave
+        records.append(replace(one, values=values, wave=wave, test=tests[one.id]))
+    return replace(campaign, manifest=manifest, records=tuple(records))
+
+
+def in_words(channels: Sequence[str]) -> str:
+    """What was turned, and how to mend it."""
+    are, signs = ("is", "its sign") if len(channels) == 1 else ("are", "their signs")
+    other = " It is as if the waves came from the other side." if {"surge", "pitch"} <= set(channels) else ""
+    return (
+        f"{listed(list(channels))} {are} recorded with the other sign, and {are} turned round for all that follows.{other} "
+        f"Mend {signs} in campaign.yaml (sign: -1, or 1 where it is -1)"
+    )
+
+
+def _met(campaign: Campaign, search: Search) -> list[Met]:
+    found = []
+    for test in tests_of(campaign, search, search.start):
+        wave = campaign.record(test.id).wave
+        if test.kind not in IN_WAVES or wave is None:
+            continue
+        step, taper = float(test.time[1] - test.time[0]), np.hanning(len(test.time))
+        low, high = bands_of(WAVE, 1 / peak_frequency(wave, step))["wave_frequency"]
+        frequency = np.fft.rfftfreq(len(test.time), step)
+        inside = (frequency >= low) & (frequency < high)
+        for series in test.series:
+            there, model = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (series.measured, series.simulated))
+            own, its = (float((np.abs(x) ** 2).sum()) for x in (there, model))
+            noise = series.noise**2 * float((taper**2).sum()) * inside.sum()
+            if series.scored and min(own, its) > SEEN**2 * noise:
+                both = float((np.conj(model) * there).sum().real)
+                error, other = own + its - 2 * both, own + its + 2 * both
+                found.append(Met(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))
+    return found
+
+
+def _effect(channel: str, met: Sequence[Met], alike: tuple[str, ...]) -> Effect:
+    def gone(use: str) -> float:
+        """Share of the squared error, motion by motion alike."""
+        shares = [1 - one.turned / one.error for one in met if one.use == use]
+        return float(np.mean(shares)) if shares else float("nan")
+
+    label, meaning = f"sensor_sign.{channel}", f"sign of the recorded {channel}, by that which is declared"
+    return Effect(
+        "sensor_sign", channel, meaning, "", {label: Estimate(label, -1.0, None, "-", meaning, 1.0, False, True)},
+        Evidence(float("nan"), float("nan"), gone("holdout"), float("nan")), max(0.0, gone("fit")), alike,
+        "still water, the platform pushed by hand along every axis",
+    )  # fmt: skip

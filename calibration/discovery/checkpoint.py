@@ -1,0 +1,200 @@
+"""What a diagnosis has reached, kept on disk from round to round, so that one that was killed goes on.
+
+The file is plain data: a JSON document and arrays in a .npz. What reads it decides what is made of it, so that a file from
+somebody else can be wrong but not do anything.
+"""
+
+import io
+import json
+import types
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from calibration.campaign.manifest import platform_source
+from calibration.discovery.acceptance import Left, State
+from calibration.discovery.candidate_trials import Found
+from calibration.discovery.diagnosis import Rejected, Score
+from calibration.discovery.effects.candidates import Candidate
+from jaxhydro import fingerprint as fingerprints
+from jaxhydro.files import staged
+
+if TYPE_CHECKING:
+    from calibration.discovery.greedy_search import Search
+
+FILE = ".diagnosis-under-way"
+ABOUT = "about"  # the JSON document in the file; arrays are numbered
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """What a search has reached. `states` are those after every round, `begun` the coordinates where it began, `seconds` what
+    it took (s); all others are the search's own."""
+
+    order: str
+    declared_in_second_order: State | None
+    expected: np.ndarray | None
+    states: tuple[State, ...]
+    found: dict[str, Found]
+    scores: tuple[Score, ...]
+    rejected: dict[str, Rejected]
+    notes: tuple[str, ...]
+    alone: Left | None
+    begun: np.ndarray
+    seconds: float
+
+    def every_state(self) -> Iterator[State]:
+        """All states that are in it."""
+        yield from self.states
+        for one in self.found.values():
+            yield from (one.before, one.after)
+        if self.declared_in_second_order is not None:
+            yield self.declared_in_second_order
+
+
+def keep(path: Path, search: "Search", states: list[State], seconds: float) -> None:
+    """Write what was reached, and what it took (s), whole or not at all. Raises InputError where it cannot be written."""
+    reached = Checkpoint(
+        search.order, search.declared_in_second_order, search.study.expected, tuple(states), search.found,
+        tuple(search.scores), search.rejected, tuple(search.notes), search.alone, np.asarray(search.begun), seconds,
+    )  # fmt: skip
+    arrays: list[np.ndarray] = []
+    about = {
+        "fingerprint": fingerprint(search),
+        "computed_with": fingerprints.computed_with(),
+        "reached": _packed(reached, arrays),
+    }
+    content = io.BytesIO()
+    text = np.frombuffer(json.dumps(about).encode(), np.uint8)
+    np.savez(content, allow_pickle=False, **{ABOUT: text}, **{str(i): one for i, one in enumerate(arrays)})
+    with staged(path.parent) as temporary:
+        (temporary / path.name).write_bytes(content.getvalue())
+
+
+def resumed(path: Path, search: "Search", tell: Callable[[str], None] = lambda text: None) -> list[State]:
+    """The states that an earlier run of the same diagnosis reached, the search as it was then.
+
+    Empty where there was none, or one that cannot be gone on from: `tell` is called with the reason in words.
+    """
+    try:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
+            about = json.loads(file[ABOUT].tobytes())
+            if about["fingerprint"] != fingerprint(search):
+                tell(f"{path}: {_other(about['computed_with'])}; the diagnosis starts anew")
+                return []
+            arrays = {name: file[name] for name in file.files if name != ABOUT}
+        candidates = {one.name: one for one in search.posed.candidates}
+        reached: Checkpoint = _rebuilt(Checkpoint, about["reached"], arrays, candidates)
+        _check(reached, search)
+    except FileNotFoundError:
+        return []
+    except Exception as error:  # each way to damage a file has its own
+        said = " ".join(str(error).split())[:100]
+        tell(f"{path}: what an earlier run reached cannot be read ({type(error).__name__}: {said}); the diagnosis starts anew")
+        return []
+    search.study = replace(search.study, expected=reached.expected)
+    search.take_seas(reached.order)  # type: ignore[arg-type]
+    search.declared_in_second_order = reached.declared_in_second_order
+    search.found, search.scores, search.rejected = reached.found, list(reached.scores), reached.rejected
+    search.notes, search.alone, search.earlier = list(reached.notes), reached.alone, reached.seconds
+    search.anchor(reached.begun)
+    return list(reached.states)
+
+
+def fingerprint(search: "Search") -> str:
+    """Of all that a diagnosis depends on: what computes it, the campaign and its files, platform, candidates and options."""
+    posed, campaign = search.posed, search.campaign
+    manifest, folder = campaign.manifest, campaign.folder
+    files = [folder / test.file for test in manifest.tests]
+    files += [Path(platform_source(manifest, folder)), *map(Path, campaign.platform.files().values())]
+    model = (campaign.platform, campaign.own, posed.declared)
+    study = (posed.study.names, posed.study.options, posed.motions, posed.candidates)
+    return fingerprints.fingerprint(manifest, campaign.records, files, model, study)
+
+
+def _other(before: Any) -> str:
+    """In words, what is not as it was."""
+    now = fingerprints.computed_with()
+    before = before if isinstance(before, Mapping) else {}
+    changed = [name for name, value in now.items() if before.get(name) != value]
+    made = [name if name == "source code" else f"{name} ({before.get(name)}, now {now[name]})" for name in changed]
+    return f"an earlier run was of other {', '.join(made) or 'inputs'}"
+
+
+def _check(reached: Checkpoint, search: "Search") -> None:
+    """Raises ValueError where sizes are not those of the search."""
+    study = search.study
+    rows, series, free = len(study.row_series), len(study.series), len(study.start)
+    if reached.order not in ("second", *study.other_seas) or not reached.states:
+        raise ValueError("no states in seas of this campaign")
+    asked: list[tuple[np.ndarray, tuple[int, ...]]] = [(reached.begun, (free,))]
+    asked += [] if reached.expected is None else [(reached.expected, (rows,))]
+    for state in reached.every_state():
+        look, left = state.look, state.left
+        if not all(0 <= i < len(study.names) for i in look.active):
+            raise ValueError("a direction that there is none of")
+        asked += [(look.residual, (rows,)), (state.residual, (rows,)), (look.slopes, (rows, len(look.active)))]
+        asked += [(look.place.x, (free,)), (look.place.own, study.own_width.shape)]
+        asked += [(look.own, (study.spans[-1].stop if study.spans else 0, study.own_width.shape[1]))]
+        asked += [(state.likelihood, (series,)), (left.likelihood, (series,))]
+        asked += [(one, (series, 3)) for one in (left.squares, left.parts)]
+    for one, shape in asked:
+        if one.shape != shape or one.dtype != float:
+            raise ValueError(f"an array of {one.dtype} {one.shape}, not of floats {shape}")
+
+
+def _parts(kind: Any) -> tuple[str, ...] | None:
+    """Names of the fields of a dataclass or a named tuple; None of others."""
+    if is_dataclass(kind):
+        return tuple(one.name for one in fields(kind))
+    return getattr(kind, "_fields", None)
+
+
+def _packed(value: Any, arrays: list[np.ndarray]) -> Any:
+    """A value as JSON has it: arrays by their number, effects by their name (a load of one's own may not be written)."""
+    if isinstance(value, Candidate):
+        return value.name
+    if isinstance(value, np.ndarray):
+        number = next((i for i, one in enumerate(arrays) if one is value), len(arrays))
+        if number == len(arrays):
+            arrays.append(value)
+        return number
+    if (names := _parts(type(value))) is not None:
+        return {name: _packed(getattr(value, name), arrays) for name in names}
+    if isinstance(value, Mapping):
+        return {name: _packed(one, arrays) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_packed(one, arrays) for one in value]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _rebuilt(kind: Any, value: Any, arrays: Mapping[str, np.ndarray], candidates: Mapping[str, Candidate]) -> Any:
+    """What `_packed` was given, of a kind. Raises ValueError, KeyError or TypeError where it is another."""
+
+    def inner(kind: Any, value: Any) -> Any:
+        return _rebuilt(kind, value, arrays, candidates)
+
+    origin, args = get_origin(kind), get_args(kind)
+    if origin in (Union, types.UnionType):  # all are a kind or None
+        return None if value is None else inner(next(one for one in args if one is not type(None)), value)
+    if kind is Candidate:
+        return candidates[value]
+    if kind is np.ndarray:
+        return arrays[str(value)]
+    if (names := _parts(kind)) is not None:
+        if set(value) != set(names):
+            raise ValueError(f"{kind.__name__} of {', '.join(value)}")
+        hints = get_type_hints(kind)
+        return kind(**{name: inner(hints[name], value[name]) for name in names})
+    if origin is tuple and isinstance(value, list):
+        return tuple(inner(args[0], one) for one in value)
+    if origin is dict and isinstance(value, dict):
+        return {name: inner(args[1], one) for name, one in value.items()}
+    if kind is float and type(value) in (int, float):
+        return float(value)
+    if type(value) is not kind:
+        raise ValueError(f"{value!r:.40}, not of {kind}")
+    return value

@@ -1,0 +1,221 @@
+"""What a diagnosis says in the end: models before and after, every test, effects with their evidence, and the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.runs import runs
+from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding
+from calibration.discovery.doubts import doubts_of, in_doubt
+from calibration.discovery.effects.candidates import Candidate, with_candidates, with_effects
+from calibration.discovery.effects.effect_names import called
+from calibration.discovery.eliminated_least_squares import predict
+from calibration.discovery.latent_force.recover_force import latent_of
+from calibration.discovery.residual_anatomy import anatomy, signature
+from calibration.fitting.fit_conclusion import strays
+from calibration.residuals.measured_seas import peak_period
+from calibration.residuals.sea_errors import bands_of
+from calibration.result import BandError, Calibration, Estimate, Series, TestFit
+from jaxhydro.analysis.spectral import band_weights
+from jaxhydro.dynamics.model import Model
+from jaxhydro.environment import DOFS
+
+if TYPE_CHECKING:
+    from calibration.discovery.acceptance import State
+    from calibration.discovery.greedy_search import Search
+    from calibration.discovery.linearisations import Place
+
+# of a motion: what is left beyond it, and twice the noise, is not for noise, nor for a model's last digits. Fitted seas of the
+# tank's campaigns with nothing missing leave up to 0.04
+LEFT = {"decay": 0.03, "waves": 0.05}
+
+
+def conclude(
+    campaign: Campaign, search: Search, before: State, after: State, notes: Sequence[str], seconds: float,
+    first: Sequence[Effect] = (),
+) -> Diagnosis:
+    """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
+    baseline = calibration_of(campaign, search, before, None)
+    augmented = calibration_of(campaign, search, after, baseline)
+    doubted = in_doubt(search, after, baseline, augmented)
+    effects = (*first, *(effect_of(search, one, after, doubted.get(one.name)) for one in after.chosen))
+    share, words = signature(search, before, after)
+    left = anatomy(search, after)
+    more = much(search, left)
+    sure = [one for one in effects if one.in_doubt is None]
+    verdict = "found" if sure else ("unexplained" if effects or more else "nothing_missing")
+    lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
+    latent = latent_of(search, augmented) if verdict == "unexplained" else ()
+    return Diagnosis(
+        campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
+        anatomy(search, before), left, share, words, next_test(search, after, verdict),
+        (*lost, *doubts_of(search, after, augmented, more), *notes), seconds, latent,
+        search.strips, search.study.options[search.order] if search.study.seas else None,
+    )  # fmt: skip
+
+
+def much(search: Search, left: Sequence[Finding]) -> list[Finding]:
+    """What is left of motions in the fitted tests, where that is more than noise and a model's last digits leave; the largest
+    share of a motion first."""
+    kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
+    main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
+    told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
+    more = [one for one in told if one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]]]
+    return sorted(more, key=lambda one: -one.relative)
+
+
+def next_test(search: Search, after: State, verdict: str) -> str:
+    """The test that would tell what was found from others; where that is nothing, what comes nearest from the rest."""
+    if verdict == "unexplained":
+        tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
+        best = max(tried, key=lambda one: one.verdict.bic if one.verdict else 0.0, default=None)
+        name = None if best is None else (best.effect, best.degree_of_freedom)
+        mine = [one for one in search.posed.candidates if (one.effect, one.dof) == name]
+        return "; ".join(f"{one.telling} (of what was tried, {called(one.name)} came nearest)" for one in mine if one.telling)
+    return next((one.telling for one in after.chosen if one.telling), "")
+
+
+def augmented_model(search: Search, state: State) -> Model:
+    """The declared model with what was found, every parameter as fitted."""
+    active = search.active(state.chosen)
+    moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
+    values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
+    values |= {label: search.study.value(label, state.look.place.x) for one in state.chosen for label in one.choices}
+    own = [one for one in state.chosen if one.load is not None]
+    return with_effects(with_candidates(search.posed.declared, own), values).at_values(values)
+
+
+def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str, Estimate]:
+    """Parameters with standard deviations, of those directions that are one parameter each."""
+    look, study = state.look, search.study
+    prior = search.prior(state.chosen)
+    deviations = predict(study, look, prior).deviation
+    values = {}
+    for name in names:
+        i = study.names.index(name)
+        if i not in look.active or name not in study.labels:
+            continue
+        k = study.labels.index(name)
+        free, x, deviation = study.space.free[k], look.place.x[k], float(deviations[look.active.index(i)])
+        slope = (float(free.transform.forward(x + 1e-4)) - float(free.transform.forward(x - 1e-4))) / 2e-4
+        about = study.model.about(name)
+        known = bool(deviation < 0.5 * prior.width[i])
+        size = abs(slope) * deviation * float(study.directions[i, k])
+        value = study.value(name, look.place.x)
+        ends = np.array([about.lower, about.upper])
+        bound = free.transform.at_bound(float(x)) or bool(np.isclose(value, ends, rtol=1e-6, atol=0.0).any())
+        values[name] = Estimate(name, value, size if known else None, about.unit, about.meaning, free.start, bound, known)
+    return values
+
+
+def calibration_of(campaign: Campaign, search: Search, state: State, before: Calibration | None) -> Calibration:
+    """A fit in the form of a calibration: all tests, errors, bands. `before` gives the motions to compare with."""
+    effects = [label for one in state.chosen for label in one.labels]
+    nuisances = [name for name in search.posed.nuisances if name in search.study.labels and name not in effects]
+    names = [*search.posed.base, *nuisances, *effects]
+    lines = [one.label for one in search.study.space.free if one.label.startswith("mooring.")]
+    choices = [label for one in state.chosen for label in one.choices]
+    parameters = estimates_of(search, state, names) | _as_given(search, state, lines, False) | _as_given(search, state, choices)
+    tests = tests_of(campaign, search, state.look.place)
+    if before is not None:
+        earlier = {test.id: test for test in before.tests}
+        tests = [_with_start(test, earlier[test.id]) for test in tests]
+    return Calibration(
+        campaign.manifest.name, augmented_model(search, state), parameters, tuple(tests),
+        state.settled, state.iterations, 0.0, (), (), campaign.platform.name, None,
+    )  # fmt: skip
+
+
+def _as_given(search: Search, state: State, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
+    """Values without deviations of their own: of what was chosen, and of mooring lines, nearly known, which move together."""
+    found = {}
+    for label in labels:
+        about, start = search.study.model.about(label), search.study.space.free[search.study.labels.index(label)].start
+        value = search.study.value(label, state.look.place.x)
+        found[label] = Estimate(label, value, None, about.unit, about.meaning, start, False, known)
+    return found
+
+
+def _with_start(test: TestFit, before: TestFit) -> TestFit:
+    """A test with the motions and errors of an earlier fit as those before."""
+    start = {}
+    for mine, other in zip(test.series, before.series):
+        start[mine.channel] = other.simulated - other.offset + mine.offset if test.kind != "decay" else other.simulated
+    bands = {
+        name: {k: BandError(one.after, before.bands[name][k].after, one.low, one.high) for k, one in row.items()}
+        for name, row in test.bands.items()
+    }
+    return replace(test, start=start, bands=bands)
+
+
+def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
+    """Every test with the motions at a place."""
+    study = search.study
+    motions = study.motions(place)
+    found = {}
+    if study.decays is not None:
+        data = study.decays.data
+        in_decays = np.asarray(motions.pop(0)).reshape(len(study.decay_records), len(data.dofs), -1)
+        offsets = place.own.reshape(len(study.decay_records), 3, -1)[:, 2] * np.asarray(data.unit)
+        for record, residual, offset in zip(study.decay_records, in_decays, offsets):
+            rows = []
+            for j, dof in enumerate(data.dofs):
+                channel = DOFS[dof]
+                if channel in record.values:
+                    off = float(offset[j])
+                    measured = record.values[channel] - off
+                    simulated = measured + residual[j, : len(measured)]
+                    scored = channel == record.degree_of_freedom
+                    rows.append(Series(channel, measured, simulated, off, record.noise[channel], scored))
+            dof_name = record.degree_of_freedom
+            found[record.id] = TestFit(record.id, record.use, "decay", dof_name, record.time, tuple(rows), {}, record.file)
+    by_id = {r.id: r for r in campaign.records}
+    all_runs = runs(campaign) if study.seas else ()
+    peaks = {record.id: peak_period(run, record, campaign.manifest.scale) for run in all_runs for record in run.records}
+    for sea, residuals in zip(study.seas, motions):
+        n = sea.measured.shape[-1]
+        every = np.asarray(residuals).reshape(len(sea.tests), -1, n)
+        for test, begin, values, residual in zip(sea.tests, sea.begins, np.asarray(sea.measured), every):
+            record = by_id[test]
+            series = tuple(
+                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in search.posed.motions)
+                for dof, m, r in zip(sea.dofs, values, residual)
+            )
+            time = np.asarray(sea.times[begin : begin + n])
+            bands = _bands(series, float(time[1] - time[0]), peaks[test]) if record.kind == "irregular" else {}
+            found[test] = TestFit(test, record.use, record.kind, None, time, series, {}, record.file, bands)
+    return [found[r.id] for r in campaign.records if r.id in found]
+
+
+def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, dict[str, BandError]]:
+    """Relative errors of energies in bands, as the paper's, of a sea with this peak period (s)."""
+    found: dict[str, dict[str, BandError]] = {}
+    for one in series:
+        if not one.scored:
+            continue
+        row = {}
+        for name, (low, high) in bands_of(one.channel, period).items():
+            weights = band_weights(len(one.measured), step, low, high)
+            measured, simulated = weights.integral(one.measured), weights.integral(one.simulated)
+            row[name] = BandError(float(simulated / measured - 1), float("nan"), low, high)
+        found[one.channel] = row
+    return found
+
+
+def effect_of(search: Search, one: Candidate, after: State, doubt: str | None) -> Effect:
+    """An effect that is in the model at the end, with its evidence, and what it is in doubt for."""
+    found, used = search.found[one.name], search.study.used
+    left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
+    meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)
+    held = found.verdict.held if found.verdict.unseen else float("nan")
+    parameters = estimates_of(search, after, one.labels) | _as_given(search, after, one.choices)
+    return Effect(
+        one.effect, one.dof, "; ".join(meanings), one.source, parameters,
+        Evidence(found.score, found.verdict.bic, held, found.verdict.clear), max(0.0, 1 - now / left) if left > 0 else 0.0,
+        found.alike, one.telling or None, doubt,
+    )  # fmt: skip

@@ -1,0 +1,114 @@
+"""Fits along a few parameters: Levenberg-Marquardt with slopes kept from step to step, mended by what every step shows.
+
+A simulation costs some twentieth of what all slopes cost. Broyden's update (1965, Mathematics of Computation 19, 577-593) makes
+slopes agree with the last step; they are taken anew where they have ceased to predict.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.discovery.eliminated_least_squares import cost_of, linearly, solve, weights
+from calibration.discovery.linearisations import Look, Place, Prior
+from calibration.discovery.study import LOST, Study
+from jaxhydro.interrupts import stop_if_asked
+
+LONGEST = 0.7  # largest step of a coordinate that is a logarithm
+LEAST = 1e-4  # of what is minimised where a step begins: one that gains less is one too many, however many samples there are
+POOR = 0.25  # of what was predicted: slopes that give no more are stale
+
+
+class Reached(NamedTuple):
+    """Where a fit is: what was seen there, and whether it has settled."""
+
+    look: Look
+    iterations: int
+    settled: bool
+
+
+def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: np.ndarray, own: np.ndarray) -> Look:
+    """Slopes that agree with a step: Broyden's update, parameters measured by what they do to the residual."""
+    weight = weights(study, look.residual)
+    missed = residual - linearly(study, look, step, own)
+    slopes, mine = look.slopes.copy(), look.own.copy()
+    size = (weight[:, None] * look.slopes**2).sum(axis=0) * step
+    decays = study.spans[-1].stop if study.spans else 0
+    if size @ step > 0:
+        slopes[decays:] += np.outer(missed[decays:], size / (size @ step))
+    for span, moved in zip(study.spans, own):
+        inner = (weight[span, None] * look.own[span] ** 2).sum(axis=0) * moved
+        total = size @ step + inner @ moved
+        if total > 0:
+            slopes[span] += np.outer(missed[span], size / total)
+            mine[span] += np.outer(missed[span], inner / total)
+    return Look(place, look.active, residual, slopes, mine)
+
+
+def bounded(
+    study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """A damped step that stays where parameters make sense: what would leave goes to the end, the others as is best then."""
+    step, own = solve(study, look, used, prior, damping)
+    low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
+    kept = np.clip(step, low, high)
+    if (held := kept != step).any() and not held.all():
+        rest = look.along([i for i, out in zip(look.active, held) if not out])
+        rest = replace(rest, residual=look.residual + look.slopes[:, held] @ kept[held])
+        kept[~held], own = solve(study, rest, used, prior, damping)
+    return np.clip(kept, low, high), own
+
+
+def lost(residual: np.ndarray) -> bool:
+    """Whether a simulation diverges, of a test that is fitted or of one that is not: nothing is seen from there."""
+    return not bool((np.abs(residual) < LOST).all())
+
+
+def fit(
+    study: Study,
+    look: Look,
+    used: np.ndarray,
+    prior: Prior,
+    *,
+    iterations: int,
+    looks: int = 0,
+    tolerance: float = 0.5,
+    say: Callable[[int, float], None] = lambda *_: None,
+) -> Reached:
+    """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
+    `tolerance`, or than `LEAST` of what is minimised there; slopes are taken anew at most `looks` times, and once more at the
+    end. It stays where a simulation diverges."""
+    logarithmic = study.logarithmic[list(look.active)]
+    directions = study.directions[list(look.active)]
+    now = cost_of(study, look, look.residual, look.place, used, prior)
+    if lost(look.residual):
+        return Reached(look, 0, False)
+    damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
+    while taken < iterations and not settled:
+        stop_if_asked()
+        taken += 1
+        step, own = bounded(study, look, used, prior, damping)
+        scale = min(1.0, LONGEST / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
+        step, own = scale * step, scale * own
+        there = look.place.moved(directions, step, own)
+        residual = study.residual(there)
+        cost = cost_of(study, look, residual, there, used, prior)
+        expected = now - cost_of(study, look, linearly(study, look, step, own), there, used, prior)
+        gain = -np.inf if lost(residual) else now - cost
+        least = max(tolerance, LEAST * abs(now))  # of what is minimised here, however large it was before
+        known, little = fresh or not left, 0 <= gain < least or expected < least
+        if gain > 0:
+            look, now, fresh = mended(study, look, there, residual, step, own), cost, False
+            damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
+            say(taken, now)
+        if gain >= max(least, POOR * expected):
+            continue
+        if known and little:
+            settled = True
+        elif not known:
+            look, fresh, left, damping = study.look(look.place, look.active), True, left - 1, 1e-3
+        elif gain <= 0:
+            damping = max(damping * 8, 1e-2)
+            settled = damping > 1e6
+    return Reached(study.look(look.place, look.active) if looks and not fresh else look, taken, settled)

@@ -1,0 +1,153 @@
+"""The effects of one motion that are looked for."""
+
+import math
+from collections.abc import Mapping
+from functools import partial
+
+from calibration.discovery.effects.listed import Listed, Scales
+from calibration.discovery.effects.mode_splitting import beginnings
+from calibration.discovery.effects.oscillator_start import RATIO, periods
+from jaxhydro.environment import DOFS
+from jaxhydro.loads import (
+    CoulombFriction,
+    CubicDamping,
+    HiddenOscillator,
+    Hysteresis,
+    MooringNonlinearity,
+    NonlinearHydrostatics,
+    QuadraticDamping,
+    RadiationMemory,
+    StaticForce,
+    WaveDrift,
+    WaveDriftDamping,
+)
+
+SHORT, LONGER = 0.4, 1.5  # of the shortest and the longest natural period: between them hidden oscillators are sought
+BRIEF, LASTING = 0.7, 250.0  # s: ... 0.8 times and twice of which they can have
+STEPS = 20  # in a period at least: Adams-Bashforth's fourth order is unstable below 15
+RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
+LONG = ("surge", "sway")
+SHARP = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
+YIELDS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hysteresis yields
+
+
+def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_variance: float | None, step: float) -> None:
+    """One motion's own; `wave_variance` (m2) is None where there are no waves, `step` (s) that of simulations in waves."""
+    s, i, of = scales[dof], DOFS.index(dof) + 1, f".{dof}."
+    known.add(
+        "coulomb_friction",
+        dof,
+        [known.linear(f"coulomb_friction{of}force", s.force)],
+        # sharp beside the motion, and yet resolved by the time step; rounded, so that it compiles for many campaigns
+        shapes=(known.shape(f"coulomb_friction{of}speed", 2.0 ** round(math.log2(SHARP * s.rate)), 1e-6, 1.0),),
+        passive=True,
+        telling=f"a slow static pull-out and return in {dof}: friction leaves the platform off zero",
+        source=CoulombFriction.source,
+    )
+    known.add(
+        "quadratic_damping",
+        dof,
+        [known.linear(f"quadratic_damping.B{i}{i}", s.force / s.rate**2)],
+        passive=True,
+        telling=f"decays in {dof} from twice the amplitude",
+        source=QuadraticDamping.source,
+    )
+    known.add(
+        "cubic_damping",
+        dof,
+        [known.linear(f"cubic_damping{of}coefficient", s.force / s.rate**3)],
+        passive=True,
+        telling=f"decays in {dof} from twice the amplitude",
+        source=CubicDamping.source,
+    )
+    known.add(
+        "radiation_memory",
+        dof,
+        [known.linear(f"radiation_memory{of}strength", s.force / s.rate)],
+        shapes=(known.shape(f"radiation_memory{of}frequency", *(rate / known.time for rate in (0.6, 0.03, 4.0))),),
+        grid=tuple({f"radiation_memory{of}frequency": rate / known.time} for rate in RATES),
+        passive=True,
+        telling=f"forced oscillation in {dof} at three periods",
+        source=RadiationMemory.source,
+    )
+    natural = [one.period for one in scales.values()]
+    shortest = max(SHORT * min(natural), STEPS * step, BRIEF)
+    longest = max(min(LONGER * max(natural), LASTING), shortest)
+    known.add(
+        "hidden_oscillator",
+        dof,
+        [known.linear(f"hidden_oscillator{of}mass", 0.02 * s.mass)],
+        shapes=(
+            known.shape(f"hidden_oscillator{of}period", min(max(s.period, shortest), longest), 0.8 * shortest, 2 * longest),
+            known.shape(f"hidden_oscillator{of}damping_ratio", RATIO, 0.002, 0.5),
+        ),
+        grid=({f"hidden_oscillator{of}period": shortest},),
+        places=periods(dof, shortest, longest),
+        begins=partial(beginnings, dof),
+        passive=True,
+        telling=f"a longer decay in {dof}, and a hammer test of what may be loose in the hull",
+        source=HiddenOscillator.source,
+    )
+    known.add(
+        "static_offset",
+        dof,
+        [known.linear(f"static_offset{of}force", s.force)],
+        telling="the same test with the platform moored, and its zero taken before and after",
+        source=StaticForce.source,
+    )
+    if dof in (*LONG, "pitch", "roll"):
+        default = 0.5 * known.length if DOFS.index(dof) < 3 else 0.01
+        known.add(
+            "hysteresis",
+            dof,
+            [known.linear(f"hysteresis{of}force", s.force)],
+            shapes=(known.shape(f"hysteresis{of}yield_displacement", default, 0.02 * default, 20 * default),),
+            grid=tuple({f"hysteresis{of}yield_displacement": share * default} for share in YIELDS),
+            passive=True,
+            telling=f"slow static cycles in {dof} at two amplitudes: the loop's area tells",
+            source=Hysteresis.source,
+        )
+    if dof in LONG:
+        names = {"odd_quadratic": 2, "even_quadratic": 2, "cubic": 3}
+        known.add(
+            "mooring_nonlinearity",
+            dof,
+            [known.linear(f"mooring_nonlinearity{of}{name}", s.force / s.amplitude**power) for name, power in names.items()],
+            telling=f"static offsets in {dof} to both sides, up to the largest excursion",
+            source=MooringNonlinearity.source,
+        )
+    if dof in ("heave", "roll", "pitch"):
+        labels = [known.linear(f"nonlinear_hydrostatics{of}cubic", s.force / s.amplitude**3)]
+        if dof == "heave":
+            labels.append(known.linear(f"nonlinear_hydrostatics{of}even_quadratic", s.force / s.amplitude**2))
+            if "pitch" in scales:
+                tilt = scales["pitch"].amplitude
+                labels.append(known.linear(f"nonlinear_hydrostatics{of}pitch_squared", s.force / tilt**2))
+        else:
+            labels.append(known.linear(f"nonlinear_hydrostatics{of}quintic", s.force / s.amplitude**5))
+        known.add(
+            "nonlinear_hydrostatics",
+            dof,
+            labels,
+            telling=f"an inclining or static {dof} test to the largest angle or draught",
+            source=NonlinearHydrostatics.source,
+        )
+    if wave_variance is not None:
+        ways = ("envelope", "quadrature", "frequency_weighted")
+        known.add(
+            "wave_drift",
+            dof,
+            [known.linear(f"wave_drift{of}{way}", s.force / wave_variance) for way in ways],
+            telling="the same irregular sea at another height: drift goes as Hs^2",
+            source=WaveDrift.source,
+        )
+        steady = known.linear(f"wave_drift_damping{of}steady", 1.0, 1.0)
+        known.add(
+            "wave_drift_damping",
+            dof,
+            [known.linear(f"wave_drift_damping{of}coefficient", s.force / s.rate / wave_variance)],
+            grid=({steady: 1.0}, {steady: 0.0}),
+            passive=True,
+            telling=f"a {dof} decay in regular waves of two heights",
+            source=WaveDriftDamping.source,
+        )

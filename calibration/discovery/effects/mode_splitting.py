@@ -1,0 +1,166 @@
+"""What swings in a hull, from the two modes that it makes of one: where a search begins that no first order would lead to.
+
+A mass on a spring whose period is close to a motion's own does not perturb that motion, it makes two of it. Undamped, with
+omega_h the hull's own frequency, omega_0 the mass's and mu its share of the hull's (Den Hartog 1956, Mechanical Vibrations,
+section 3.2, the equation for the natural frequencies):
+
+    omega_1^2 + omega_2^2 = omega_h^2 + (1 + mu) omega_0^2,    omega_1^2 omega_2^2 = omega_h^2 omega_0^2
+
+In mode k the mass moves r_k = omega_0^2 / (omega_0^2 - omega_k^2) as far as the hull. Released from rest together with it,
+A_1 + A_2 = A_1 r_1 + A_2 r_2, which gives the third equation,
+
+    (omega_0^2 - omega_1^2) / (omega_2^2 - omega_0^2) = (A_1 / A_2) omega_1^2 / omega_2^2
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import equilibrium, linearised, natural_modes, widths
+from jaxhydro.environment import DOFS
+
+if TYPE_CHECKING:
+    from calibration.discovery.linearisations import Place
+    from calibration.discovery.study import Study
+
+Begins = Callable[["Study", "Place", Sequence[int], np.ndarray], tuple[Mapping[str, float], ...]]
+
+SAMPLES = 16  # in a natural period: those of a decay that are looked at
+FEWEST = 16  # samples for every mode
+WITHIN = 2.0  # times longer or shorter than the natural period: where its two modes are looked for
+APART = 0.03  # of their periods: modes that are closer are one
+RATIOS = (0.002, 0.5)  # damping ratios of a mass that may be
+ROUNDS, STEP, FURTHEST = 4, 1e-3, 3.0  # of the hull's own period; of a direction; standard deviations
+
+
+class Modes(NamedTuple):
+    """Of a decay: eigenvalues (k,; rad/s) above the real axis, complex amplitudes (k,), and the root mean square left."""
+
+    eigenvalue: np.ndarray
+    amplitude: np.ndarray
+    left: float
+
+
+class Swinging(NamedTuple):
+    """Natural period (s) of a hull without what swings in it; that mass's share of the hull's, its period and damping ratio."""
+
+    hull: float
+    share: float
+    period: float
+    ratio: float
+
+
+def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
+    """The `count` strongest singular vectors of a record's Hankel matrix as damped oscillations (Barkhuijsen, De Beer and Van
+    Ormondt 1987, Journal of Magnetic Resonance 73, 553-557, equations 2 to 8); `step` is that of its samples (s)."""
+    hankel = np.lib.stride_tricks.sliding_window_view(values, len(values) // 2).T
+    basis = np.linalg.svd(hankel, full_matrices=False)[0][:, :count]
+    shift = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
+    eigenvalue = np.log(np.linalg.eigvals(shift).astype(complex)) / step
+    each = np.exp(np.outer(np.arange(len(values)) * step, eigenvalue))
+    amplitude = np.linalg.lstsq(each, values.astype(complex), rcond=None)[0]
+    left = float(np.std(values - (each @ amplitude).real))
+    upper = eigenvalue.imag > 0
+    return Modes(eigenvalue[upper], 2 * amplitude[upper], left)
+
+
+def swinging(eigenvalue: np.ndarray, amplitude: np.ndarray) -> Swinging | None:
+    """What makes two modes (2,) of a hull's one, released from rest; None where nothing does.
+
+    Damping is what each mode loses: 2 sigma_k (1 + mu r_k^2) = b + 2 zeta omega_0 mu (r_k - 1)^2, b the hull's.
+    """
+    order = np.argsort(eigenvalue.imag)
+    loss, square = -eigenvalue.real[order], np.abs(eigenvalue[order]) ** 2
+    if (ratio := float((amplitude[order[0]] / amplitude[order[1]]).real)) <= 0:
+        return None
+    weight = ratio * square[0] / square[1]
+    own = (square[0] + weight * square[1]) / (1 + weight)
+    hull = square[0] * square[1] / own
+    share = (square.sum() - hull - own) / own
+    if share <= 0:
+        return None
+    moved = own / (own - square)
+    both = np.column_stack([np.ones(2), 2 * np.sqrt(own) * share * (moved - 1) ** 2])
+    damping = np.linalg.solve(both, 2 * loss * (1 + share * moved**2))[1]
+    hull_period, period = (2 * math.pi / math.sqrt(one) for one in (hull, own))
+    return Swinging(hull_period, float(share), period, float(np.clip(damping, *RATIOS)))
+
+
+def split(values: np.ndarray, step: float, period: float, others: Sequence[float], count: int) -> tuple[Swinging | None, float]:
+    """What a decay's two strongest modes near its natural `period` (s) say, and the share of the decay that all modes leave;
+    `others` are periods of other motions, `count` the modes there may be. Nothing, where a record is too short or too
+    coarse."""
+    if len(values) < FEWEST * count or step > 2 * period / SAMPLES:
+        return None, 1.0
+    found = modes_of(values - values.mean(), step, 2 * count + 1)
+    here = 2 * np.pi / found.eigenvalue.imag
+    near = (np.abs(np.log(here / period)) < np.log(WITHIN)) & (found.eigenvalue.real < 0)
+    for other in others:
+        near &= np.abs(np.log(here / other)) > APART
+    two = np.flatnonzero(near)[np.argsort(-np.abs(found.amplitude[near]))][:2]
+    left = found.left / max(float(np.std(values)), 1e-300)
+    if len(two) < 2:
+        return None, left
+    apart = abs(float(np.diff(found.eigenvalue.imag[two])[0]))
+    widths = -float(found.eigenvalue.real[two].sum())
+    if apart < max(widths, APART * float(found.eigenvalue.imag[two].mean())):
+        return None, left  # one mode, whose damping or stiffness is not linear
+    return swinging(found.eigenvalue[two], found.amplitude[two]), left
+
+
+def own_mode(model: Model, dof: str) -> tuple[float, float]:
+    """Natural period (s) of a motion, what has a memory at rest, and the mass (kg, kg m2) of its mode, were all of it in that
+    motion."""
+    position = equilibrium(model)
+    modes, mass = natural_modes(model, position), np.asarray(linearised(model, position)[0])
+    i = modes.number(dof) or 0
+    shape = modes.shape[i] / widths(model)
+    return float(modes.period[i]), float(shape @ mass @ shape) / float(shape[DOFS.index(dof)]) ** 2
+
+
+def beginnings(
+    dof: str, study: "Study", place: "Place", base: Sequence[int], width: np.ndarray
+) -> tuple[Mapping[str, float], ...]:
+    """Where a fit of `HiddenOscillator` in a motion may begin: as the two modes of a fitted decay say, with the coefficients
+    as near a place as can be, in standard deviations (d,) along directions, that give the hull its period without what swings
+    in it."""
+    records = [one for one in study.decay_records if one.use == "fit" and one.degree_of_freedom == dof]
+    modes = natural_modes(study.space.model(study.model, jnp.asarray(place.x)))
+    if not records or not np.isfinite(period := modes.of(dof)):
+        return ()
+    others = [float(one) for one in modes.period if one != period]
+    said = []
+    for record in records:
+        step = max(period / SAMPLES, float(np.diff(record.time).max()))
+        time = np.arange(record.time[0], record.time[-1], step)
+        values = np.interp(time, record.time, record.values[dof])
+        said.append(split(values, step, period, others, 1 + len(record.values)))
+    best = min(((left, one) for one, left in said if one is not None), key=lambda each: each[0], default=None)
+    if best is None:
+        return ()
+    x = with_period(study, place.x, base, width, dof, best[1].hull)
+    mass = own_mode(study.space.model(study.model, jnp.asarray(x)), dof)[1]
+    values = {label: study.value(label, x) for label, at, to in zip(study.labels, place.x, x) if at != to}
+    of = f"hidden_oscillator.{dof}."
+    about = {f"{of}mass": best[1].share * mass, f"{of}period": best[1].period, f"{of}damping_ratio": best[1].ratio}
+    return (values | about,)
+
+
+def with_period(study: "Study", x: np.ndarray, base: Sequence[int], width: np.ndarray, dof: str, period: float) -> np.ndarray:
+    """Coordinates where a motion has a natural `period` (s): the shortest way there along the `base` directions, in their
+    standard deviations."""
+
+    def off(x: np.ndarray) -> float:
+        return math.log(own_mode(study.space.model(study.model, jnp.asarray(x)), dof)[0] / period)
+
+    directions, size = study.directions[list(base)], width[list(base)]
+    for _ in range(ROUNDS):
+        now = off(x)
+        slopes = np.array([(off(x + STEP * one) - now) / STEP for one in directions]) * size
+        step = -now * slopes / max(float(slopes @ slopes), 1e-300)
+        x = x + (step * size * min(1.0, FURTHEST / max(float(np.abs(step).max()), 1e-300))) @ directions
+    return x

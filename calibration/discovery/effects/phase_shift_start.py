@@ -1,0 +1,63 @@
+"""How far off a gauge or a clock is, where that is further than slopes tell: from a residual and what a little of it does.
+
+What turns first-order waves of every rate omega (rad/s) by a phase of c(omega) (rad) a unit, and does nothing else, makes
+X exp(i c d) of a linear platform's motion X, and i c X is its slope where there is none of it. So one look tells of every d:
+
+    motion changes by (exp(i c d) - 1) / (i c) times its slope
+
+A fit that follows slopes does not cross a phase of half a wave: it ends on the wrong side of it, and bends what else is free.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from calibration.discovery.effects.peaks import likeliest
+from calibration.discovery.eliminated_least_squares import likelihoods
+from jaxhydro.environment import Environment
+
+if TYPE_CHECKING:
+    from calibration.discovery.linearisations import Look
+    from calibration.discovery.study import Study
+
+Turns = Callable[[np.ndarray, Environment], np.ndarray]
+
+FINENESS = 0.2  # rad: phase from one value that is looked at to the next
+NEAR = 0.5  # rad: what is no further is found by slopes
+
+
+class Afar(NamedTuple):
+    """Values by label where a refit begins, and what -2 ln L of the fitted tests would gain there, nothing else moved."""
+
+    values: Mapping[str, float]
+    gain: float
+
+
+def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> Afar | None:
+    """The likeliest value of a parameter that turns waves by `turns` (rad a unit, of rates and the water), null where a look
+    is that has its direction's slopes; None where that is near the null, or promises nothing."""
+    (i,) = study.index([label])
+    about = study.model.about(label)
+    unit = study.value(label, look.place.x + study.directions[i]) - study.value(label, look.place.x)
+    waves = study.first_order
+    along = look.slopes[:, look.active.index(i)].reshape(-1, 2)[waves] @ [1, 1j] / unit
+    phase = turns(2 * math.pi * study.frequency[waves], study.model.environment)
+    weight = (study.share * study.used[study.row_series])[::2][waves]
+    motion = float(weight @ np.abs(along / phase) ** 2)
+    if motion == 0:
+        return None
+    usual = math.sqrt(float(weight @ np.abs(along) ** 2) / motion)  # rad a unit
+    tried = np.arange(about.lower, about.upper, FINENESS / usual)
+
+    def left(value: float) -> float:
+        residual = look.residual.reshape(-1, 2).copy()
+        change = along * np.expm1(1j * phase * value) / (1j * phase)
+        residual[waves] += np.stack([change.real, change.imag], axis=1)
+        return float(likelihoods(study, residual.ravel())[study.used].sum())
+
+    gain = left(0.0) - np.array([left(value) for value in tried])
+    best = likeliest(gain)[:1]
+    far = best[np.abs(tried[best]) * usual > NEAR]
+    return Afar({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None

@@ -1,0 +1,186 @@
+"""The latent force: what would have to act on the model, beside all that it has, for it to follow every record.
+
+The residual r, measured less simulated, tapered at its ends, is taken through the model's own equation of motion: where that is
+linear, r = H F, r is divided by H. Where it is not, its accelerations a along the path that the record took and along the
+simulated one y are subtracted from each other, which is what an H about a mean motion would approximate:
+
+    F = M (d2r/dt2 - a(y + r) + a(y)),  M with the added mass at rest.
+
+What noise makes of it grows with the square of the frequency and is filtered out by the gain g = max(0, 1 - 3 N / P), P the
+periodogram of F over neighbouring lines and N that of |1 / H| times the noise: the Wiener deconvolution of Press et al. 1992,
+Numerical Recipes in C, section 13.3, eqs. 13.3.3 and 13.3.6, g = |S|^2 / (|S|^2 + |N|^2), with more than N taken off, as the
+periodogram of noise alone scatters. A gain found from r, not from F, would let through what the tapering of r does.
+
+What is below the noise, or faster than `highest`, is not reconstructed; the ends are left out. Loads' memories stay at rest,
+motions that were not measured too, and sensors are taken to read the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
+
+from calibration.discovery.diagnosis import LatentForce
+from calibration.discovery.gather import highest_of
+from calibration.discovery.latent_force.describe_force import described
+from calibration.discovery.latent_force.force_law import law_of
+from calibration.discovery.latent_force.recovered_force import Force, Moved, filtered
+from calibration.result import Calibration
+from jaxhydro.dynamics.model import Model, State
+from jaxhydro.dynamics.statics import equilibrium, linearised
+from jaxhydro.environment import DOFS
+from jaxhydro.waves.sea import AbstractSea, StillWater
+
+if TYPE_CHECKING:
+    from calibration.discovery.greedy_search import Search
+
+LINES = 5  # of the periodogram that are averaged
+HARMONICS = 6.0  # times a decay's own frequency: what is faster moves the body little, and is not looked at
+OVER = 3.0  # times the noise, that is taken off it
+DAMPING = 0.03  # of critical
+TAPERED = 0.1  # of the record at each end, at most
+CHUNK = 512  # instants at a time
+
+
+def peak_of(values: np.ndarray) -> int:
+    """Cycles of what a series has most of."""
+    return max(int(np.abs(np.fft.rfft(values - values.mean())).argmax()), 1)
+
+
+def windows(residual: np.ndarray) -> tuple[np.ndarray, np.ndarray, slice]:
+    """Tapers (n,) of the residual and, where that one is 1, of the force, both over half a period of what the residual has most
+    of at each end; and what is well inside."""
+    n = len(residual)
+    ends = int(min(TAPERED * n, max(0.5 * n / peak_of(residual), LINES)))
+    ramp = 0.5 - 0.5 * np.cos(np.pi * (np.arange(ends) + 0.5) / ends)
+    first, second = (
+        np.concatenate([np.zeros(off), ramp, np.ones(n - 2 * ends - 2 * off), ramp[::-1], np.zeros(off)]) for off in (0, ends)
+    )
+    return first, second, slice(2 * ends, n - 2 * ends)
+
+
+def level_of(residual: np.ndarray, noise: float) -> float:
+    """Standard deviation of the noise: the sensor's, or what a residual has at its highest frequencies, the larger."""
+    window = np.hanning(len(residual))
+    power = np.abs(np.fft.rfft(residual * window)) ** 2 / (window**2).sum()
+    return max(noise, float(np.median(power[3 * len(power) // 4 :]) / np.log(2)) ** 0.5)  # lines of noise are exponential
+
+
+def gain_of(force: np.ndarray, taper: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
+    """The optimal filter's gain by Fourier line, of a force and the variance by line of the noise in it (the largest nearby, as
+    the taper mixes neighbours), and by how much the highest peak is above the noise, in power."""
+    level = maximum_filter1d(noise, LINES, mode="nearest") * float((taper**2).sum())
+    ratio = uniform_filter1d(np.abs(np.fft.rfft(force * taper)) ** 2 / level, LINES, mode="nearest")
+    return np.clip(1 - OVER / np.maximum(ratio, 1e-300), 0.0, None), float(ratio.max())
+
+
+@eqx.filter_jit
+def _accelerations(
+    model: Model, sea: AbstractSea, time: Float[Array, " t"], position: Float[Array, "t 6"], rate: Float[Array, "t 6"]
+) -> Float[Array, "t 6"]:
+    memory = model.rest().memory
+
+    def of(time, position, rate):
+        velocity = model.body_velocity(position, rate)
+        moved = model.rate(time, State(position, velocity, memory), sea)
+        return jax.jvp(model.position_rate, (position, velocity), (rate, moved.velocity))[1]
+
+    return jax.vmap(of)(time, position, rate)
+
+
+def accelerations(model: Model, sea: AbstractSea, time: np.ndarray, position: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    """Second derivatives (t, 6) of surge ... yaw that the model has at a path's positions and rates (t, 6)."""
+    n = len(time)
+    at = np.minimum(np.arange(-(-n // CHUNK) * CHUNK), n - 1).reshape(-1, CHUNK)
+    found = [_accelerations(model, sea, *(jnp.asarray(one[some]) for one in (time, position, rate))) for some in at]
+    return np.concatenate(found)[:n]
+
+
+def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> dict[str, Force]:
+    """The latent force of every motion that a test measured; `base` (6,) is where its motions count from."""
+    n, names = len(test.time), [dof for dof in DOFS if dof in test.measured]
+    frequency = np.fft.rfftfreq(n, test.step)
+    omega = 2 * np.pi * frequency
+    rest = equilibrium(model)
+    mass, stiffness = (np.asarray(one) for one in linearised(model, rest))
+    position, rate = np.tile(np.asarray(rest), (n, 1)), np.zeros((n, 6))
+    more, faster, pushed = np.zeros((n, 6)), np.zeros((n, 6)), np.zeros((n, 6))
+    cut, fades, noise = {}, {}, np.zeros(6)
+    for name in names:
+        j, residual = DOFS.index(name), test.measured[name] - test.simulated[name]
+        cut[name], noise[j] = windows(residual), level_of(residual, test.noise[name])
+        own = HARMONICS * peak_of(test.measured[name]) / (n * test.step) if test.kind == "decay" else highest
+        fades[name] = 0.5 + 0.5 * np.cos(np.pi * np.clip(5 * (frequency / min(own, highest) - 0.8), 0.0, 1.0))
+        lines = fades[name] * np.fft.rfft(residual * cut[name][0])
+        more[:, j], faster[:, j], pushed[:, j] = (np.fft.irfft(lines * (1j * omega) ** k, n) for k in range(3))
+        position[:, j] = base[j] + test.simulated[name]
+        rate[:, j] = CubicSpline(test.time, test.simulated[name])(test.time, 1)
+    there, here = (accelerations(model, test.sea, test.time, position + k * more, rate + k * faster) for k in (1, 0))
+    force = (pushed - there + here) @ mass.T
+    path, speed = position + more - np.asarray(rest), rate + faster
+    # what noise in the residual makes of the force, line by line: DAMPING stands for a damping that it is not sensitive to
+    impedance = (stiffness - omega[:, None, None] ** 2 * mass) ** 2 + (2 * DAMPING * omega[:, None, None] ** 2 * mass) ** 2
+    found = {}
+    for name in names:
+        j, (_, taper, inside) = DOFS.index(name), cut[name]
+        through = impedance[:, j] @ noise**2
+        gain, peak = gain_of(force[:, j], taper, through)
+        gain = gain * fades[name]
+        left = float(np.sqrt(2 * (gain**2 * through).sum() / n))
+        found[name] = Force(
+            test, name, filtered(force[:, j] * taper, gain), path[:, j], speed[:, j], np.gradient(speed[:, j], test.step),
+            (position[:, j] - np.asarray(rest)[j], rate[:, j]), gain, taper, inside, left, peak,
+        )  # fmt: skip
+    return found
+
+
+def latent_forces(
+    model: Model, tests: Sequence[Moved], motions: Sequence[str], from_rest: bool
+) -> tuple[LatentForce, ...]:
+    """The latent force by motion, described, with the law of few terms that tests which were not fitted follow, too. Motions
+    count from the static equilibrium (`from_rest`) or from the reference position."""
+    base, highest = np.asarray(equilibrium(model)) * from_rest, highest_of(model)
+    every = [forces_of(model, test, base, highest) for test in tests]
+    found = []
+    for motion in motions:
+        mine = [forces[motion] for forces in every if motion in forces]
+        if any(one.visible for one in mine):
+            found.append(described(motion, mine, law_of(motion, mine)))
+    return tuple(sorted(found, key=lambda one: DOFS.index(one.motion)))
+
+
+def latent_of(search: Search, fitted: Calibration) -> tuple[LatentForce, ...]:
+    """Of a diagnosis's last model. See `latent_forces`."""
+    from_rest = search.campaign.manifest.zero is not None
+    return latent_forces(fitted.model, list(_moved(search, fitted)), search.posed.motions, from_rest)
+
+
+def _moved(search: Search, fitted: Calibration) -> Iterator[Moved]:
+    """Tests on even clocks: in waves on that which their sea was prepared for."""
+    seas = {name: sea for sea in search.study.seas for name in sea.tests}
+    records = {record.id: record for record in search.campaign.records}
+    for test in fitted.tests:
+        step, first, last = float(np.median(np.diff(test.time))), float(test.time[0]), float(test.time[-1])
+        wave, sea, record = None, seas.get(test.id), records[test.id]
+        water: AbstractSea = StillWater()
+        time = np.linspace(first, last, round((last - first) / step) + 1)
+        if sea is not None:
+            begin, tick = float(sea.times[0]), float(sea.step)
+            stride = max(1, round(step / tick))
+            ticks = np.arange(np.ceil((first - begin) / tick - 1e-6), np.floor((last - begin) / tick + 1e-6) + 1, stride)
+            water, time = sea.sea, begin + tick * ticks
+            wave = None if record.wave is None else np.interp(time, record.time, record.wave)
+        both = [
+            {one.channel: CubicSpline(test.time, values)(time) for one, values in rows}
+            for rows in ([(s, s.measured) for s in test.series], [(s, s.simulated) for s in test.series])
+        ]
+        noise = {one.channel: one.noise for one in test.series}
+        yield Moved(test.id, test.use, test.kind, time, both[0], both[1], noise, water, wave)

@@ -1,0 +1,76 @@
+"""The residual taken apart: which motion, which test, which frequencies, how much above the noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calibration.campaign.manifest import WAVE
+from calibration.discovery.diagnosis import Finding
+from calibration.formatting import number
+
+if TYPE_CHECKING:
+    from calibration.discovery.acceptance import State
+    from calibration.discovery.greedy_search import Search
+
+QUIET = 1.3  # rms over noise below which nothing is said
+
+
+def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
+    """Of every motion that the tests are about, what is left."""
+    study = search.study
+    noise = np.array([[one.noise] for one in study.series])
+    mean_square, dof = study.mean_squares(state.residual) * study.floor**2 / noise**2, study.dof
+    found = []
+    for one, squares, freedom in zip(study.series, mean_square, dof):
+        if one.channel not in search.posed.motions or not freedom.sum():
+            continue
+        ratio = math.sqrt(float((squares * freedom).sum() / freedom.sum()))
+        # noise is in all bands, what is above it in those that are looked at
+        above = max(ratio**2 - 1, 0.0) * float(freedom.sum()) / one.samples
+        rms = one.noise * math.sqrt(above + 1)
+        bands = tuple(
+            (float(a), float(b), float(math.sqrt(s))) for a, b, s, f in zip(one.low, one.high, squares, freedom) if f > 0
+        )
+        said = _words(ratio, rms / one.noise, bands)
+        found.append(Finding(one.test, one.use, one.channel, rms, one.noise, rms / one.spread, bands, said))
+    return tuple(found)
+
+
+def _words(within: float, over: float, bands: Sequence[tuple[float, float, float]]) -> str:
+    """`within` the bands that are looked at, and `over` all: rms over noise."""
+    if within < QUIET:
+        return "at the noise"
+    worst = max(bands, key=lambda b: b[2])
+    where = "in the mean" if worst[0] == 0 else f"from {worst[0]:.3g} to {worst[1]:.3g} Hz"
+    return f"{number(over, 2)} times the noise, most of it {where}"
+
+
+def signature(search: Search, before: State, after: State) -> tuple[float, str]:
+    """Share of the error's energy above the floor that is left in what the tests are about, every motion over its own, and what
+    is known of it."""
+    study = search.study
+    told = study.main & np.array([one.channel in search.posed.motions for one in study.series])
+    spread = np.array([one.spread for one in study.series])
+    total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
+    share = left / total if total > 0 else 0.0
+    if not (after.left.squares.sum(axis=1) > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
+        fitted = [record for record in search.campaign.records if record.use == "fit"]
+        declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
+        return share, f"white at the {'declared noise level' if declared else 'level of the noise, which was estimated'}"
+    by_motion: dict[tuple[str, str], float] = {}
+    for one, relative in zip(study.series, np.where(told, after.left.error / spread, 0.0)):
+        key = (one.channel, "decays" if one.kind == "decay" else "waves")
+        by_motion[key] = max(by_motion.get(key, 0.0), float(relative))
+    rows = sorted(by_motion.items(), key=lambda item: -item[1])[:3]
+    said = ", ".join(
+        f"{channel} in {kind} ({100 * value:.0f} % of the motion)" for (channel, kind), value in rows if value > 0.005
+    )
+    i = int(np.argmax(np.where(told, after.left.error / spread, 0.0)))
+    one = study.series[i]
+    k = int(np.argmax((study.mean_squares(after.residual)[i] - 1) * one.dof * one.floor**2))
+    where = f"largest in {one.channel} of the test {one.test}, {one.low[k]:.3g} to {one.high[k]:.3g} Hz"
+    return share, f"{said or 'small in every motion'}; {where}"

@@ -1,0 +1,176 @@
+"""From a campaign to a study: which motions, which candidates, which nuisances, every parameter with its scale."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import IN_WAVES
+from calibration.discovery.effects.candidates import Candidate, sought, with_candidates, with_drag
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.listed import scales_of
+from calibration.discovery.effects.nearly_known import PRETENSION, STIFFNESS
+from calibration.discovery.gather import study_of
+from calibration.discovery.linearisations import Prior
+from calibration.discovery.study import Study
+from calibration.fitting.decay_fit import labels_of, space_of
+from calibration.parameters.space import VAGUE, Free, ParameterSpace
+from calibration.parameters.transforms import LogInterval, Scaled
+from calibration.residuals.measured_seas import Options, moving_channels, sea_step, with_diffraction
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import equilibrium, linearised
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem
+
+WIDTH = 32  # directions at a time
+WIDE = 30.0  # what a candidate's coordinate may be, in noticeable units
+OF_MASS = 1.0  # by which mass properties may be off, in noticeable units: those of `nearly_known`
+TRIM = 3.0  # ... draught and trim, in noticeable units
+ENDS = 0.7
+# by which seas may move a coefficient from where decays, or the platform file, have it, in its logarithm: a standard deviation
+# of a prior that is steep beyond three. Drag changes with a sea; linear damping does not, and stands for nothing else
+ANCHORED, ANCHORED_DAMPING = 0.75, 0.5
+
+
+class Posed(NamedTuple):
+    """A study, its candidates, what is free in the declared model, what is only nearly known, and the priors of all."""
+
+    study: Study
+    candidates: tuple[Candidate, ...]
+    declared: Model
+    base: tuple[str, ...]
+    nuisances: tuple[str, ...]
+    prior: Prior
+    motions: tuple[str, ...]
+
+
+def motions_of(campaign: Campaign) -> dict[str, float]:
+    """The motions that the tests are about, and their largest standard deviation in one test (m, rad)."""
+    found: dict[str, float] = {}
+    for record in campaign.records:
+        if record.use == "ignore":
+            continue
+        if record.kind == "decay":
+            names = [str(record.degree_of_freedom)]
+        elif record.kind in IN_WAVES:
+            names = moving_channels({k: record.values[k] for k in DOFS if k in record.values})
+        else:
+            continue
+        for name in names:
+            found[name] = max(found.get(name, 0.0), float(np.std(record.values[name])))
+    return {dof: found[dof] for dof in DOFS if dof in found}
+
+
+def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), width: int = WIDTH) -> Posed:
+    """Everything that a diagnosis needs. Raises InputError where a campaign has nothing to diagnose."""
+    source = str(campaign.folder / "campaign.yaml")
+    motions = motions_of(campaign)
+    used = [r for r in campaign.records if r.use == "fit" and (r.kind == "decay" or r.kind in IN_WAVES)]
+    if not used:
+        raise InputError(source, [Problem("tests", "at least one decay or test in waves marked `use: fit`", "none")])
+    waves = [r for r in campaign.records if r.kind in IN_WAVES and r.use != "ignore"]
+    declared = with_diffraction(campaign.model, options)
+    labels = labels_of(campaign, declared, sorted(motions), None)
+    mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))
+    variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
+    step = sea_step(declared, options) if waves else 0.0
+    candidates, scaled, units = catalogue(declared, scales_of(mass, stiffness, motions), bool(waves), variance, step)
+    for own in extra:
+        if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
+            raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
+        if own.dof is not None and own.dof not in DOFS:
+            raise ValueError(f"{own.name}: a motion is one of {', '.join(DOFS)}, or None")
+        if unknown := set(own.sizes) - set(own.load.values):
+            raise ValueError(
+                f"{own.name}: amplitudes are labels of its load's values, {', '.join(own.load.values)}; found "
+                f"{', '.join(sorted(unknown))}"
+            )
+        for label, size in own.sizes.items():
+            null = float(own.load.values[label])
+            scaled[label], units[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)
+    candidates = [*candidates, *extra]
+    # what the platform file has is fitted, not looked for
+    taken = set(declared.values) - (sought(declared) - set(labels))
+    candidates = [one for one in candidates if not set(one.amplitudes) & taken]
+    scaled = {label: one for label, one in scaled.items() if label not in taken}
+    base_space = space_of(campaign, labels, declared)
+    nuisances: dict[str, tuple[dict[str, float], float]] = {}  # name -> parameters and how they go together, deviation
+    free: list[Free] = [*base_space.free]
+    for name in next(one.amplitudes for one in candidates if one.effect == "mass_properties"):
+        nuisances[name] = ({name: 1.0}, OF_MASS)
+    # draught and trim are as the platform was ballasted, sensors zeroed afloat or not
+    for dof in ("heave", "roll", "pitch"):
+        if dof in motions and (dof == "heave" or len(motions) > 1):
+            nuisances[f"static_offset.{dof}.force"] = ({f"static_offset.{dof}.force": 1.0}, TRIM)
+    lines = sorted({label.rsplit(".", 1)[0] for label in declared.values if label.startswith("mooring.line")})
+    if lines and not any(label.startswith("mooring.") for label in labels):
+        values = {label: float(value) for label, value in declared.values.items() if label.startswith("mooring.")}
+        for name in values:
+            value = values[name]
+            free.append(Free(name, value, LogInterval(0.5 * value, 2 * value), 0.0, math.inf))
+        tension = {line: _pretension(declared, line) for line in lines}
+        stretch = [tension[line] / values[f"{line}.stiffness"] / values[f"{line}.unstretched_length"] for line in lines]
+        nuisances["mooring_stiffness"] = ({f"{line}.stiffness": 1.0 for line in lines}, STIFFNESS)
+        share = PRETENSION * float(np.mean(stretch))
+        nuisances["mooring_pretension"] = ({f"{line}.unstretched_length": 1.0 for line in lines}, max(share, 1e-5))
+    model = with_drag(declared)
+    ends = bool(waves) and bool((np.asarray(declared.hull.ends.radius) == 0).any()) if declared.hull.ends.label else False
+    if ends:
+        free.append(Free("covered_ends.share", 0.0, Scaled(0.0, 1.0), 0.0, math.inf))
+        nuisances["covered_ends.share"] = ({"covered_ends.share": 1.0}, ENDS)
+    model = with_candidates(model, candidates, ["covered_ends.share"] if ends else [])
+    free += list(scaled.values())
+    space = ParameterSpace(tuple(free))
+    start = {one.label: one.start for one in space.free}
+    model = model.at_values(start)
+    names, rows = [], []
+    place = {label: i for i, label in enumerate(space.labels)}
+    prior_mean, prior_width = [], []
+    x0 = np.asarray(space.start)
+
+    def direction(name: str, parts: dict[str, float], mean: float, deviation: float) -> None:
+        row = np.zeros(len(place))
+        for label, weight in parts.items():
+            row[place[label]] = weight * units.get(label, 1.0)
+        names.append(name)
+        rows.append(row)
+        prior_mean.append(mean)
+        prior_width.append(deviation)
+
+    for one in base_space.free:
+        known = math.isfinite(one.prior_deviation)
+        mean = one.prior_mean - float(x0[place[one.label]]) if known else 0.0
+        deviation = one.prior_deviation if known else width_of(one.label, declared, bool(waves))
+        direction(one.label, {one.label: 1.0}, mean, deviation)
+    for name, (parts, deviation) in nuisances.items():
+        direction(name, parts, 0.0, deviation)
+    kept = {"mass_properties"} if campaign.manifest.zero is not None else {"mass_properties", "static_offset"}
+    candidates = [one for one in candidates if not set(one.amplitudes) <= set(nuisances) or one.effect in kept]
+    for candidate in candidates:
+        for label in candidate.amplitudes:
+            if label not in names:
+                direction(label, {label: 1.0}, 0.0, WIDE)
+        for label in candidate.shapes:
+            shaped = isinstance(scaled[label].transform, LogInterval)
+            direction(label, {label: 1.0}, 0.0, 0.7 if shaped else 3.0)
+    study = study_of(model, space, names, np.array(rows), campaign, options, width)
+    prior = Prior(np.array(prior_mean), np.array(prior_width))
+    return Posed(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions))
+
+
+def width_of(label: str, declared: Model, waves: bool) -> float:
+    """How well a coefficient is known before its records, one standard deviation of its logarithm."""
+    if not waves or float(declared.values[label]) == 0:
+        return VAGUE
+    return ANCHORED_DAMPING if label.startswith("linear_damping.") else ANCHORED
+
+
+def _pretension(model: Model, line: str) -> float:
+    """Tension (N) of a mooring line in the reference position."""
+    from jaxhydro.loads import MooringLines
+
+    load = next(load for load in model.loads if isinstance(load, MooringLines))
+    tension, _ = load.tension(np.zeros(6), np.eye(3))  # type: ignore[arg-type]
+    return float(np.asarray(tension)[int(line.removeprefix("mooring.line")) - 1])

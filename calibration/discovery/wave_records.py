@@ -1,0 +1,102 @@
+"""What the wave records themselves say before any model: whether they have the second order that waves ought to have."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.runs import Run
+from calibration.residuals.measured_seas import Options, Seas, options_of, sea_of
+from jaxhydro.environment import Environment
+from jaxhydro.waves.irregular_sea import IrregularSea
+
+PRESENT = 0.4  # of what theory has: a record with less has none
+AROUND = 9  # lines that tell how loud what theory does not bind is
+SEEN = 3.0  # times the noise in the band, that theory's part has to be, to say anything
+ABOVE = 1.35  # of the cutoff: how far above it sums of frequencies are looked for
+CUT = 5.0  # of -2 ln L, by which differences up to a frequency follow records better than all of them where that is tried
+
+
+def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Options, tuple[str, ...]]:
+    """Sea options by which the wave records of a campaign are to be read, and why, in words.
+
+    Theory's sums and differences of a record's first-order waves are compared with what the record has at those frequencies
+    where there are no first-order waves: a numerical tank's record may hold differences only, or be linear.
+    """
+    options = options_of(campaign) if options is None else options
+    if not any(r.kind in IN_WAVES and r.use != "ignore" for r in campaign.records):
+        return options, ()
+    from calibration.campaign.runs import runs
+
+    environment = campaign.model.environment
+    found = [_shares(run, environment, options) for run in runs(campaign)]
+    kinds, words = list(options.kinds), []
+    for i, kind in enumerate(("sum", "difference")):
+        seen = [share for one in found if (share := one[i]) is not None]
+        if seen and kind in kinds and float(np.median(seen)) < PRESENT:
+            kinds.remove(kind)  # type: ignore[arg-type]
+            percent = 100 * max(0.0, float(np.median(seen)))
+            words.append(f"the wave records have {percent:.0f} % of the second order at {kind}s of frequencies "
+                         "that waves of their height bind: it is left out of the seas")  # fmt: skip
+    if not kinds:
+        return replace(options, order=1), tuple(words)
+    return replace(options, kinds=tuple(kinds)), tuple(words)  # type: ignore[arg-type]
+
+
+def by_a_program(options: Options) -> bool:
+    """Whether the records are of a program rather than a basin: water that binds differences of frequencies binds sums, too."""
+    return options.order == 2 and options.kinds == ("difference",)
+
+
+def highest_difference(recorded: Seas) -> float | None:
+    """The frequency (Hz) that differences may be cut off at, by the records; None: they seem to have all of them.
+
+    Of Gaussian lines X, theory's part T, and a level s^2 that is taken from those around, -2 ln L is |X - T|^2 / s^2 where T is
+    there and |X|^2 / s^2 where not: the cut is where their sum is least. First-order waves hide what is not far below them, so
+    that a record may suggest one, and motions tell whether it is there.
+    """
+    found = [_gains(run, made.sea) for run, made in recorded]
+    grid = np.unique(np.concatenate([frequency for frequency, _ in found]))
+    gain = np.sum([np.interp(grid, frequency, np.cumsum(each)) for frequency, each in found], axis=0)
+    best = int(np.argmax(gain))
+    return float(grid[best]) if gain[best] - gain[-1] > CUT else None
+
+
+def _gains(run: Run, made: IrregularSea) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (Hz) of a sea's first-order band, and how much better (-2 ln L) a record is followed with its differences
+    there than without."""
+    second = made.gauge(run.time, run.position, order=2)
+    taper = np.hanning(len(second))
+    frequency = np.fft.rfftfreq(len(second), run.step)
+    first, last = np.asarray(made.components.omega)[[0, -1]] / (2 * math.pi)
+    inside = (frequency > first) & (frequency < last)
+    measured, theory = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (run.wave, second))
+    with_it, without = np.abs(measured - theory) ** 2, np.abs(measured) ** 2
+    # by their logarithms, lines may rise steeply: of Gaussian ones that mean is lower by Euler's constant
+    logarithms = (np.log(np.maximum(each, 1e-300)) for each in (with_it, without))
+    level = np.exp(np.euler_gamma + np.minimum(*(uniform_filter1d(each, AROUND, mode="nearest") for each in logarithms)))
+    # of neighbouring lines a taper leaves two of three
+    return frequency[inside], (without - with_it) / level * 2 / 3
+
+
+def _shares(run: Run, environment: Environment, options: Options) -> tuple[float | None, float | None]:
+    """How much of theory's second-order elevation a record has above and below its first-order band; None: not to be seen."""
+    made = sea_of(run, environment, options).sea
+    first = made.gauge(run.time, run.position, order=1)
+    second = made.gauge(run.time, run.position) - first
+    left = run.wave - run.wave.mean() - first
+    taper = np.hanning(len(left))
+    frequency = np.fft.rfftfreq(len(left), run.step)
+    measured, theory = (np.fft.rfft(taper * (x - x.mean())) for x in (left, second))
+    noise = max(float(r.noise.get("wave", 0.0)) for r in run.records)
+    found: list[float | None] = []
+    for low, high in ((1.03 * options.cutoff, ABOVE * options.cutoff), (0.15 * options.low, 0.95 * options.low)):
+        inside = (frequency > low) & (frequency < high)
+        power = float((np.abs(theory[inside]) ** 2).sum())
+        level = noise**2 * float((taper**2).sum()) * inside.sum()
+        share = float((np.conj(theory[inside]) * measured[inside]).sum().real) / max(power, 1e-300)
+        found.append(share if power > SEEN**2 * level and inside.sum() > 8 else None)
+    return found[0], found[1]

@@ -1,0 +1,190 @@
+"""Coefficients that depend on the sea: sea state by sea state, and as laws, of which seas held out choose one."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, get_args
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.fitting.decay_fit import Progress
+from calibration.fitting.law_parameters import LAWS, Law, base_of, of_law
+from calibration.fitting.sea_fit import calibrate_in_waves
+from calibration.identifiability.directions import Identifiability
+from calibration.residuals.measured_seas import Options, Seas, options_of, seas_of
+from calibration.residuals.stretches import sea_state
+from calibration.result import Calibration, error_of_energies
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.interrupts import stopping
+from jaxhydro.loads.keulegan_carpenter_drag import log_ratio
+from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference_of
+from jaxhydro.platform.body import KeuleganCarpenter
+from jaxhydro.platform.drag_laws import drag_laws_of, parameter_label, surface_number
+from jaxhydro.waves.sea_state import SeaState
+
+CLOSE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
+
+
+@dataclass(frozen=True, eq=False)
+class LawFit:
+    """A law's calibration, and the root mean square of ln(simulated / measured energy) in the bands of the fitted tests and of
+    tests that it was not fitted to."""
+
+    name: str
+    calibration: Calibration
+    fitted: float
+    held_out: float
+
+    def added(self) -> dict[str, float]:
+        """Label -> value of what the law adds to coefficients."""
+        return {label: one.value for label, one in self.calibration.parameters.items() if of_law(label)}
+
+    def coefficient(self, label: str, state: SeaState) -> tuple[float, float]:
+        """A coefficient in a sea state, and the standard deviation of its logarithm.
+
+        Of a power of the Keulegan-Carpenter number it is that for the waves' own motion at the surface, 2 a = Hs; of drag in
+        which slow motion is apart, that of fast motion.
+        """
+        model, known = self.calibration.model, self.calibration.identifiability
+        value = float(coefficients(model.in_sea(state).loads)[label])
+        assert known is not None
+        reference = reference_of(model.loads)
+        logs = {} if reference is None else {
+            exponent_label(label, over): math.log(now / then) for over, now, then in zip(state._fields, state, reference)
+        }  # fmt: skip
+        law = drag_laws_of(model).get(label)
+        if isinstance(law, KeuleganCarpenter):
+            ratio = float(log_ratio(surface_number(model.hull, label, state.significant_height) ** 2, law.reference))
+            value *= math.exp(law.exponent * ratio)
+            logs[parameter_label(label, "exponent")] = ratio
+        return value, _deviation(known, label, logs)
+
+
+def _deviation(known: Identifiability, label: str, logs: Mapping[str, float]) -> float:
+    """Standard deviation of ln c0 + sum of exponents times logarithms."""
+    parameters = known.parameters
+    row = np.zeros(len(parameters.labels))
+    for i, name in enumerate(parameters.labels):
+        if name == label:
+            row[i] = parameters.slope[i] / parameters.value[i]
+        elif name in logs:
+            row[i] = parameters.slope[i] * logs[name]
+    return float(np.sqrt(max(row @ known.covariance @ row, 0.0)))
+
+
+@dataclass(frozen=True, eq=False)
+class OneSea:
+    """A test in irregular waves: what it is used for, its measured sea state, and the calibration to it alone."""
+
+    id: str
+    use: str
+    state: SeaState
+    calibration: Calibration
+
+
+@dataclass(frozen=True, eq=False)
+class SeaLaws:
+    """Laws in the order asked for, calibrations sea by sea, and the tests that judged: held out, or left out one by one. Where
+    the user stopped it, not `finished`, they are those that had been made."""
+
+    laws: tuple[LawFit, ...]
+    seas: tuple[OneSea, ...]
+    judged_by: tuple[str, ...]
+    left_out: bool
+    finished: bool = True
+
+    @property
+    def chosen(self) -> LawFit:
+        """The law with the least held-out error; an earlier one that is as good to 2 % is preferred."""
+        least = min(law.held_out for law in self.laws)
+        return next(law for law in self.laws if law.held_out <= (1 + CLOSE) * least)
+
+    def labels(self) -> list[str]:
+        """The coefficients that any of the laws lets depend on the sea state or the motion."""
+        return list(dict.fromkeys(base_of(label) for law in self.laws for label in law.added()))
+
+
+def choose_law(
+    campaign: Campaign,
+    *,
+    laws: Sequence[Law] = get_args(Law),
+    free: Sequence[str] | None = None,
+    start: dict[str, float] | None = None,
+    options: Options | None = None,
+    progress: Callable[[Progress], None] | None = None,
+) -> SeaLaws:
+    """Drag and damping coefficients sea state by sea state, as constants, as powers of the sea state, and drag as a power of
+    the Keulegan-Carpenter number or apart for slow and fast motion: `LawFit` of each.
+
+    Every law is fitted to the tests in irregular waves marked `fit` and judged by those marked `holdout`; where none is, by the
+    fitted ones left out in turn. The energies in bands are the objective. Arguments are those of `calibrate_in_waves`; the laws
+    start where the constants ended, whose values also are the middle of the priors sea by sea. Raises InputError where there
+    are too few tests to judge, Interrupted where the user stops it before a law is fitted.
+    """
+    options = options_of(campaign) if options is None else options
+    source = str(campaign.folder / "campaign.yaml")
+    fitted, held = ([r.id for r in campaign.used(use) if r.kind == "irregular"] for use in ("fit", "holdout"))
+    if len(fitted) < (2 if held else 3):
+        expected = "two tests in irregular waves marked `fit` and one `holdout`, or three marked `fit`"
+        raise InputError(source, [Problem("tests", expected, f"{len(fitted)} and {len(held)}")])
+    made = seas_of(campaign, campaign.model.environment, options)
+    count = len(laws) * (1 if held else 1 + len(fitted)) + len(fitted) + len(held)
+    done = 0
+
+    def one(name: str, uses: Mapping[str, str], begin: dict[str, float] | None, law: str = "constant") -> Calibration:
+        nonlocal done
+        over, drag = LAWS[law]
+
+        def report(now: Progress) -> None:
+            if progress is not None:
+                stage = f"{done + 1} of {count}, {name}: {now.stage}"
+                progress(replace(now, stage=stage, fraction=(done + now.fraction) / count))
+
+        used, seas = with_uses(campaign, made, uses)
+        found = calibrate_in_waves(
+            used, free=free, start=begin, options=options, over=over, drag=drag, made=seas, progress=report
+        )
+        done += 1
+        return found
+
+    found: list[LawFit] = []
+    seas: list[OneSea] = []
+    finished = False
+    try:
+        for name in laws:
+            begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
+            whole = one(name, {}, begin, name)
+            if held:
+                judged = [error(whole, held)]
+            else:
+                judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
+            found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
+        values = {k: p.value for k, p in found[0].calibration.parameters.items() if not of_law(k)}
+        for id in [*fitted, *held]:
+            alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
+            record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)
+            state = sea_state(run, record, options.low, options.cutoff)
+            seas.append(OneSea(id, record.use, state, one(f"{id} alone", alone, values)))
+        finished = True
+    except KeyboardInterrupt:
+        stopping()
+        if not found:
+            raise
+    return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held, finished)
+
+
+def error(calibration: Calibration, tests: Sequence[str]) -> float:
+    """Root mean square of ln(simulated / measured energy) over the bands of tests."""
+    bands = [band for test in calibration.tests if test.id in tests for row in test.bands.values() for band in row.values()]
+    return error_of_energies(band.after for band in bands)
+
+
+def with_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:
+    """The campaign and its runs with tests used otherwise, id -> use; runs without a test left are left out."""
+
+    def changed(records: Sequence[Any]) -> tuple[Any, ...]:
+        return tuple(replace(record, use=uses.get(record.id, record.use)) for record in records)
+
+    runs = ((replace(run, records=tuple(r for r in changed(run.records) if r.use != "ignore")), sea) for run, sea in made)
+    return replace(campaign, records=changed(campaign.records)), tuple((run, sea) for run, sea in runs if run.records)

@@ -1,0 +1,76 @@
+"""Laws that a declared model's drag and damping coefficients are given, to be fitted with them: all begin at their null."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from calibration.residuals.measured_seas import Options, Seas
+from calibration.residuals.stretches import sea_state
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.loads.sea_state_law import exponent_label, is_exponent, split, with_exponents
+from jaxhydro.platform.body import HighPass, KeuleganCarpenter
+from jaxhydro.platform.drag_laws import DragLaw, coefficient_label, parameter_label, plain_drag, surface_number, with_drag_laws
+from jaxhydro.waves.sea_state import SeaState
+
+Over = Literal["significant_height", "peak_period"]
+Drag = Literal["keulegan_carpenter", "high_pass"]
+Law = Literal["constant", "significant_height", "peak_period", "both", "keulegan_carpenter", "high_pass"]
+
+PLAIN = 1.0  # standard deviation of the prior of an exponent about 0
+WINDOW = 60.0  # s, of a Keulegan-Carpenter number, where no motion has a natural period
+
+
+def of_law(label: str) -> bool:
+    """Whether a parameter is one that a law adds to a coefficient."""
+    return is_exponent(label) or coefficient_label(label) is not None
+
+
+def base_of(label: str) -> str:
+    """The coefficient whose law a parameter belongs to."""
+    return split(label)[0] if is_exponent(label) else coefficient_label(label) or label
+
+
+def reference_of(made: Seas, options: Options) -> SeaState:
+    """The geometric mean of the sea states of the tests that are fitted, to two digits."""
+    states = [sea_state(run, r, options.low, options.cutoff) for run, _ in made for r in run.records if r.use == "fit"]
+    return SeaState(*(float(f"{math.exp(value):.2g}") for value in np.log(states).mean(axis=0)))
+
+
+def with_laws(model: Model, labels: Sequence[str], over: Sequence[Over], reference: SeaState) -> Model:
+    """The model with powers of the sea state, of exponent 0, for some of its coefficients, where it has none of its own."""
+    exponents = {label: 0.0 for one in labels for kind in over if (label := exponent_label(one, kind)) not in model.values}
+    return replace(model, loads=with_exponents(model.loads, exponents, reference))
+
+
+def with_drag(model: Model, labels: Sequence[str], kind: Drag, state: SeaState, cutoff: float) -> tuple[Model, list[str]]:
+    """The model with a law in place of plain drag for those of `labels` that have it, and the labels of what is to be fitted.
+
+    "keulegan_carpenter": the exponent, 0; its reference is the number of the waves' own motion at the surface in a sea `state`,
+    to two digits, its window the longest natural period. "high_pass": the share of the coefficient that motion slower than the
+    `cutoff` (Hz) feels, 1.
+    """
+    plain = [label for label in plain_drag(model) if label in labels]
+    laws: dict[str, DragLaw] = {}
+    if kind == "keulegan_carpenter":
+        periods = natural_modes(model).period
+        finite = [float(f"{period:.2g}") for period in np.asarray(periods) if np.isfinite(period)]
+        for label in plain:
+            number = float(f"{surface_number(model.hull, label, state.significant_height):.2g}")
+            laws[label] = KeuleganCarpenter(law=kind, exponent=0.0, reference=number, window=max(finite, default=WINDOW))
+        return with_drag_laws(model, laws), [parameter_label(label, "exponent") for label in plain]
+    laws = {label: HighPass(law=kind, cutoff=cutoff, low_share=1.0) for label in plain}
+    return with_drag_laws(model, laws), [parameter_label(label, "low_share") for label in plain]
+
+
+LAWS: dict[str, tuple[tuple[Over, ...], Drag | None]] = {
+    "constant": ((), None),
+    "significant_height": (("significant_height",), None),
+    "peak_period": (("peak_period",), None),
+    "both": (("significant_height", "peak_period"), None),
+    "keulegan_carpenter": ((), "keulegan_carpenter"),
+    "high_pass": ((), "high_pass"),
+}

@@ -1,0 +1,166 @@
+"""Calibration in measured waves: free parameters fitted to the motions of tests in irregular and regular waves."""
+
+import math
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import get_args
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import IN_WAVES
+from calibration.fitting.decay_fit import Interrupted, Progress, labels_of, space_of
+from calibration.fitting.fit_conclusion import estimates, remarks
+from calibration.fitting.law_parameters import PLAIN, Drag, Over, of_law, reference_of, with_drag, with_laws
+from calibration.fitting.sea_descent import SeaFit
+from calibration.fitting.sea_remarks import sea_remarks
+from calibration.fitting.shooting_fit import ShootingFit
+from calibration.identifiability.directions import family
+from calibration.residuals.measured_seas import (
+    Options,
+    Seas,
+    SeaTest,
+    compare,
+    moving_channels,
+    options_of,
+    sea_step,
+    seas_of,
+    with_diffraction,
+)
+from calibration.residuals.sea_errors import in_bands
+from calibration.residuals.seas import Objective, SeaProblem, pose_in_waves
+from calibration.result import BandError, Calibration, TestFit
+from jaxhydro.choices import check
+from jaxhydro.dynamics.model import Model
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.interrupts import stopping
+from jaxhydro.loads.sea_state_law import is_exponent
+from jaxhydro.loads.sea_state_law import reference_of as law_reference
+
+
+def calibrate_in_waves(
+    campaign: Campaign,
+    *,
+    free: Sequence[str] | None = None,
+    progress: Callable[[Progress], None] | None = None,
+    start: dict[str, float] | None = None,
+    objective: Objective = "bands",
+    options: Options | None = None,
+    over: Sequence[Over] = (),
+    drag: Drag | None = None,
+    made: Seas | None = None,
+) -> Calibration:
+    """Fit the declared model's coefficients to the tests in waves marked `fit`, all together, in their measured waves.
+
+    `objective` "bands": the logarithms of simulated over measured energy in the low and the wave-frequency band of every motion
+    that matters, which a sensor's clock and the phase of slow drift do not touch; "spectrum": the same in narrow cells of these
+    bands, up to eight of each, so that where a motion resonates and how sharply counts; "motion": simulated less measured,
+    sample by sample, over the measured standard deviation; "both", bands and motion; "blocks": the motion in blocks of three of
+    the slowest natural periods, each from an initial state of its own (multiple shooting, see `shooting`), for long tests, over
+    which a natural period that is slightly wrong puts slow motions out of phase. Of regular waves always the motion. Every free
+    parameter has a prior, a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the model's
+    own error, which is estimated from the residuals: energies in a few bands do not determine many coefficients, and say so by
+    their deviations.
+
+    `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
+    `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of
+    exponents with a prior of 0 +- 1; every test is then simulated with the coefficients of its own measured sea state. `drag`:
+    free coefficients of plain drag become powers of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`; the prior of an
+    exponent is 0 +- 1), or have a share of their own in motion slower than the waves (`HighPassDrag`): see `laws.with_drag`.
+    `made` are the campaign's runs and seas (`seas_of`), where they are at hand.
+    Raises InputError where there is nothing to fit, Interrupted with what was reached.
+    """
+    begun = clock.monotonic()
+    check(objective=(objective, get_args(Objective)), drag=(drag, (*get_args(Drag), None)))
+    for one in over:
+        check(over=(one, get_args(Over)))
+    source = str(campaign.folder / "campaign.yaml")
+    options = options_of(campaign) if options is None else options
+    records = [record for record in campaign.used("fit") if record.kind in IN_WAVES]
+    if not records:
+        found = ", ".join(sorted({f"{r.kind} marked {r.use}" for r in campaign.records})) or "no tests"
+        raise InputError(source, [Problem("tests", "at least one test in waves marked `use: fit`", found)])
+    declared = with_diffraction(campaign.model, options)
+    made = seas_of(campaign, declared.environment, options) if made is None else made
+    moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
+    labels = list(labels_of(campaign, declared, moved, free))
+    if over:
+        damping = [label for label in labels if family(label) == "damping"]
+        declared = with_laws(declared, damping, over, law_reference(declared.loads) or reference_of(made, options))
+    added = [label for label in declared.values if is_exponent(label) and label not in labels]
+    if drag is not None:
+        state = reference_of(made, options)
+        declared, of_drag = with_drag(declared, labels, drag, state, options.low)
+        if not of_drag:
+            raise InputError(source, [Problem("calibrate.free", "a coefficient of plain drag", ", ".join(labels))])
+        added += of_drag
+    # what a law adds that is not asked for is left out
+    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not of_law(label)}
+    declared = declared.with_values(begin)
+    exponents = {label: (0.0, PLAIN) for label in added if declared.about(label).null == 0}
+    space = space_of(campaign, [*labels, *added], declared, exponents)
+
+    def report(stage: str, iteration: int, value: float, fraction: float) -> None:
+        if progress is not None:
+            progress(Progress(stage, iteration, value, fraction, "error"))
+
+    report("simulating the measured seas", 0, math.nan, 0.0)
+
+    def pose(model: Model) -> SeaProblem:
+        return pose_in_waves(
+            model, made, space, options, from_rest=campaign.manifest.zero is not None, scale=campaign.manifest.scale,
+            step=sea_step(declared, options), objective=objective,
+        )  # fmt: skip
+
+    fit = (ShootingFit if objective == "blocks" else SeaFit)(pose, declared, report)
+    try:
+        fit.run()
+    except KeyboardInterrupt:
+        stopping()
+        fit.converged = False
+        if not fit.iterations:
+            raise Interrupted(None) from None
+        raise Interrupted(_conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)) from None
+    return _conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)
+
+
+def _conclude(
+    campaign: Campaign, declared: Model, fit: SeaFit, options: Options, made: Seas, seconds: float
+) -> Calibration:
+    """Parameters with their deviations, and all tests in waves before and after."""
+    problem = fit.problem
+    model = problem.space.model(problem.model, fit.x)
+    uncertainty, known = fit.identifiability()
+    parameters = estimates(problem.space, problem.model, np.asarray(fit.x), uncertainty)
+    tests, warnings = tests_in_waves(campaign, declared, model, options, made)
+    notes = (*remarks(campaign, parameters, known, IN_WAVES), *sea_remarks(model, tests), *fit.notes, *warnings)
+    return Calibration(
+        campaign.manifest.name, model, parameters, tests, fit.converged, fit.iterations, seconds, tuple(fit.history),
+        notes, campaign.platform.name, known,
+    )  # fmt: skip
+
+
+def tests_in_waves(
+    campaign: Campaign, declared: Model, model: Model, options: Options, made: Seas
+) -> tuple[tuple[TestFit, ...], tuple[str, ...]]:
+    """All tests in waves with a calibrated model, and with that declared; and words of warning."""
+    after, before = (compare(campaign, one, options, made=made) for one in (model, declared))
+    tests = tuple(_test(*pair) for pair in zip(after.tests, before.tests, strict=True))
+    return tests, tuple(dict.fromkeys(before.notes + after.notes))
+
+
+def _test(after: SeaTest, before: SeaTest) -> TestFit:
+    """A test with both motions, the errors of its bands, and its motions that matter counting in J."""
+    counts = moving_channels({s.channel: s.measured for s in after.fit.series})
+    series = tuple(replace(s, scored=s.channel in counts) for s in after.fit.series)
+    start = {s.channel: s.simulated for s in before.fit.series}
+    bands = {}
+    if after.fit.kind == "irregular":
+        earlier = in_bands(before)
+        bands = {
+            name: {k: BandError(band.error, earlier[name][k].error, band.low, band.high) for k, band in row.items()}
+            for name, row in in_bands(after).items() if name in counts
+        }  # fmt: skip
+    return replace(after.fit, series=series, start=start, bands=bands)

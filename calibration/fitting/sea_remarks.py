@@ -1,0 +1,56 @@
+"""What a calibration in waves adds in words: constants of its laws, short tests, held-out ones that it does not suit."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from calibration.formatting import listed, number
+from calibration.result import TestFit, error_of_energies
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.platform.drag_laws import drag_laws_of
+
+FEW = 10.0  # natural periods: the energy of a random motion in fewer says little (its relative deviation is some 1/sqrt(n))
+WORSE = 1.1  # of the error before, from which it is said
+
+
+def sea_remarks(model: Model, tests: Sequence[TestFit]) -> tuple[str, ...]:
+    """Of a calibrated model and all tests in waves."""
+    return (*_laws(model), *_short(model, tests), *_held_out(tests))
+
+
+def _laws(model: Model) -> Iterator[str]:
+    """Constants of drag laws, without which a coefficient means nothing."""
+    for label, law in drag_laws_of(model).items():
+        constants = law.model_dump(include={"reference", "window", "cutoff"}, exclude_none=True)
+        units = {"reference": "", "window": " s", "cutoff": " Hz"}
+        said = ", ".join(f"{key} {number(value, 3)}{units[key]}" for key, value in constants.items())
+        if said:
+            yield f"{label}: drag law {law.law}, {said}"
+
+
+def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
+    modes = natural_modes(model)
+    alike: dict[str, list[str]] = {}
+    for test in tests:
+        if test.kind != "irregular" or test.use != "fit":
+            continue
+        length = float(test.time[-1] - test.time[0])
+        periods = {channel: modes.of(channel) for channel in test.bands}
+        few = [f"{length / period:.1f} of {channel}" for channel, period in periods.items()
+               if math.isfinite(period) and length < FEW * period]  # fmt: skip
+        if few:
+            alike.setdefault(f"{length:.0f} s are few natural periods ({', '.join(few)})", []).append(test.id)
+    for short, ids in alike.items():
+        yield (f"{listed(ids)}: {short}: how much energy a slow motion has in them is to a good part chance, and stated "
+               "deviations are too small")  # fmt: skip
+
+
+def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:
+    for test in tests:
+        pairs = [(one.before, one.after) for row in test.bands.values() for one in row.values()]
+        if test.use != "holdout" or not pairs:
+            continue
+        before, after = map(error_of_energies, zip(*pairs, strict=True))
+        if after > WORSE * before:
+            yield (f"held out, {test.id} is followed worse than by the declared model: error of ln(energy) {number(before, 2)} "
+                   f"before, {number(after, 2)} after")  # fmt: skip

@@ -1,0 +1,172 @@
+"""What all searches share: a budget, the task that counts what is spent of it, and the history that comes out."""
+
+import abc
+import time as clock
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, fields
+from typing import ClassVar, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign.records import Record
+from calibration.fitting.decay_fit import Progress, scored
+from calibration.global_search.objective import coordinates, objectives
+from calibration.residuals.decays import Problem
+from jaxhydro.interrupts import stop_if_asked
+
+BAD = 1e6  # J of a simulation that is no number
+TOGETHER = 36  # points simulated at once at most: beyond, a point costs no less, and the arrays leave the cache
+
+
+class Budget(NamedTuple):
+    """When a search ends: after so many CPU seconds of this process, compilation apart; after so many simulations of a record,
+    a part of one counting as that part; or where J comes down to `objective`. Whatever is first."""
+
+    seconds: float = 60.0
+    simulations: float = np.inf
+    objective: float = 0.0
+
+
+class History(NamedTuple):
+    """The least J so far, whenever it became less: against simulations and CPU seconds. Its last entry is where it ended."""
+
+    simulations: np.ndarray
+    seconds: np.ndarray
+    objective: np.ndarray
+
+    def until(self, objective: float) -> tuple[float, float] | None:
+        """Simulations and CPU seconds when J came down to `objective`; None if it never did."""
+        there = np.flatnonzero(self.objective <= objective)
+        return (float(self.simulations[there[0]]), float(self.seconds[there[0]])) if len(there) else None
+
+
+class Stop(Exception):
+    """The budget is spent, or the objective reached. Raised by a task, not to be caught by a method."""
+
+
+class Task:
+    """J over points of the unit cube, until the budget is spent; the best point and the history on the way to it.
+
+    `own` are the records' releases that points are judged with, see `objectives`; None for a search that fits them.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        records: Sequence[Record],
+        own,
+        budget: Budget,
+        report: Callable[[Progress], None] = lambda _: None,
+    ) -> None:
+        self.problem, self.records, self.own, self.budget, self.report = problem, records, own, budget, report
+        counts, spread = scored(records, problem.data)
+        self.weight = jnp.asarray(np.where(counts, 1 / spread, 0.0))
+        self.begins, self.ends = np.asarray(problem.data.time[:, 0]), np.array([record.time[-1] for record in records])
+        self.size, self.batch = len(problem.space.free), 1
+        self.simulations, self.best, self.x = 0.0, np.inf, np.full(self.size, np.nan)
+        self.stage, self.calls = "", 0
+        self._compiled: set[int] = set()
+        self._marks: list[tuple[float, float, float]] = []
+        self._begun = clock.process_time()
+
+    def begin(self) -> None:
+        """Its time counts from now."""
+        self._begun = clock.process_time()
+
+    @property
+    def seconds(self) -> float:
+        """CPU time (s) since it began, less what was spent `apart`."""
+        return clock.process_time() - self._begun
+
+    @contextmanager
+    def apart(self) -> Iterator[None]:
+        """What is done within does not count as time."""
+        before = clock.process_time()
+        try:
+            yield
+        finally:
+            self._begun += clock.process_time() - before
+
+    def part(self, until: np.ndarray) -> float:
+        """The share of the records' time that lies before `until` (s, by record)."""
+        return float(np.sum(np.asarray(until) - self.begins) / np.sum(self.ends - self.begins))
+
+    def simulate(self, x: np.ndarray, own=None, until: np.ndarray | None = None) -> np.ndarray:
+        """J (n,) at coordinates (n, p), counted; BAD where it is no number. In batches of one size, which is compiled once."""
+        own, until = self.own if own is None else own, self.ends if until is None else until
+        batch = self.batch if len(x) > 1 else 1
+
+        def run(points: np.ndarray) -> np.ndarray:
+            full = jnp.asarray(np.resize(points, (batch, self.size)))
+            return np.asarray(objectives(self.problem, own, self.weight, jnp.asarray(until), full))[: len(points)]
+
+        if batch not in self._compiled:
+            with self.apart():
+                run(x[:1])
+            self._compiled.add(batch)
+        found = np.full(len(x), BAD)
+        for at in range(0, len(x), batch):
+            stop_if_asked()
+            points = x[at : at + batch]
+            values = run(points)
+            found[at : at + batch] = np.where(np.isfinite(values), np.minimum(np.nan_to_num(values), BAD), BAD)
+            self.simulations += len(points) * len(self.records) * self.part(until)
+            if until is self.ends:
+                least = int(np.argmin(found[at : at + batch]))
+                self.note(points[least], float(found[at + least]))
+            else:
+                self.check()
+        return found
+
+    def __call__(self, shares: np.ndarray) -> np.ndarray:
+        """J (n,) of points (n, p) of the unit cube."""
+        return self.simulate(coordinates(self.problem.space, np.asarray(shares, float)))
+
+    def note(self, x: np.ndarray, objective: float) -> None:
+        """A point's J over whole records, the best so far or not; then `check`."""
+        self.calls += 1
+        if objective < min(self.best, BAD):
+            self.best, self.x = objective, np.array(x)
+            self._marks.append((self.simulations, self.seconds, objective))
+        self.check()
+
+    def check(self) -> None:
+        """Report. Raises Stop where the budget is spent or the objective reached."""
+        spent = max(self.seconds / self.budget.seconds, self.simulations / self.budget.simulations)
+        self.report(Progress(self.stage, self.calls, self.best, min(1.0, spent)))
+        if spent >= 1 or self.best <= self.budget.objective:
+            raise Stop
+
+    def history(self) -> History:
+        """The history so far, its last entry now."""
+        marks = [*self._marks, (self.simulations, self.seconds, self.best)]
+        return History(*(np.array(column) for column in zip(*marks)))
+
+
+@dataclass(frozen=True)
+class AbstractSearch(abc.ABC):
+    """A way to look for the least J over the unit cube. Its fields are its options, numbers above 0 (else ValueError)."""
+
+    name: ClassVar[str]
+    descends: ClassVar[bool] = False  # by least squares: it fits the records' releases itself, and ends of its own
+    needs: ClassVar[str | None] = None  # a package that is not always installed
+
+    def __post_init__(self) -> None:
+        for option in fields(self):
+            if not (value := getattr(self, option.name)) > 0:
+                raise ValueError(f"{self.name}: expected {option.name} above 0, found {value!r}")
+
+    @abc.abstractmethod
+    def together(self, size: int) -> int:
+        """How many points it asks for at once, of `size` coefficients."""
+
+    @abc.abstractmethod
+    def run(self, task: Task, random: np.random.Generator) -> None:
+        """Search until done, or until the task raises Stop. All chance comes from `random`."""
+
+
+def even(count: int) -> int:
+    """The size of a batch that divides `count` points evenly into as few as may be."""
+    return -(-count // -(-count // TOGETHER))

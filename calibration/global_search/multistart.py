@@ -1,0 +1,44 @@
+"""Multi-start least squares: many starts judged cheaply, the best few calibrated."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from calibration.global_search.base import AbstractSearch, Task, even
+from calibration.global_search.descents import compile_fit, descend, judged
+from calibration.global_search.objective import coordinates
+
+
+@dataclass(frozen=True)
+class MultiStart(AbstractSearch):
+    """Levenberg-Marquardt from the best `finalists` of `starts` points.
+
+    The points are a scrambled Sobol sequence in the unit cube, log-uniform in positive coefficients (Owen 1998, Journal of
+    Complexity 14, 466-489), and are judged by J over the first 1.25 cycles of every record from a first guess of its release, a
+    batch of them in one simulation. It ends of its own. With one start it is least squares from a random point.
+
+    The descents are one after the other, the most promising first: a Jacobian of four starts together, by vmap, takes as long
+    per start as one alone (0.96 and 0.95 s of CPU for three decays), compiles a third longer, and would wait for the slowest.
+    """
+
+    starts: int = 64
+    finalists: int = 4
+    name: ClassVar[str] = "multistart"
+    descends: ClassVar[bool] = True
+
+    def together(self, size: int) -> int:
+        return even(self.starts)
+
+    def run(self, task: Task, random: np.random.Generator) -> None:
+        from scipy.stats.qmc import Sobol
+
+        shares = Sobol(task.size, rng=random).random_base2(math.ceil(math.log2(self.starts)))[: self.starts]
+        x = coordinates(task.problem.space, shares)
+        compile_fit(task)
+        task.stage = f"{self.starts} starts"
+        if self.starts > 1:
+            x = judged(task, x)
+        for i, start in enumerate(x[: self.finalists]):
+            descend(task, start, f"start {i + 1} of {min(self.finalists, self.starts)}")

@@ -1,0 +1,148 @@
+"""Global search over the coefficients of a campaign's decays, where it is not known where to begin."""
+
+import importlib.util
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.records import Record
+from calibration.fitting.decay_fit import Progress, prepare
+from calibration.global_search import METHODS, AbstractSearch, Budget, History, Stop, Task
+from calibration.global_search.descents import releases
+from calibration.global_search.objective import ranges
+from calibration.parameters.space import parameter_space
+from calibration.residuals.decays import Problem
+from jaxhydro.errors import suggest
+from jaxhydro.interrupts import stopping
+
+FACTOR = 10.0  # a coefficient without bounds is searched from a tenth to ten times of what the platform declares
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a search came to.
+
+    `values` by label, to go on from by `calibrate(campaign, start=found.values)`, and `objective`, their J over whole records
+    with the releases that it was judged with. `simulations` of a record, a part of one counting as that part; CPU `seconds`,
+    compilation apart. `ended`: "settled" of its own, "reached" the objective asked for, "budget", or "interrupted".
+    """
+
+    method: str
+    seed: int
+    values: dict[str, float]
+    objective: float
+    simulations: float
+    seconds: float
+    history: History
+    ended: Literal["settled", "reached", "budget", "interrupted"]
+
+
+class SearchInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a search; `partial` holds what was reached, None if nothing was."""
+
+    def __init__(self, partial: Found | None) -> None:
+        super().__init__("search interrupted")
+        self.partial = partial
+
+
+def search(
+    campaign: Campaign,
+    *,
+    method: str | AbstractSearch = "multistart",
+    seed: int = 0,
+    budget: Budget = Budget(),
+    free: Sequence[str] | None = None,
+    factor: float = FACTOR,
+    progress: Callable[[Progress], None] | None = None,
+) -> Found:
+    """The coefficients of least J that a global search finds for the decay records marked `fit`.
+
+    J is the contract's sum of RMSE / standard deviation over the records' released degrees of freedom. Searched are the
+    manifest's bounds, and where it has none from 1/`factor` to `factor` times of the platform's value, positive coefficients on
+    a logarithmic scale. Priors are not used, nor where in there the platform's own values lie.
+
+    `method` is "multistart" (least squares from the best of many starts), "cma-es", "ga" or "de", or one of their classes with
+    its options. Population searches know nothing of releases. So the records' initial positions and rates are fitted first, by
+    least squares over the first 3 cycles whose coefficients are thrown away (`releases`), and offsets are eliminated in J;
+    multi-start fits them with the coefficients. The same `seed` gives the same search; only where a budget of seconds ends it
+    differs. Simulations that give no number count as bad ones.
+
+    Raises ValueError for a method, seed, budget or factor that is none, InputError where there is nothing to search or no
+    bounds, SearchInterrupted (a KeyboardInterrupt) with what was reached.
+    """
+    chosen = _checked(method, seed, budget, factor)
+    problem, records = posed(campaign, free, factor)
+    task = Task(problem, records, None, budget, progress or (lambda _: None))
+    return run(task, chosen, seed)
+
+
+def run(task: Task, method: AbstractSearch, seed: int) -> Found:
+    """A search on a task, begun now. The releases are fitted first where the task has none and the method does not fit them.
+
+    Raises ValueError where the budget is too small for anything, SearchInterrupted with what was reached.
+    """
+    ended: Literal["settled", "reached", "budget", "interrupted"] = "settled"
+    task.batch = method.together(task.size)
+    try:
+        task.begin()
+        if task.own is None and not method.descends:
+            task.own = releases(task)
+        method.run(task, np.random.default_rng(seed))
+    except Stop:
+        ended = "reached" if task.best <= task.budget.objective else "budget"
+    except KeyboardInterrupt:
+        stopping()
+        ended = "interrupted"
+    history, space = task.history(), task.problem.space
+    found = None
+    if math.isfinite(task.best):
+        values = {label: float(value) for label, value in space.values(jnp.asarray(task.x)).items()}
+        spent = (float(history.simulations[-1]), float(history.seconds[-1]))
+        found = Found(method.name, seed, values, task.best, *spent, history, ended)
+    if ended == "interrupted":
+        raise SearchInterrupted(found)
+    if found is None:
+        raise ValueError(f"budget: expected enough for one simulation of every record, found {task.budget}")
+    return found
+
+
+def posed(campaign: Campaign, free: Sequence[str] | None = None, factor: float = FACTOR) -> tuple[Problem, tuple[Record, ...]]:
+    """What is searched, and its records. Raises InputError where there is nothing to search, or no bounds."""
+    fit = prepare(campaign, free=free)
+    model, labels, source = fit.problem.model, fit.problem.space.labels, str(campaign.folder / "campaign.yaml")
+    bounds = ranges(model, labels, dict(campaign.manifest.calibrate.bounds), factor, source)
+    space = parameter_space(model, labels, bounds, None, source)
+    return replace(fit.problem, space=space), tuple(fit.records)
+
+
+def _checked(method: str | AbstractSearch, seed: int, budget: Budget, factor: float) -> AbstractSearch:
+    """The method. Raises ValueError for what is wrong."""
+    if not (isinstance(seed, int) and not isinstance(seed, bool) and seed >= 0):
+        raise ValueError(f"seed: expected a whole number from 0, found {seed!r}")
+    if not factor > 1:
+        raise ValueError(f"factor: expected a number above 1, found {factor!r}")
+    if not (budget.seconds > 0 and budget.simulations > 0):
+        raise ValueError(f"budget: expected seconds and simulations above 0, found {budget.seconds!r}, {budget.simulations!r}")
+    if isinstance(method, AbstractSearch):
+        chosen = method
+    elif isinstance(method, str) and method in METHODS:
+        chosen = METHODS[method]()
+    else:
+        hint = suggest(str(method), METHODS)
+        raise ValueError(f"method: expected one of {', '.join(METHODS)}, found {method!r}. {hint}".strip())
+    if not chosen.descends and math.isinf(budget.seconds) and math.isinf(budget.simulations) and budget.objective <= 0:
+        raise ValueError(f"budget: expected a limit, as {chosen.name} does not end of its own, found none")
+    _look_for(chosen)
+    return chosen
+
+
+def _look_for(method: AbstractSearch) -> None:
+    """Raises ValueError where the package that a method needs is not there."""
+    if method.needs is not None and importlib.util.find_spec(method.needs) is None:
+        install = "pip install 'jaxhydro[search]'"
+        raise ValueError(f"method {method.name}: expected the package {method.needs} (`{install}`), found none")

@@ -1,0 +1,1 @@
+"""What records determine: information, covariance, weak directions, findings."""

@@ -1,0 +1,229 @@
+"""What the records of a calibration tell together and what they do not: directions, combinations, what to fix, what to test.
+
+Everything is local and linear, about the fitted values, in the coordinates of the fit: logarithms of positive parameters
+within their bounds. Information is that of the records alone; the fit's prior enters only where `covariance` is named.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.formatting import listed, number, percent
+from calibration.identifiability.information import (
+    CLEAR,
+    collinearity,
+    deviations,
+    eliminated,
+    inverse,
+    principal,
+    varimax,
+    within,
+)
+from calibration.identifiability.standard_deviations import Spread, spread
+from calibration.identifiability.statements import Collinear, Combination, Direction, Fix, Parameters
+from calibration.parameters.space import VAGUE, ParameterSpace, slopes
+from jaxhydro.dynamics.model import Model
+from jaxhydro.loads.sea_state_law import is_exponent
+from jaxhydro.platform.drag_laws import coefficient_label
+
+Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # products, weight, variance, inflation: see `spread`
+COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
+NOTHING = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
+TOLD = 4  # weak directions in words
+LEAST = 0.01  # of the others' summed variance: what takes less away is no advice
+NAMED = 0.5 * CLEAR  # a parameter that a direction leaves uncertain by less than this is not named in it
+
+
+@dataclass(frozen=True, eq=False)
+class Identifiability:
+    """What a calibration's records determine. Rows and columns are in the order of `parameters`.
+
+    `information` (p, p) is the records' own, without prior, their own unknowns eliminated; `covariance` (p, p) the posterior
+    one, with the prior. `spectrum` are the standard deviations along `axes` (columns, unit length), best known first, inf
+    where nothing is said: 1 over the singular values of the scaled Jacobian. `fixes` go with `weak`, in order: each supposes
+    those before it. `collinear` holds all groups of two and three of one family, worst first.
+    """
+
+    parameters: Parameters
+    information: np.ndarray
+    covariance: np.ndarray
+    source: str
+    spectrum: np.ndarray
+    axes: np.ndarray
+    correlation: np.ndarray
+    collinear: tuple[Collinear, ...]
+    weak: tuple[Direction, ...]
+    fixes: tuple[Fix, ...]
+    untouched: tuple[str, ...]
+    at_bound: tuple[str, ...]
+
+    def sentences(self) -> tuple[str, ...]:
+        """In plain words, most important first."""
+        clear, total = int((self.spectrum < CLEAR).sum()), len(self.spectrum)
+        known = f"{clear} of {total} independent combinations of parameters known to better than {percent(CLEAR)}"
+        said = [f"{self.source}: {known}"]
+        if bound := self.at_bound:
+            verbs = ("stands", "is") if len(bound) == 1 else ("stand", "are")
+            said.append(f"{listed(bound)} {verbs[0]} at a bound and {verbs[1]} taken as fixed there")
+        if idle := self.untouched:
+            it = "it" if len(idle) == 1 else "them"
+            said.append(f"no record responds to {listed(idle)}: fix {it}, or add tests that move {it}")
+        known_of: set[str] = set()
+        for weak, fix in list(zip(self.weak, self.fixes, strict=True))[:TOLD]:
+            # one combination may be what is known of several directions
+            again = str(weak.known) in known_of
+            said += [weak.sentence(self.source, again), *([str(fix)] if fix.share >= LEAST else [])]
+            known_of.add(str(weak.known))
+        if rest := self.weak[TOLD:]:
+            labels = listed(list(dict.fromkeys(label for weak in rest for label in weak.movement)))
+            said.append(f"{len(rest)} further combinations of {labels} are not known to {percent(CLEAR)} either")
+        told = [set(a.movement) for a in self.weak]
+        alike: list[tuple[set[str], float]] = []  # groups with parameters in common are one
+        for group in sorted(self.collinear, key=lambda group: len(group.labels)):
+            # a group is at least as bad as any part of it, and a weak direction says more
+            if group.gamma > COLLINEAR and not any(other <= set(group.labels) for other in told):
+                told.append(set(group.labels))
+                met = [one for one in alike if one[0] & told[-1]]
+                whole = told[-1].union(*(labels for labels, _ in met)), max(group.gamma, *(gamma for _, gamma in met), 0.0)
+                alike = [*(one for one in alike if one not in met), whole]
+        for some, gamma in alike:
+            index = f"index {number(gamma, 2)}" if math.isfinite(gamma) else "index without bound"
+            said.append(f"{listed([x for x in self.parameters.labels if x in some])} act alike (collinearity {index}, poor "
+                        f"from {COLLINEAR:.0f}): only exact records tell them apart")  # fmt: skip
+        return tuple(said)
+
+
+def identifiability(
+    parameters: Parameters,
+    information: np.ndarray,
+    covariance: np.ndarray,
+    source: str = "these records",
+    at_bound: Sequence[str] = (),
+) -> Identifiability:
+    """The statement on parameters with the records' `information` and the posterior `covariance` of their coordinates."""
+    labels, d = parameters.labels, np.sqrt(np.diag(covariance))
+    active, untouched = active_of(parameters, information, at_bound)
+    spectrum, axes = principal(within(information, active))
+    groups = [
+        Collinear(tuple(labels[i] for i in g), collinearity(information[np.ix_(g, g)]))
+        for size in (2, 3)
+        for g in combinations(active, size)
+        if len({family(labels[i]) for i in g}) == 1
+    ]
+    weak = weak_directions(parameters, information, active)
+    # what no record responds to is as wide as its prior whatever is fixed, and no measure of anything
+    fixes: list[Fix] = []
+    left = within(covariance, active)
+    for direction in weak:
+        open_ = [label for label in direction.movement if label not in {fix.label for fix in fixes}]
+        fix, left = _best_fix(labels, left, open_ or list(direction.movement))
+        fixes.append(fix)
+    return Identifiability(
+        parameters, information, covariance, source, spectrum, axes, covariance / np.outer(d, d),
+        tuple(sorted(groups, key=lambda g: (-g.gamma, len(g.labels)))), weak, tuple(fixes), untouched, tuple(at_bound),
+    )  # fmt: skip
+
+
+def weak_directions(parameters: Parameters, information: np.ndarray, active: Sequence[int]) -> tuple[Direction, ...]:
+    """Principal directions that are not known to CLEAR, least known first, among the `active` parameters.
+
+    Those beyond VAGUE are equally unknown: any basis of what they span is as good, and the one with the fewest parameters in
+    each direction is told (varimax: Kaiser 1958, Psychometrika 23, 187-200).
+    """
+    active = list(active)
+    core = information[np.ix_(active, active)]
+    deviation, axes = principal(core)
+    blind = deviation > VAGUE
+    axes[:, blind] = varimax(axes[:, blind])
+    deviation = deviations(np.einsum("ik,ij,jk->k", axes, core, axes), np.abs(core).max(initial=0.0))
+    order = [int(k) for k in np.argsort(-deviation, kind="stable") if deviation[k] > CLEAR]
+    reach = np.abs(axes) * np.minimum(deviation, VAGUE)
+    named = [[int(i) for i in np.flatnonzero(reach[:, k] >= min(NAMED, reach[:, k].max()))] for k in order]
+    found = []
+    for k, mine in zip(order, named, strict=True):
+        known = _combination(parameters, core, active, mine) if len(mine) > 1 else None
+        if known is None and len(mine) > 1:
+            # what other weak directions share with this one may be known together with it
+            joint = sorted(set(mine).union(*(other for other in named if set(other) & set(mine))))
+            known = _combination(parameters, core, active, joint)
+        change = (axes[:, k] * parameters.relative()[active])[mine]
+        change *= 0.1 / change[np.abs(change).argmax()] * np.sign(change[0] * change[np.abs(change).argmax()])
+        movement = {parameters.labels[active[i]]: float(c) for i, c in zip(mine, change, strict=True)}
+        found.append(Direction(movement, float(deviation[k]), known))
+    return tuple(found)
+
+
+def stated(
+    space: ParameterSpace, model: Model, x: np.ndarray, parts: Parts, ridge: np.ndarray, width: np.ndarray, source: str
+) -> tuple[Spread, Identifiability]:
+    """Covariance and statement at coordinates (p,); `parts`, `ridge` and `width` are the arguments of `spread`."""
+    found = spread(*parts, ridge, width)
+    values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
+    units = tuple(model.about(label).unit for label in space.labels)
+    bound = [p.label for p, c in zip(space.free, x, strict=True) if p.transform.at_bound(float(c))]
+    parameters = Parameters(space.labels, values, slopes(space, x), units)
+    posterior = found.covariance[: len(x), : len(x)]
+    return found, identifiability(parameters, eliminated(*parts, len(x)), posterior, source, bound)
+
+
+def family(label: str) -> str:
+    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on sea or motion."""
+    if is_exponent(label) or coefficient_label(label) is not None:
+        return "exponent"
+    head, _, name = label.rpartition(".")
+    if head == "added_mass" or head.startswith("guided_masses.") or name.startswith("Ca"):
+        return "inertia"
+    return "damping" if head.endswith("damping") or name.startswith("Cd") else "restoring"
+
+
+def active_of(parameters: Parameters, information: np.ndarray, at_bound: Sequence[str]) -> tuple[list[int], tuple[str, ...]]:
+    """Parameters that the records respond to, and the labels of those where even alone a factor of 4.5 would go unseen."""
+    free = [i for i, label in enumerate(parameters.labels) if label not in at_bound]
+    seen = [i for i in free if information[i, i] > 1 / VAGUE**2]
+    return seen, tuple(parameters.labels[i] for i in free if i not in seen)
+
+
+def _combination(
+    parameters: Parameters, core: np.ndarray, active: Sequence[int], mine: Sequence[int]
+) -> Combination | None:
+    """The best known combination of some parameters, whatever the others are; None if it is not known to CLEAR."""
+    rest = [i for i in range(len(core)) if i not in mine]
+    across = core[np.ix_(rest, mine)]
+    deviation, axes = principal(core[np.ix_(mine, mine)] - across.T @ inverse(core[np.ix_(rest, rest)]) @ across)
+    if not deviation[0] < CLEAR:
+        return None
+    at = [active[i] for i in mine]
+    labels, units = [parameters.labels[i] for i in at], {parameters.unit[i] for i in at}
+    value, slope, share = parameters.value[at], parameters.slope[at], axes[:, 0]
+    alike = len(units) == 1 and len({family(label) for label in labels}) == 1
+    product = not alike and bool((value > 0).all())
+    raw = share / parameters.relative()[at] if product else share / slope
+    leading = int(np.abs(raw if alike or product else share).argmax())
+    weight = raw / raw[leading]
+    level = float(np.prod(value**weight) if product else weight @ value)
+    small = float(deviation[0] / abs(raw[leading]))
+    unit = "" if product else parameters.unit[at[leading]]
+    return Combination(dict(zip(labels, map(float, weight), strict=True)), product, level, small, unit)
+
+
+def _best_fix(labels: Sequence[str], covariance: np.ndarray, candidates: Sequence[str]) -> tuple[Fix, np.ndarray]:
+    """The candidate that takes most from the summed variance of the others, and the covariance (p, p) once it is fixed."""
+
+    def fixed(i: int) -> np.ndarray:
+        if not covariance[i, i] > NOTHING:
+            return np.zeros_like(covariance)
+        shared = covariance[i] / np.sqrt(covariance[i, i])
+        return np.outer(shared, shared)
+
+    lost = {i: float(np.delete(np.diag(fixed(i)), i).sum()) for i in map(labels.index, candidates)}
+    best = max(lost, key=lambda i: lost[i])
+    others = float(np.delete(np.diag(covariance), best).sum())
+    left = covariance - fixed(best)
+    after = {x: float(np.sqrt(max(left[i, i], 0.0))) for x in candidates if (i := labels.index(x)) != best}
+    return Fix(labels[best], lost[best], lost[best] / others if others > 0 else 0.0, after), left

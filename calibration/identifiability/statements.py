@@ -1,0 +1,93 @@
+"""What is said of identifiability, as values and in words: directions, combinations that are known, what to fix."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.formatting import listed, number, percent, readable_unit, with_deviation
+from calibration.parameters.space import VAGUE
+
+SMALL = 0.005  # weight of a combination, the largest 1, that is not told
+
+
+class Parameters(NamedTuple):
+    """The free parameters where the fit ended; `slope` is d value / d coordinate."""
+
+    labels: tuple[str, ...]
+    value: np.ndarray
+    slope: np.ndarray
+    unit: tuple[str, ...]
+
+    def relative(self) -> np.ndarray:
+        """d ln(value) / d coordinate; 1 for a value of zero."""
+        return np.where(self.value == 0, 1.0, self.slope / np.where(self.value == 0, 1.0, np.abs(self.value)))
+
+
+class Combination(NamedTuple):
+    """A combination that the records know: the sum of weight times value in `unit`, or the product of value to the weight.
+
+    The largest weight is 1 (of a sum in mixed units, that of the parameter that counts most: its unit is the sum's).
+    `standard_deviation` is in `unit` for a sum, relative for a product.
+    """
+
+    weights: dict[str, float]
+    product: bool
+    value: float
+    standard_deviation: float
+    unit: str
+
+    def __str__(self) -> str:
+        if self.product:
+            powers = " ".join(f"{label}^{weight:.2f}" for label, weight in self.weights.items() if abs(weight) >= SMALL)
+            return f"the product {powers} is known to {percent(self.standard_deviation)}"
+        terms = " ".join(f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}" for label, w in self.weights.items()
+                         if abs(w) >= SMALL)  # fmt: skip
+        unit = f" {readable_unit(self.unit)}".rstrip()
+        value = with_deviation(self.value, self.standard_deviation)
+        return f"their weighted sum {terms.removeprefix('+ ')} = {value}{unit} is known"
+
+
+class Direction(NamedTuple):
+    """A way to move parameters that the records do not see: relative changes, the largest 10 %, and what is known."""
+
+    movement: dict[str, float]
+    standard_deviation: float  # in the coordinates, along the direction with unit length
+    known: Combination | None
+
+    def sentence(self, source: str, again: bool = False) -> str:
+        """In words; what is known instead is not said `again`."""
+        labels = list(self.movement)
+        if len(labels) == 1:
+            if self.standard_deviation > VAGUE:
+                return f"{source} cannot say what {labels[0]} is"
+            return f"{source} can say {labels[0]} to {percent(self.standard_deviation)} only"
+        verb = "cannot tell" if self.standard_deviation > 1 else "can hardly tell"
+        apart = f"{labels[0]} from {labels[1]}" if len(labels) == 2 else f"{listed(labels)} from one another"
+        moves = listed([f"{label} {100 * change:+.2g} %" for label, change in self.movement.items()])
+        known = "" if again else f"; {self.known or 'no combination of them is known either'}"
+        return f"{source} {verb} {apart}: {moves} together leave the records as they are{known}"
+
+
+class Fix(NamedTuple):
+    """Which parameter of a weak direction to fix or to give a prior, and what the summed variance of the others loses by it
+    (in the coordinates; `share` of it). `after`: deviations of the direction's other parameters once it is fixed."""
+
+    label: str
+    reduction: float
+    share: float
+    after: dict[str, float]
+
+    def __str__(self) -> str:
+        known = listed([f"{label} to {percent(deviation)}" for label, deviation in self.after.items()])
+        gain = f"takes {percent(self.share)} off the summed variance of the others"
+        gain += f" and leaves {known}" if known else ""
+        return f"fix {self.label} or give it a prior: this {gain}"
+
+
+class Collinear(NamedTuple):
+    """Collinearity index of a group of parameters of one family."""
+
+    labels: tuple[str, ...]
+    gamma: float
+
+

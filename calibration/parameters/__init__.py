@@ -1,0 +1,1 @@
+"""Free parameters: transforms, bounds, priors."""

@@ -1,0 +1,172 @@
+"""Which of a model's parameters are free, between which bounds, and with which prior."""
+
+import fnmatch
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from calibration.parameters.transforms import AbstractTransform, Interval, LogInterval, Scaled
+from jaxhydro.dynamics.model import Model
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem, suggest
+from jaxhydro.hull.coefficient_labels import shared_hint
+from jaxhydro.loads.sea_state_law import is_exponent
+
+VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
+RANGE = 1000.0  # a positive parameter may move by this factor from where it starts, within what its load allows
+NEVER = ("mooring.", "stiffness.", "guided_masses.")  # what a decay cannot tell from inertia is left alone unless asked for
+
+
+class Free(NamedTuple):
+    """One free parameter: where it starts, how it is transformed, and a Gaussian prior on its coordinate."""
+
+    label: str
+    start: float
+    transform: AbstractTransform
+    prior_mean: float
+    prior_deviation: float  # inf: none
+
+
+class ParameterSpace(NamedTuple):
+    """Free parameters of a model, in order."""
+
+    free: tuple[Free, ...]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        return tuple(p.label for p in self.free)
+
+    @property
+    def moves_equilibrium(self) -> bool:
+        """Whether the platform's static equilibrium depends on them."""
+        return any(label.startswith(NEVER) for label in self.labels)
+
+    @property
+    def start(self) -> Float[Array, " p"]:
+        """Coordinates of the starting values."""
+        return jnp.array([p.transform.inverse(p.start) for p in self.free])
+
+    @property
+    def prior(self) -> tuple[Float[Array, " p"], np.ndarray]:
+        """Mean and standard deviation of the coordinates: as declared, else VAGUE about where they start."""
+        declared = [math.isfinite(p.prior_deviation) for p in self.free]
+        mean = jnp.array([p.prior_mean if known else s for p, s, known in zip(self.free, self.start, declared)])
+        return mean, np.array([p.prior_deviation if known else VAGUE for p, known in zip(self.free, declared)])
+
+    def values(self, x: Float[Array, " p"]) -> dict[str, Float[Array, ""]]:
+        """Parameter values at coordinates."""
+        return {p.label: p.transform.forward(x[i]) for i, p in enumerate(self.free)}
+
+    def model(self, model: Model, x: Float[Array, " p"]) -> Model:
+        """The model with its free parameters at coordinates."""
+        return model.at_values(self.values(x))
+
+
+def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
+    """What decays in some degrees of freedom can be about: coefficients of the members, and the lumped damping and added
+    mass of those degrees of freedom. What is declared as zero is not there, and stays so; still water has no sea state, and
+    how drag depends on the motion (`drag_`) is free where it is asked for."""
+    digits = {str(DOFS.index(dof) + 1) for dof in released}
+    labels = []
+    for label, value in model.values.items():
+        lumped = label.split(".")[0] in ("linear_damping", "quadratic_damping", "added_mass")
+        if label.startswith(NEVER) or is_exponent(label) or ".drag_" in label or float(value) == 0:
+            continue
+        if lumped and not digits >= set(label[-2:]):
+            continue
+        labels.append(label)
+    return tuple(labels)
+
+
+def choose(
+    model: Model,
+    released: Sequence[str],
+    free: Sequence[str] | None = None,
+    fixed: Sequence[str] = (),
+    source: str = "campaign.yaml",
+) -> tuple[str, ...]:
+    """Labels of the free parameters, from patterns such as `column.*`. Raises InputError for a pattern that fits none."""
+    known = tuple(model.values)
+    problems = [
+        Problem(f"calibrate.{key}", f"a parameter of this platform ({', '.join(known)})", pattern, _hint(pattern, known, model))
+        for key, patterns in (("free", free or ()), ("fixed", fixed))
+        for pattern in patterns
+        if not fnmatch.filter(known, pattern)
+    ]
+    if problems:
+        raise InputError(source, problems)
+    chosen = default_free(model, released) if free is None else [k for k in known if any(fnmatch.fnmatch(k, p) for p in free)]
+    return tuple(label for label in chosen if not any(fnmatch.fnmatch(label, p) for p in fixed))
+
+
+def parameter_space(
+    model: Model,
+    labels: Sequence[str],
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, tuple[float, float]] | None = None,
+    source: str = "campaign.yaml",
+) -> ParameterSpace:
+    """Free parameters with their transforms. `bounds` label -> (lower, upper), `priors` label -> (value, standard deviation).
+
+    A parameter that cannot be negative is on a logarithmic scale, by default within a factor of 1000 of where it starts and
+    within its physical range; what is declared as 0 starts in the middle of that. Raises InputError for bounds or priors that
+    make no sense.
+    """
+    bounds, priors, free, problems = bounds or {}, priors or {}, [], []
+    for key, given in (("bounds", bounds), ("priors", priors)):
+        problems += [
+            Problem(
+                f"calibrate.{key}.{label}", f"a free parameter ({', '.join(labels)})", "another", _hint(label, labels, model)
+            )
+            for label in given
+            if label not in labels
+        ]
+    for label in labels:
+        start, about = float(model.values[label]), model.about(label)
+        lower, upper = bounds.get(label, (about.lower, about.upper))
+        if not (about.lower <= lower < upper <= about.upper):
+            physical = f"two numbers between {about.lower:g} and {about.upper:g}"
+            problems.append(Problem(f"calibrate.bounds.{label}", physical, f"[{lower:g}, {upper:g}]"))
+            continue
+        if not about.lower <= start <= about.upper:
+            physical = f"a value between {about.lower:g} and {about.upper:g} to begin from"
+            problems.append(Problem(f"calibrate: {label}", physical, f"{start:g}"))
+            continue
+        transform: AbstractTransform
+        if about.lower >= 0:
+            size = start if start > 0 else (upper if math.isfinite(upper) else 1.0)
+            lower = max(lower, size / RANGE)
+            transform = LogInterval(lower, min(upper, size * RANGE) if label not in bounds else upper)
+            # at the end of a logarithmic scale nothing moves
+            start = start if start > 0 else math.sqrt(transform.lower * transform.upper)
+        elif math.isfinite(lower) and math.isfinite(upper):
+            transform = Interval(lower, upper)
+        else:
+            transform = Scaled(start, abs(start) if start else 1.0)
+        mean, deviation = 0.0, math.inf
+        if label in priors:
+            value, width = priors[label]
+            if not (lower < value < upper):
+                inside = f"a value between {lower:.4g} and {upper:.4g}"
+                problems.append(Problem(f"calibrate.priors.{label}.value", inside, f"{value:g}"))
+                continue
+            mean = transform.inverse(value)
+            deviation = width / float(jax.grad(transform.forward)(jnp.asarray(mean)))
+        free.append(Free(label, start, transform, mean, deviation))
+    if problems:
+        raise InputError(source, problems)
+    return ParameterSpace(tuple(free))
+
+
+def _hint(label: str, known: Sequence[str], model: Model) -> str:
+    return shared_hint(label, model.hull.elements.shares) or suggest(label, known)
+
+
+def slopes(space: ParameterSpace, x: np.ndarray) -> np.ndarray:
+    """d value / d x of every free parameter."""
+    return np.array([float(jax.grad(p.transform.forward)(jnp.asarray(x[i]))) for i, p in enumerate(space.free)])

@@ -1,0 +1,1 @@
+"""Figures of calibrations, comparisons and diagnoses."""

@@ -1,0 +1,83 @@
+"""The figures of tests in waves: spectra with their bands, and an excerpt of the record, measured against simulated."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+
+from calibration.campaign.signals import wave_height
+from calibration.formatting import number
+from calibration.residuals.measured_seas import SeaTest
+from calibration.residuals.sea_errors import bands_of, channels, density, moving
+from jaxhydro.files import safe_name
+from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
+from jaxhydro.units import unit_of
+
+HIGHEST = 0.2  # Hz, that spectra are drawn to; of waves shorter than 10 s 2.5 times their peak
+DECADES = 4.5  # of a spectrum, under its largest value
+EXCERPT = 400.0  # s about the highest crest
+LOW_BAND, WAVE_BAND = "#ece3cf", "#dbe9ee"
+
+
+def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
+    """File name, caption and figure, one after the other. Call within `jaxhydro.plot.style()`."""
+    for test in tests:
+        name = safe_name(test.fit.id)
+        yield f"spectra-{name}.png", f"Test {test.fit.id}: spectra, measured and simulated; bands shaded.", spectra(test)
+        caption = f"Test {test.fit.id}: {EXCERPT:g} s about the highest crest, measured and simulated."
+        yield f"excerpt-{name}.png", caption, excerpt(test)
+
+
+def _title(test: SeaTest) -> str:
+    if test.fit.kind == "regular":
+        return f"{test.fit.id}: regular, {number(test.peak_period, 3)} s"
+    height = f"Hs {number(wave_height(test.wave, irregular=True), 2)} m"
+    return f"{test.fit.id}: {height}, Tp {number(test.peak_period, 3)} s"
+
+
+def spectra(test: SeaTest, names: Sequence[str] | None = None, title: str | None = None) -> Figure:
+    """Densities of the wave and of what moves."""
+    both, highest = channels(test), max(HIGHEST, 2.5 / test.peak_period)
+    shown = ["wave", *moving(test)] if names is None else list(names)
+    figure, axes = stack([0.95] * len(shown))
+    artists: dict[str, Artist] = {}
+    for ax, name in zip(axes, shown):
+        for band, (low, high) in bands_of(name, test.peak_period).items() if test.fit.kind == "irregular" else ():
+            label, colour = ("low frequency", LOW_BAND) if band == "low_frequency" else ("wave frequency", WAVE_BAND)
+            artists[label] = ax.axvspan(low, high, color=colour, lw=0, zorder=0.5)
+        top = 0.0
+        for label, x, colour, width in zip(("measured", "simulated"), both[name], (MEASURED, SIMULATED), (1.4, 0.8)):
+            found = density(test, x)
+            seen = (found.frequency > 0) & (found.frequency <= highest)
+            artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=width)[0]
+            top = max(top, float(found.density[seen].max()))
+        if top > 0:
+            ax.set_yscale("log")
+            ax.set_ylim(top * 10**-DECADES, top * 2.5)
+            ax.set_yticks([10.0**n for n in range(-15, 12) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
+            ax.minorticks_off()
+        ax.set_xlim(0, highest)
+        ax.set_ylabel(f"{name.capitalize()}\n({unit_of(name)}²/Hz)")
+    axes[-1].set_xlabel("Frequency (Hz)")
+    order = ["measured", "simulated", "low frequency", "wave frequency"]
+    header(figure, title or _title(test), {label: artists[label] for label in order if label in artists}, 2)
+    return figure
+
+
+def excerpt(test: SeaTest) -> Figure:
+    """Part of the record, about the wave's highest crest."""
+    both, time = channels(test), test.fit.time
+    crest, width = float(time[np.argmax(test.wave)]), min(EXCERPT, float(time[-1] - time[0]))
+    begin = min(max(crest - 0.5 * width, time[0]), time[-1] - width)
+    seen = (time >= begin) & (time <= begin + width)
+    shown = ["wave", *moving(test)]
+    figure, axes = stack([0.8] * len(shown))
+    artists: dict[str, Artist] = {}
+    for ax, name in zip(axes, shown):
+        for label, x, colour, line in zip(("measured", "simulated"), both[name], (MEASURED, SIMULATED), (1.4, 0.8)):
+            artists[label] = ax.plot(time[seen], x[seen], color=colour, lw=line)[0]
+        ax.set_ylabel(f"{name.capitalize()} ({unit_of(name)})")
+    axes[-1].set_xlabel("Time (s)")
+    header(figure, _title(test), artists)
+    return figure

@@ -1,0 +1,161 @@
+"""The figures of a diagnosis that show how it was made: scores of the candidates, and where the residual lives."""
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter
+
+from calibration.discovery.diagnosis import Diagnosis, Finding, LatentForce, Score
+from calibration.formatting import PREFIXES
+from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, WIDTH, header, stack
+from jaxhydro.units import for_people, unit_of
+
+MOST, FEW = 8, 5  # candidates shown of a round; of more than two rounds
+LEAST = 1.0  # of -2 ln L: what gains less is not worth a bar
+COLOURS = "YlOrRd"
+EXCERPT = 600.0  # s of a latent force in waves
+
+
+def chosen(diagnosis: Diagnosis) -> dict[int, Score]:
+    """What each round took into the model: of the effects found, the round that was the last to score it."""
+    found = {(effect.effect, effect.degree_of_freedom) for effect in diagnosis.effects}
+    last = {(score.effect, score.degree_of_freedom): score for score in sorted(diagnosis.scores, key=lambda one: one.round)}
+    taken = [score for key, score in last.items() if key in found and score.refitted is not None]
+    return {score.round: score for score in taken}
+
+
+def scores_figure(diagnosis: Diagnosis) -> Figure:
+    """A panel for every round: candidates by what they gain at first order, those refitted with a dot."""
+    took = chosen(diagnosis)
+    rounds = {n: _best(diagnosis, n, took.get(n)) for n in sorted({score.round for score in diagnosis.scores})}
+    heights = [0.165 * len(rows) + 0.1 for rows in rounds.values()]
+    figure = Figure(figsize=(WIDTH, sum(heights) + 0.27 * len(heights) + 0.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
+    largest = max([LEAST * 10, *(_gain(gain) for rows in rounds.values() for s in rows for gain in (s.gain, s.refitted))])
+    artists: dict[str, Artist] = {}
+    for ax, (n, rows) in zip(axes, rounds.items()):
+        for i, score in enumerate(rows):
+            mine = score is took.get(n)
+            ax.barh(i, _gain(score.gain) - LEAST, left=LEAST, height=0.68, color=SIMULATED if mine else "#c3c9d1")
+            if score.refitted is not None:
+                dot = Line2D([_gain(score.refitted)], [i], marker="o", ms=3.5, color=MEASURED, ls="", clip_on=False)
+                artists["refitted"] = ax.add_line(dot)
+        _scores_axes(ax, [_named(score) for score in rows], 2.0 * largest)
+        ax.set_title(f"Round {n}", pad=2)
+    axes[-1].set_xlabel("Gain in −2 ln L of the fitted tests")
+    legend: dict[str, Artist] = {"first order": Patch(color="#c3c9d1")}
+    legend |= {"kept": Patch(color=SIMULATED)} if took else {}
+    header(figure, "Candidates, round by round", legend | artists)
+    return figure
+
+
+def _best(diagnosis: Diagnosis, n: int, kept: Score | None) -> list[Score]:
+    """A round's candidates, the largest gain first; the one kept and those refitted among them."""
+    rows = sorted((score for score in diagnosis.scores if score.round == n), key=lambda one: -_gain(one.gain))
+    several = len({score.round for score in diagnosis.scores}) > 2
+    told = [one for one in rows if one.refitted is not None or _gain(one.gain) > LEAST] or rows[:1]
+    wanted = sorted(told, key=lambda one: (one is not kept, one.refitted is None))[: FEW if several else MOST]
+    return [score for score in rows if any(score is one for one in wanted)]
+
+
+def _gain(value: float | None) -> float:
+    """What a log axis can show."""
+    return max(LEAST, value) if value is not None and np.isfinite(value) else LEAST
+
+
+def _named(score: Score) -> str:
+    motion = f" ({score.degree_of_freedom})" if score.degree_of_freedom else ""
+    return f"{score.effect.replace('_', ' ').replace('coulomb', 'Coulomb')}{motion}"
+
+
+def _scores_axes(ax: Axes, labels: list[str], highest: float) -> None:
+    ax.set_xscale("log")
+    ax.set_xlim(LEAST, highest)
+    ax.minorticks_off()
+    ax.set_ylim(len(labels) - 0.4, -0.6)
+    ax.set_yticks(range(len(labels)), labels, fontsize=7)
+    ax.tick_params(axis="y", length=0)
+    ax.grid(visible=False, axis="y")
+
+
+def anatomy_figure(before: tuple[Finding, ...], after: tuple[Finding, ...]) -> Figure:
+    """Residual over noise in frequency bands, a row for every motion of every test, before beside after."""
+    rows = sorted(before, key=lambda one: (one.use != "fit", before.index(one)))
+    there = {(one.test, one.channel): one for one in after}
+    pairs = [(one, there.get((one.test, one.channel))) for one in rows]
+    every = [band for pair in pairs for one in pair if one is not None for band in one.bands]
+    ratios = [ratio for *_, ratio in every if np.isfinite(ratio)]
+    norm = LogNorm(1.0, max(10.0, max(ratios, default=10.0)))
+    low = 0.6 * min((high for _, high, _ in every if high > 0), default=1e-3)
+    end = max((high for _, high, _ in every), default=1.0)
+    figure = Figure(figsize=(WIDTH, 0.165 * len(rows) + 1.35), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(1, 2, sharey=True)
+    held = sum(one.use == "fit" for one in rows)
+    for ax, column, title in zip(axes, (0, 1), ("Before", "After")):
+        for i, pair in enumerate(pairs):
+            _strip(ax, i, pair[column], low, norm)
+        ax.set_xscale("log")
+        ax.set_xlim(low, end)
+        ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        ax.set_title(title, pad=3)
+        ax.grid(visible=False)
+        ax.tick_params(axis="y", length=0)
+        ax.set_xlabel("Frequency (Hz)")
+        ax.minorticks_off()
+        if 0 < held < len(rows):
+            ax.axhline(held - 0.5, color=MEASURED, lw=0.8)
+    axes[0].set_yticks(range(len(rows)), [_row_name(one) for one in rows], fontsize=7)
+    axes[0].set_ylim(len(rows) - 0.5, -0.5)
+    bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, location="bottom", aspect=40, pad=0.02)
+    bar.set_label("Residual / noise (rms in the band)")
+    bar.minorticks_off()
+    bar.ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    header(figure, "Where the residual lives")
+    return figure
+
+
+def _strip(ax: Axes, row: int, one: Finding | None, low: float, norm: LogNorm) -> None:
+    """One motion's bands, from where the axis begins."""
+    if one is None or not one.bands:
+        ax.axhspan(row - 0.5, row + 0.5, color="#eef0f2", lw=0)
+        return
+    for begin, end, ratio in one.bands:
+        if end > low:
+            colour = GREY if not np.isfinite(ratio) else ScalarMappable(norm, COLOURS).to_rgba(np.array([max(ratio, 1.0)]))[0]
+            ax.fill_between([max(begin, low), end], row - 0.46, row + 0.46, color=colour, lw=0)
+
+
+def _row_name(one: Finding) -> str:
+    name = one.test if one.channel in one.test else f"{one.test}, {one.channel}"
+    return name if len(name) <= 20 else f"{name[:19]}…"
+
+
+def latent_figure(one: LatentForce) -> Figure:
+    """A latent force over time, with its law, and below it the velocity or the wave: of a test in waves where it is largest."""
+    shown, seen = one.shown, slice(None)
+    step = float(shown.time[1] - shown.time[0])
+    if shown.beside == "wave" and (count := round(EXCERPT / step)) < len(shown.time):
+        power = np.concatenate([[0.0], np.cumsum(shown.force**2)])
+        seen = slice(begin := int(np.argmax(power[count:] - power[:-count])), begin + count)
+    time, highest = shown.time[seen], float(np.abs(shown.force[seen]).max())
+    factor, prefix = next(((size, name) for size, name in PREFIXES if highest >= size), (1.0, ""))
+    figure, axes = stack([1.1, 0.8])
+    artists: dict[str, Artist] = {"latent force": axes[0].plot(time, shown.force[seen] / factor, color=MEASURED)[0]}
+    if len(shown.law):
+        artists["law"] = axes[0].plot(time, shown.law[seen] / factor, color=SIMULATED, lw=0.8)[0]
+    axes[0].set_ylabel(f"{'Moment' if one.unit == 'N m' else 'Force'}\n({prefix}{one.unit})")
+    wave = shown.beside == "wave"
+    values = shown.values[seen] if wave else for_people(one.motion, shown.values[seen])
+    axes[1].plot(time, values, color=WAVE if wave else GREY, lw=0.8)
+    axes[1].set_ylabel("Wave (m)" if wave else f"Velocity\n({unit_of(one.motion)}/s)")
+    axes[1].set_xlabel("Time (s)")
+    header(figure, f"What the model lacks in {one.motion}: {shown.test[:18]}", artists)
+    return figure

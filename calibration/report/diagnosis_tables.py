@@ -1,0 +1,138 @@
+"""Heads and rows of the tables of a diagnosis, for the terminal and the page."""
+
+from calibration.discovery.effects.effect_names import called
+from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
+from calibration.formatting import number, percent, quantity, readable_unit, with_deviation
+from calibration.report.diagnosis_words import by_certainty, checked_on, determined, plain, strength
+from calibration.results.read_calibration import Parameter
+from calibration.results.read_diagnosis import SavedDiagnosis
+from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
+
+ORDER = list(USE)
+STILL = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
+NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
+VARIED = (
+    f"Properties that are nearly known, fitted near their declared values (one standard deviation: mass {percent(MASS)}, "
+    f"inertia {percent(INERTIA)}, moorings {percent(STIFFNESS)}; centre of mass {100 * CENTRE_UP:.2g} % of the displaced "
+    f"volume's cube root upwards, {100 * CENTRE_ALONG:.1g} % lengthwise; trim)"
+)
+
+
+def tests(saved: SavedDiagnosis) -> Rows:
+    """What was measured."""
+    rows = []
+    for id, one in saved.tests.items():
+        kind = " in ".join(filter(None, (KINDS.get(one.kind, one.kind), one.degree_of_freedom)))
+        length = f"{number(one.duration, 3)} s" if one.duration is not None else ""
+        rows.append((id, kind, one.file, USE.get(one.use, one.use), length))
+    return ("Test", "Kind", "File", "Use", "Length"), rows
+
+
+def effects(saved: SavedDiagnosis) -> Rows:
+    """What was found: a row for every parameter."""
+    rows = []
+    for one in saved.missing.effects:
+        first = (called(one.effect, one.degree_of_freedom), strength(one.evidence), percent(one.evidence.holdout_gain))
+        for i, (name, value) in enumerate(by_certainty(one.parameters)):
+            said = quantity(value.value, value.standard_deviation, value.unit) if determined(value) else UNDETERMINED
+            rows.append((first[0] if i == 0 else "", plain(name), said, *(first[1:] if i == 0 else ("", ""))))
+    return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", f"Gain over {checked_on(saved)}"), rows
+
+
+def errors(saved: SavedDiagnosis, source: str = "diagnosis.json") -> Rows:
+    """RMSE over the motion's standard deviation, before and after, of what counts in J; fitted tests first."""
+    before, after = saved.errors(source), saved.errors(source, "augmented")
+    rows = []
+    for id, channels in sorted(after.items(), key=lambda item: _order(saved, item[0])):
+        use = _use(saved, id)
+        for name, error in channels.items():
+            if error.in_objective:
+                was = before.get(id, {}).get(name)
+                both = percent(was.relative if was else None), percent(error.relative)
+                rows.append((id, USE.get(use, use), name, *both, f"{number(error.rmse, 2)} {error.unit}"))
+    return ("Test", "Use", "Motion", "Before", "After", "RMSE after"), rows
+
+
+def bands(saved: SavedDiagnosis) -> Rows:
+    """Errors of energy in the bands of tests in irregular waves."""
+    rows = []
+    for id in sorted(saved.augmented.error, key=lambda id: _order(saved, id)):
+        there, was = (fitted.error.get(id, {}).get("bands") or {} for fitted in (saved.augmented, saved.baseline))
+        for channel, row in there.items():
+            for band, value in row.items():
+                then = was.get(channel, {}).get(band)
+                use = _use(saved, id)
+                rows.append((id, USE.get(use, use), channel, BANDS.get(band, band), percent(then), percent(value)))
+    return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
+
+
+def coefficients(saved: SavedDiagnosis) -> Rows:
+    """Every fitted parameter as declared, before and after, the effects' own among those after."""
+    rows = []
+    for label, was, now in _parameters(saved, nearly_known=False):
+        known = was is not None and now is not None and determined(was) and determined(now) and was.value != 0
+        moved = _moved(now.value / was.value - 1) if known and was and now else ""
+        rows.append((*_of_parameter(label, was, now), moved))
+    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
+
+
+def nearly_known(saved: SavedDiagnosis) -> Rows:
+    """The same of those that are let vary though nobody declared them."""
+    rows = [_of_parameter(*one) for one in _parameters(saved, nearly_known=True)]
+    return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit"), rows
+
+
+def _moved(ratio: float) -> str:
+    return f"{100 * ratio:+.2g} %" if abs(ratio) < 0.995 else f"{100 * ratio:+.0f} %"
+
+
+def _parameters(saved: SavedDiagnosis, nearly_known: bool) -> list[tuple[str, Parameter | None, Parameter | None]]:
+    """Labels, and what is fitted of them before and after."""
+    before, after = saved.baseline.parameters, saved.augmented.parameters
+    labels = [label for label in dict.fromkeys([*before, *after]) if label.startswith(NEARLY_KNOWN) == nearly_known]
+    rows = [(label, before.get(label), after.get(label)) for label in labels]
+    return sorted(rows, key=lambda row: row[0] not in before and row[2] is not None and not determined(row[2]))
+
+
+def _of_parameter(label: str, was: Parameter | None, now: Parameter | None) -> tuple[str, ...]:
+    unit = next((one.unit for one in (now, was) if one is not None), "")
+    return label, number(was.start if was is not None else None, 3), _value(was), _value(now), readable_unit(unit)
+
+
+def rejected(saved: SavedDiagnosis) -> Rows:
+    """What was tried and is not in the model, together where it is for the same reason."""
+    reasons: dict[str, list[str]] = {}
+    for one in saved.missing.rejected:
+        reasons.setdefault(one.reason, []).append(called(one.effect, one.degree_of_freedom))
+    rows = [("; ".join(names), reason) for reason, names in reasons.items()]
+    return ("Effect", "Why not"), rows
+
+
+def anatomy(saved: SavedDiagnosis) -> Rows:
+    """The residual before, motion by motion, the largest first, and what became of it."""
+    after = {(one.test, one.channel): one for one in saved.anatomy.after}
+    rows = []
+    for one in sorted(saved.anatomy.before, key=lambda one: -(one.over_noise or 0.0)):
+        now = after.get((one.test, one.channel))
+        rows.append((
+            one.test, USE.get(one.use, one.use), one.channel, one.words,
+            f"{number(one.rms, 2)} {one.unit}", percent(one.relative if (one.relative or 0.0) < STILL else None),
+            number(one.over_noise, 2), number(now.over_noise if now else None, 2),
+        ))  # fmt: skip
+    return ("Test", "Use", "Motion", "What is left", "Residual", "Of motion", "Over noise", "Over noise, after"), rows
+
+
+def _value(one: Parameter | None) -> str:
+    if one is None:
+        return "–"
+    text = with_deviation(one.value, one.standard_deviation) if determined(one) else UNDETERMINED
+    return f"{text}, at its bound" if one.at_bound else text
+
+
+def _use(saved: SavedDiagnosis, id: str) -> str:
+    return str(saved.augmented.error.get(id, {}).get("use", ""))
+
+
+def _order(saved: SavedDiagnosis, id: str) -> int:
+    use = _use(saved, id)
+    return ORDER.index(use) if use in ORDER else len(ORDER)

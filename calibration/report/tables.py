@@ -1,0 +1,166 @@
+"""Tables of a campaign and of a calibration, for the terminal and the page: headings, and rows of text."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from calibration.campaign.checks import Finding
+from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import IN_WAVES
+from calibration.formatting import LARGEST_PERCENT, counted, number, percent, readable_unit, with_deviation
+from calibration.result import Calibration
+from calibration.results.read_calibration import Error, Parameter, Saved
+from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
+
+CLASSICAL = "Classical analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
+SURE = 2.0  # standard deviations within which a value agrees with the true one
+
+
+def tests_counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
+    """How many tests there are of each use, and how many of other kinds are left out."""
+    tests = campaign.manifest.tests
+    count = Counter(USE[t.use] if t.use == "ignore" or t.kind in kinds else f"left out ({t.kind})" for t in tests)
+    order = {word: i for i, word in enumerate(USE.values())}
+    there = [(count[word], word) for word in sorted(count, key=lambda word: (order.get(word, len(order)), word))]
+    return ", ".join(f"{n} {'test' if n == 1 else 'tests'} {word}" for n, word in there)
+
+
+def findings(found: Iterable[Finding]) -> Rows:
+    """The warnings about the records, each once."""
+    return ("Test", "File", "Channel", "Warning"), [(one.where, one.source, one.channel, one.message) for one in grouped(found)]
+
+
+def parameters(saved: Saved) -> Rows:
+    """Meaning, start, value and standard deviation of every coefficient."""
+    rows = [
+        (label, one.meaning, number(one.start, 3), value_of(one), readable_unit(one.unit))
+        for label, one in saved.baseline.parameters.items()
+    ]
+    return ("Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit"), rows
+
+
+def value_of(one: Parameter) -> str:
+    """A calibrated value with its standard deviation, or what it is instead."""
+    text = with_deviation(one.value, one.standard_deviation) if one.identifiable else UNDETERMINED
+    return f"{text}, at its bound" if one.at_bound else text
+
+
+def errors(saved: Saved, source: str) -> Rows:
+    """Errors of the motions that count in the fit, of every test."""
+    rows = []
+    for id, channels in saved.errors(source).items():
+        scored = {name: one for name, one in channels.items() if one.in_objective}
+        rows += [(id, *_test(saved, id), name, *_error(one)) for name, one in scored.items()]
+        if not channels:
+            rows.append((id, *_test(saved, id), "", "–", "not finite", ""))
+    return ("Test", "Kind", "Length", "Use", "Motion", "Before", "After", "RMSE"), rows
+
+
+def other_motions(saved: Saved, source: str) -> Rows:
+    """Errors of the motions beside those that count in the fit."""
+    rows = []
+    for id, channels in saved.errors(source).items():
+        rows += [(id, _use(saved, id), name, *_error(one)) for name, one in channels.items() if not one.in_objective]
+    return ("Test", "Use", "Motion", "Before", "After", "RMSE"), rows
+
+
+def _test(saved: Saved, id: str) -> tuple[str, str, str]:
+    """Kind, length and use of a test."""
+    about = saved.tests.get(id)
+    kind = " in ".join(filter(None, (KINDS.get(about.kind, about.kind), about.degree_of_freedom))) if about else ""
+    length = f"{number(about.duration, 3)} s" if about and about.duration is not None else ""
+    return kind, length, _use(saved, id)
+
+
+def _use(saved: Saved, id: str) -> str:
+    use = str(saved.baseline.error[id].get("use", ""))
+    return USE.get(use, use)
+
+
+def _error(error: Error) -> tuple[str, str, str]:
+    """Before and after calibration, over the motion's standard deviation; RMSE after."""
+    before = percent(error.before.relative) if error.before is not None else "–"
+    return before, percent(error.relative), f"{number(error.rmse, 2)} {error.unit}"
+
+
+def linear_quadratic(saved: Saved) -> Rows:
+    """The classical linear and quadratic damping of every decay with enough cycles, measured and simulated."""
+    rows = []
+    for id, about in saved.tests.items():
+        if (one := about.linear_quadratic) is not None:
+            values = [
+                text for term in (one.linear, one.quadratic)
+                for text in (with_deviation(term.measured, term.half_width), number(term.simulated, 3))
+            ]  # fmt: skip
+            rows.append((id, number(one.period, 4), *values, f"1/{one.unit}"))
+    heads = ("Test", "Period (s)", "p measured ± 95 % (1/s)", "p simulated (1/s)", "q measured ± 95 %", "q simulated")
+    return (*heads, "Unit of q"), rows
+
+
+def bands(saved: Saved, source: str) -> Rows:
+    """Errors of energy in bands, of tests in irregular waves."""
+    rows = [
+        (id, _use(saved, id), channel, BANDS.get(band, band.replace("_", " ")), *map(_signed, both))
+        for id, channels in saved.bands(source).items() for channel, row in channels.items() for band, both in row.items()
+    ]  # fmt: skip
+    return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
+
+
+def _signed(ratio: float | None) -> str:
+    if ratio is None:
+        return "–"
+    if 100 * ratio >= LARGEST_PERCENT:
+        return f"> {LARGEST_PERCENT:g} %"
+    return f"{whole:+d} %" if (whole := round(100 * ratio)) else "0 %"
+
+
+def outcome(saved: Saved) -> str:
+    """One line: the objective and how it was reached. Of tests in waves J is no objective: they are fitted by others."""
+    fitted = saved.baseline
+    in_waves = any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values())
+    name = "J, the sum" if in_waves else "Objective J, the sum"
+    parts = [f"{name} of RMSE over standard deviation: {number(fitted.objective.fit, 3)} over the fitted tests"]
+    if fitted.objective.holdout is not None:
+        parts.append(f"{number(fitted.objective.holdout, 3)} over those held out")
+    if fitted.iterations is not None and fitted.seconds is not None:
+        state = "converged" if fitted.converged else "stopped"
+        parts.append(f"{state} after {counted(fitted.iterations, 'iteration')} in {fitted.seconds:.0f} s")
+    return ", ".join(parts)
+
+
+def against(saved: Saved) -> Rows:
+    """Calibrated values beside the true ones."""
+    rows = []
+    for label, true in saved.truth.items():
+        one = saved.baseline.parameters.get(label)
+        if one is None:
+            rows.append((label, number(true, 3), "not calibrated", "", "–", "–"))
+            continue
+        sizes = ("–", "–")
+        if one.identifiable:
+            away = deviations_away(one, true)
+            sizes = (percent((one.value - true) / true) if true else "–", "–" if away is None else f"{away:+.1f} sd")
+        rows.append((label, number(true, 3), value_of(one), readable_unit(one.unit), *sizes))
+    return ("Parameter", "True", "Calibrated ± 1 sd", "Unit", "Off by", "Off by, in sd"), rows
+
+
+def deviations_away(one: Parameter, true: float) -> float | None:
+    """Standard deviations from the true value; None where the records do not determine the coefficient."""
+    sd = one.standard_deviation
+    return (one.value - true) / sd if one.identifiable and sd is not None and sd > 0 else None
+
+
+def agreement_with_truth(saved: Saved) -> str:
+    """How many coefficients lie near the true values, in a sentence."""
+    known = {label: saved.baseline.parameters.get(label) for label in saved.truth}
+    away = [None if one is None else deviations_away(one, saved.truth[label]) for label, one in known.items()]
+    near = sum(one is not None and abs(one) <= SURE for one in away)
+    largest = max((abs(one) for one in away if one is not None), default=None)
+    farthest = "" if largest is None else f"; the farthest is {largest:.1f} away"
+    return f"{near} of {len(away)} coefficients lie within {SURE:g} standard deviations of the true values{farthest}."
+
+
+def unfinished(partial: Calibration) -> Calibration:
+    """What was reached when the user stopped the fit, marked as not converged."""
+    return replace(partial, converged=False, notes=("stopped by the user before it converged", *partial.notes))

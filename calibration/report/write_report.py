@@ -1,0 +1,49 @@
+"""One self-contained HTML page of what is in a result folder."""
+
+from os import PathLike
+from pathlib import Path
+
+from calibration.results.read_calibration import read_as, read_saved
+from calibration.results.result_folder import DIAGNOSIS, REPORT, RESULT, UNCERTAINTY
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.files import write_whole
+
+SWEEP, RESULTS = "sweep.json", "results.zarr"
+
+
+def write_report(folder: str | PathLike[str]) -> Path:
+    """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
+    folder = Path(folder)
+    try:
+        there = [name for name in (DIAGNOSIS, RESULT, UNCERTAINTY, SWEEP) if folder.is_dir() and (folder / name).is_file()]
+    except (OSError, ValueError):
+        there = []
+    if not there and (folder / RESULTS).is_dir():
+        found = "one that was stopped: the same `jaxhydro sweep` goes on"
+        raise InputError(str(folder), [Problem("", "a sweep that is done", found)])
+    if not there:
+        found = "a file" if folder.is_file() else "no such folder"
+        found = f"no {RESULT}, {DIAGNOSIS}, {UNCERTAINTY} or {SWEEP}" if folder.is_dir() else found
+        expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
+        raise InputError(str(folder), [Problem("", expected, found)])
+    if there[0] == DIAGNOSIS:
+        from calibration.report.diagnosis_page import page as diagnosis_page
+        from calibration.results.read_diagnosis import read_diagnosis
+
+        text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS), folder)
+    elif there[0] == UNCERTAINTY:
+        from calibration.report.uncertainty_page import page as uncertainty_page
+        from calibration.results.read_uncertainty import SavedUncertainty
+
+        text = uncertainty_page(read_as(SavedUncertainty, folder / UNCERTAINTY), folder)
+    elif there[0] == SWEEP:
+        from calibration.report.sweep_page import SavedSweep
+        from calibration.report.sweep_page import page as sweep_page
+
+        text = sweep_page(read_as(SavedSweep, folder / SWEEP), folder)
+    else:
+        from calibration.report.calibration_page import page as calibration_page
+
+        text = calibration_page(read_saved(folder / RESULT), folder)
+    write_whole(folder / REPORT, text)
+    return folder / REPORT

@@ -1,0 +1,259 @@
+"""Tests in measured waves: the run of each file, the sea of its wave record, and the model's motion against what was measured.
+
+Windows of one file are one continuous run: its sea is made once, of the whole record, and the platform starts at rest with the
+file. Everything is SI at full scale.
+"""
+
+import dataclasses
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign.campaign_hints import motion_hints
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import WAVE
+from calibration.campaign.records import Record
+from calibration.campaign.runs import Run, runs
+from calibration.campaign.wave_band import wave_band
+from calibration.residuals.stretches import stretches, walk, window
+from calibration.result import Series, TestFit
+from jaxhydro.analysis.spectral import power_spectrum
+from jaxhydro.choices import check
+from jaxhydro.dynamics.model import CONVENTIONS, Model
+from jaxhydro.dynamics.observe import observe
+from jaxhydro.dynamics.requested_sea import share_within
+from jaxhydro.dynamics.simulate import largest_step
+from jaxhydro.dynamics.statics import equilibrium
+from jaxhydro.environment import DOFS, Environment
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.waves.irregular import separated_record
+from jaxhydro.waves.irregular_sea import Acting, IrregularSea
+from jaxhydro.waves.sea import Stretching
+from jaxhydro.waves.second_order import KINDS, Kind
+
+MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
+INSIDE = 0.95  # of its variance, that should lie in the band
+NO_ZERO = "the campaign states no `zero`: motions are taken as measured from the reference position"
+
+
+@dataclass(frozen=True)
+class Options:
+    """How waves are made and act. Frequencies (Hz, full scale) bound the first order; diffraction None: as the platform says.
+
+    In the default band: below it a sea has no first order worth the name, and what a gauge reads there is bound, or the basin's
+    own; above, waves are shorter than 17 m, and second order ceases to make sense of a record (it need not converge). `kinds`
+    of pairs bind at second order, differences of frequencies up to `highest_difference` (Hz; None: all), and act as `acting`
+    says, as in `IrregularSea`.
+    """
+
+    order: Literal[1, 2] = 2
+    stretching: Stretching = "vertical"
+    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
+    low: float = 0.03
+    cutoff: float = 0.3
+    kinds: tuple[Kind, ...] = KINDS
+    highest_difference: float | None = None
+    acting: Acting = "everywhere"
+
+    def __post_init__(self) -> None:
+        """Raises UnknownName for another order, stretching, diffraction, kind or place of action."""
+        check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
+        check(diffraction=(self.diffraction, (*CONVENTIONS["diffraction"], None)), acting=(self.acting, get_args(Acting)))
+        for kind in self.kinds:
+            check(kinds=(kind, KINDS))
+
+
+def options_of(campaign: Campaign) -> Options:
+    """The options of a campaign's seas where nothing is said: with its own band of frequencies."""
+    low, cutoff = wave_band(campaign.manifest, campaign.model, campaign.records)
+    return Options(low=low, cutoff=cutoff)
+
+
+def unusual(options: Options, asked: Collection[str] = ()) -> str:
+    """What of seas is not as `Options` has it where nothing is said, in words, what was `asked` for left aside."""
+    usual, words = Options(), []
+    of_second = {
+        "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",
+        "highest_difference": f"differences up to {options.highest_difference or 0:.3g} Hz",
+        "acting": f"bound waves act {options.acting}",
+    }  # fmt: skip
+    for name in (field.name for field in dataclasses.fields(options) if field.name not in asked):
+        if (value := getattr(options, name)) != getattr(usual, name) and (options.order == 2 or name not in of_second):
+            words.append(of_second.get(name, f"{name}: {value:.3g} Hz" if isinstance(value, float) else f"{name}: {value}"))
+    return ", ".join(words)
+
+
+@dataclass(frozen=True, eq=False)
+class RunSea:
+    """The sea of a run. `mismatch`: share of the record, in the band, that the orders asked for miss."""
+
+    sea: IrregularSea
+    mismatch: float
+    rounds: int
+    inside: float  # share of the record's variance in the band
+    notes: tuple[str, ...]
+
+
+Seas: TypeAlias = tuple[tuple[Run, RunSea], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class SeaTest:
+    """A test after its transient: measured and simulated motions and wave, and what its sea was. `peak_period` in s.
+
+    `fit.start` has nothing; every series is even in time.
+    """
+
+    fit: TestFit
+    wave: np.ndarray
+    simulated_wave: np.ndarray
+    peak_period: float
+    stated_height: float | None  # m: significant, or of regular waves
+    heading: float
+
+
+class Compared(NamedTuple):
+    """What `compare` finds: tests, seas by run, and words of warning."""
+
+    tests: tuple[SeaTest, ...]
+    seas: Seas
+    notes: tuple[str, ...]
+    step: float
+
+
+def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
+    """The sea of a run's whole record. Raises InputError where the band or the record do not do."""
+    inside = share_within(run.wave, run.step, options.low, options.cutoff)
+    try:
+        found = separated_record(run.time, run.wave, environment, position=run.position, heading=run.heading,
+                                 low=options.low, cutoff=options.cutoff, order=options.order, kinds=options.kinds,
+                                 highest_difference=options.highest_difference)  # fmt: skip
+    except ValueError as error:
+        expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
+        raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
+    sea = IrregularSea(
+        found.waves, environment, options.order, options.stretching, kinds=options.kinds,
+        highest_difference=options.highest_difference, acting=options.acting,
+    )  # fmt: skip
+    notes = []
+    band = f"{options.low:g} to {options.cutoff:g} Hz"
+    if found.mismatch > MISMATCH:
+        notes.append(f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
+                     "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it")  # fmt: skip
+    if inside < INSIDE:
+        notes.append(f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}; "
+                     "`wave_band` in campaign.yaml sets another band")  # fmt: skip
+    return RunSea(sea, found.mismatch, found.rounds, inside, tuple(notes))
+
+
+def with_diffraction(model: Model, options: Options) -> Model:
+    """The model with the diffraction asked for."""
+    return model if options.diffraction is None else dataclasses.replace(model, diffraction=options.diffraction)
+
+
+def sea_step(model: Model, options: Options) -> float:
+    """The largest time step (s) that follows the platform and the waves."""
+    return largest_step(model, options.cutoff)
+
+
+def seas_of(campaign: Campaign, environment: Environment, options: Options) -> Seas:
+    """The runs of a campaign and their seas. Raises InputError."""
+    return tuple((run, sea_of(run, environment, options)) for run in runs(campaign))
+
+
+def compare(
+    campaign: Campaign,
+    model: Model,
+    options: Options,
+    say: Callable[[str], Any] = lambda _: None,
+    made: Seas | None = None,
+) -> Compared:
+    """Simulate every run and compare, test by test. `made` are the runs and their seas, where those are at hand.
+
+    Raises InputError, and Diverged where a motion grows beyond all bounds.
+    """
+    model = with_diffraction(model, options)
+    made = seas_of(campaign, model.environment, options) if made is None else made
+    step = sea_step(model, options)
+    from_rest = campaign.manifest.zero is not None
+    origin = equilibrium(model) if from_rest else None
+    notes = [] if from_rest else [NO_ZERO]
+    tests = []
+    for run, one in made:
+        waves = one.sea.components
+        say(f"{run.file}: {waves.omega.size} waves of {run.time[-1] - run.time[0]:.0f} s, order {options.order}; simulating")
+        parts = stretches(run, run.records, model, options.low, options.cutoff)
+        try:
+            for part, found_there, _ in walk(model, run, parts, one.sea, step):
+                motion = np.full((len(run.time), 6), np.nan)
+                times = run.time[: part.end + 1]
+                readings = _observed(model, found_there.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)
+                motion[part.begin : part.end + 1] = there = np.asarray(readings)
+                if not np.isfinite(there).all():
+                    first = times[part.begin + np.argmin(np.isfinite(there).all(axis=1))]
+                    raise Diverged(f"{run.file}: the motion grows beyond all bounds at {first:.4g} s")
+                wave = one.sea.gauge(times[part.begin :], run.position)
+                wave = np.concatenate([np.full(part.begin, np.nan), wave])
+                tests += [_test(run, record, motion, wave, campaign.manifest.scale) for record in part.records]
+        except ValueError as error:
+            raise Diverged(f"{run.file}: {error}") from None
+        notes += [*run.notes, *one.notes]
+    notes += motion_hints(map(_moving, tests))
+    order = [record.id for record in campaign.records]
+    return Compared(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step)
+
+
+_observed = eqx.filter_jit(observe)
+
+
+class Diverged(ArithmeticError):
+    """A simulated motion that is no result."""
+
+
+MOVES = 0.2  # of the largest motion of its unit: what moves less is in the files, and neither in tables nor fitted
+
+
+def moving_channels(motions: Mapping[str, np.ndarray]) -> list[str]:
+    """The motions that are large beside others of their unit."""
+    return moving({name: float(np.std(values)) for name, values in motions.items()})
+
+
+def moving(size: Mapping[str, float]) -> list[str]:
+    """The same, by standard deviations (m, rad)."""
+    angle = {name: DOFS.index(name) > 2 for name in size}
+    largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
+    return [name for name in size if size[name] >= MOVES * largest[angle[name]]]
+
+
+def _moving(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Measured and simulated motion by channel, of those that move in the simulation."""
+    moving_ones = moving_channels({one.channel: one.simulated for one in test.fit.series})
+    return {one.channel: (one.measured, one.simulated) for one in test.fit.series if one.channel in moving_ones}
+
+
+def peak_period(run: Run, record: Record, scale: float) -> float:
+    """Stated peak period (s, full scale) of a test, or the period of its regular waves; as measured where none is stated."""
+    stated = record.test.peak_period if record.kind == "irregular" else record.test.period
+    if stated is not None:
+        return stated * scale**0.5
+    whole = window(run, record)
+    spectrum = power_spectrum(run.time[whole], run.wave[whole])
+    return 1 / float(spectrum.frequency[1:][np.argmax(spectrum.density[1:])])
+
+
+def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale: float) -> SeaTest:
+    """A test's samples after its transient, on the run's even clock."""
+    at, whole = run.samples(record), window(run, record)
+    series = tuple(
+        Series(dof, np.interp(whole, at, record.values[dof]), motion[whole, DOFS.index(dof)], 0.0, record.noise[dof], False)
+        for dof in DOFS if dof in record.values
+    )  # fmt: skip
+    test, time, measured = record.test, run.time[whole], run.wave[whole]
+    height = test.significant_wave_height if record.kind == "irregular" else test.wave_height
+    fit = TestFit(record.id, record.use, record.kind, None, time, series, {}, record.file)
+    stated = None if height is None else height * scale
+    return SeaTest(fit, measured, wave[whole], peak_period(run, record, scale), stated, run.heading)

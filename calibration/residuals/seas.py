@@ -1,0 +1,241 @@
+"""Tests in measured waves against the model, as residuals with their Jacobian: energies in bands, spectra, or motions.
+
+The windows of a file are one continuous run that starts at rest with it, in the sea of its own wave record, so its motions have
+no unknowns of their own: what is fitted is the model's parameters.
+"""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Literal
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+
+from calibration.campaign.records import Record
+from calibration.campaign.runs import Run
+from calibration.parameters.space import ParameterSpace
+from calibration.residuals.decays import group_products
+from calibration.residuals.measured_seas import Options, Seas, moving_channels, peak_period
+from calibration.residuals.sea_errors import bands_of
+from calibration.residuals.stretches import stretches, walk, window
+from jaxhydro.analysis.spectral import SEGMENT, band_weights
+from jaxhydro.dynamics.integrate import integrate
+from jaxhydro.dynamics.model import Model, State
+from jaxhydro.dynamics.observe import observe
+from jaxhydro.dynamics.simulate import farthest
+from jaxhydro.dynamics.statics import equilibrium
+from jaxhydro.environment import DOFS
+from jaxhydro.waves.sea_state import SeaState
+from jaxhydro.waves.support_sea import SupportSea
+
+Objective = Literal["bands", "spectrum", "motion", "both", "blocks"]
+OF_ENERGY = ("bands", "spectrum", "both")
+CELLS, CYCLES, LEAST = 8, 10.0, 0.01  # of a spectrum: cells of a band, their least width times the record, least energy
+# m, for a hull of the size of VolturnUS-S: that a motion may go beyond that of the declared model in one prepared sea
+MARGIN = 30.0
+
+
+class Energies(eqx.Module):
+    """Integrals of a motion's spectrum over bands: `analysis.BandWeights`, one row each, and what was measured (m2, rad2)."""
+
+    starts: Int[Array, " g"]
+    window: Float[Array, " s"]
+    weight: Float[Array, "b f"]
+    measured: Float[Array, " b"]
+    first: int = eqx.field(static=True)
+
+    def of(self, x: Float[Array, " n"]) -> Float[Array, " b"]:
+        """The integrals (m2, rad2) of a motion."""
+        parts = x[self.starts[:, None] + jnp.arange(self.window.shape[0])]
+        lines = jnp.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * self.window)
+        inside = lines[:, self.first : self.first + self.weight.shape[1]]
+        return self.weight @ (inside.real**2 + inside.imag**2).mean(axis=0)
+
+
+class Piece(eqx.Module):
+    """One motion of one test: its samples on the run's clock from `begin` on, and its energies in bands, if it has any."""
+
+    measured: Float[Array, " n"]
+    energies: Energies | None
+    begin: int = eqx.field(static=True)
+    dof: int = eqx.field(static=True)
+    test: str = eqx.field(static=True)
+    weight: float = eqx.field(static=True)  # of its residuals' squares
+    names: tuple[str, ...] = eqx.field(static=True)  # of the bands, each as often as it has cells
+
+
+class SeaRun(eqx.Module):
+    """One file, or a stretch of it: its sea on the clock of the time integration, and what was measured at `times` (s).
+
+    It starts at rest where `start` is None. `state` is its sea state where the model depends on that: stretches begin as the
+    model that the problem was posed for leaves the one before, which a test's transient forgets.
+    """
+
+    sea: SupportSea
+    times: Float[Array, " t"]
+    step: Float[Array, ""]
+    pieces: tuple[Piece, ...]
+    start: State | None
+    state: SeaState | None
+    steps: int = eqx.field(static=True)
+
+
+class SeaProblem(eqx.Module):
+    """A calibration's fixed part in waves. `from_rest`: motions count from the static equilibrium."""
+
+    model: Model
+    runs: tuple[SeaRun, ...]
+    rest: Float[Array, "6"] | None  # None where free parameters move the equilibrium
+    points: Float[Array, "3 p"]  # m, the hull's extremities
+    space: ParameterSpace = eqx.field(static=True)
+    from_rest: bool = eqx.field(static=True)
+    objective: Objective = eqx.field(static=True)
+    tail: Float[Array, " g"] | None = None  # of every group, where residuals cease to count by their squares
+
+    def motions(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, "t 6"], Float[Array, "t 6"]], ...]:
+        """Position of the reference point and readings of the sensors (m, rad), run by run at its times."""
+        model = self.space.model(self.model, x)
+        rest = equilibrium(model) if self.rest is None else self.rest
+        at_rest = State(rest, jnp.zeros(6), model.rest().memory)
+
+        def motion(run: SeaRun) -> tuple[Float[Array, "t 6"], Float[Array, "t 6"]]:
+            here = model if run.state is None else model.in_sea(run.state)
+            start = at_rest if run.start is None else run.start
+            grid = integrate(here, run.sea, start, run.times[0], run.step, run.steps, "ab4")
+            readings = observe(model, grid, run.times, rest if self.from_rest else None, in_waves=True)
+            return grid.at(run.times)[0], readings
+
+        return tuple(map(motion, self.runs))
+
+    @property
+    def observations(self) -> int:
+        """How many there are: one for every band, and one for every motion, whose residual's square is relative to its own."""
+        pieces = [piece for run in self.runs for piece in run.pieces]
+        return sum(self.in_bands) * sum(len(piece.names) for piece in pieces) + self.in_bands.count(False)
+
+    @property
+    def in_bands(self) -> tuple[bool, ...]:
+        """Of every group of residuals, whether it is of energies in bands."""
+        pieces = [piece for run in self.runs for piece in run.pieces]
+        motions = [piece for piece in pieces if self.sample_by_sample(piece)]
+        energies = self.objective in OF_ENERGY and any(piece.energies is not None for piece in pieces)
+        return (*([True] if energies else []), *[False] * len(motions))
+
+    def sample_by_sample(self, piece: Piece) -> bool:
+        """Whether a motion itself is fitted: of regular waves, which have no bands, it always is."""
+        return self.objective not in ("bands", "spectrum") or piece.energies is None
+
+    def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " _"], ...]:
+        """In one group ln(simulated / measured energy) by test, motion and band or cell of one; in others, motion by motion,
+        simulated less measured over the measured standard deviation and the root of the number of samples, each about its
+        mean."""
+        return self.look(x)[0]
+
+    def look(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
+        """`residuals`, and whether the hull stays in the box that every sea was prepared for: beyond, its flow is wrong."""
+        energies, motions = [], []
+        found = self.motions(x)
+        far = [farthest(one, self.points, run.sea) - run.sea.half for (one, _), run in zip(found, self.runs, strict=True)]
+        for run, (_, readings) in zip(self.runs, found, strict=True):
+            for piece in run.pieces:
+                there = readings[piece.begin : piece.begin + piece.measured.shape[0], piece.dof]
+                if self.objective in OF_ENERGY and piece.energies is not None:
+                    off = jnp.log(piece.energies.of(there) / piece.energies.measured)
+                    energies.append(math.sqrt(piece.weight) * off)
+                if self.sample_by_sample(piece):
+                    off = there - there.mean() - (piece.measured - piece.measured.mean())
+                    motions.append(off * math.sqrt(piece.weight / off.size) / jnp.std(piece.measured))
+        return (*([jnp.concatenate(energies)] if energies else []), *motions), (jnp.stack(far) <= 0).all()
+
+    def products(self, x: Float[Array, " p"]) -> Float[Array, "g k k"]:
+        """[J r]^T [J r] of every group, k the parameters and one."""
+        return group_products(self.residuals, x, self.tail)
+
+
+@eqx.filter_jit
+def look(problem: SeaProblem, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
+    """`SeaProblem.look`, compiled."""
+    return problem.look(x)
+
+
+def pose_in_waves(
+    model: Model,
+    made: Seas,
+    space: ParameterSpace,
+    options: Options,
+    *,
+    from_rest: bool,
+    scale: float,
+    step: float,
+    objective: Objective = "bands",
+) -> SeaProblem:
+    """The fixed part of a calibration of `model` to the tests marked `fit` of runs; `step` (s) is the largest time step."""
+    found = []
+    for run, sea in made:
+        parts = stretches(run, run.records, model, options.low, options.cutoff)
+        fitted = [[record for record in part.records if record.use == "fit"] for part in parts]
+        last = max((i for i, records in enumerate(fitted) if records), default=-1)
+        if len(parts) == 1 and last == 0:  # no further than what is fitted
+            parts = (parts[0]._replace(end=max(int(run.samples(record)[-1]) for record in fitted[0])),)
+        margin = MARGIN * float(model.size)
+        for (part, taken, start), records in zip(walk(model, run, parts[: last + 1], sea.sea, step, margin), fitted):
+            if records:
+                pieces = tuple(piece for r in records for piece in _pieces(run, r, scale, part.begin, objective == "spectrum"))
+                times = jnp.asarray(run.time[part.begin : part.end + 1])
+                # arrays, so that another state is not compiled anew
+                state = None if part.state is None else jax.tree.map(jnp.asarray, part.state)
+                found.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, start, state, taken.steps))
+    points, rest = jnp.asarray(model.hull.extremities()), None if space.moves_equilibrium else equilibrium(model)
+    return SeaProblem(model, tuple(found), rest, points, space, from_rest, objective)
+
+
+def _pieces(run: Run, record: Record, scale: float, begin: int, cut: bool) -> list[Piece]:
+    """The motions of a test that are worth fitting, after its transient, on the run's even clock from sample `begin` on, their
+    bands `cut` into cells or not."""
+    at, whole = run.samples(record), window(run, record)
+    values = {dof: np.interp(whole, at, record.values[dof]) for dof in DOFS if dof in record.values}
+    period = peak_period(run, record, scale)
+    pieces = []
+    for dof in moving_channels(values):
+        limits = bands_of(dof, period) if record.kind == "irregular" else {}
+        made = [(name, energies_of(values[dof], run.step, *limit, cut)) for name, limit in limits.items()]
+        names = tuple(name for name, one in made for _ in one.measured)
+        energies = joined([one for _, one in made]) if made else None
+        first, stated = int(whole[0]) - begin, record.test.weight
+        pieces.append(Piece(jnp.asarray(values[dof]), energies, first, DOFS.index(dof), record.id, stated, names))
+    return pieces
+
+
+def energies_of(x: Float[np.ndarray, " n"], step: float, low: float, high: float, cut: bool) -> Energies:
+    """The energy of a record, sampled every `step` (s), between `low` and `high` (Hz): in one band, or `cut` into equal cells.
+
+    A cell is no narrower than 1 / `CYCLES` of the record allows, by which its energy is that of `CYCLES` periods at least, and
+    two lines of the spectrum; there are `CELLS` at most. Cells with less than `LEAST` of the largest one's energy are left out:
+    the logarithm of what hardly moves is that of the sensor's noise.
+    """
+    line = 1 / min(SEGMENT, len(x) * step)
+    narrowest = max(CYCLES / (len(x) * step), 2 * line)
+    count = int(np.clip((high - low) / narrowest, 1, CELLS)) if cut else 1
+    edges = np.linspace(low, high, count + 1)
+    made = [band_weights(len(x), step, *pair) for pair in pairwise(edges)]
+    measured = np.array([one.integral(x) for one in made])
+    kept = [i for i in range(count) if measured[i] >= LEAST * measured.max()]
+    first = min(made[i].first for i in kept)
+    weight = np.zeros((len(kept), max(made[i].first + len(made[i].weight) for i in kept) - first))
+    for row, i in zip(weight, kept):
+        row[made[i].first - first :][: len(made[i].weight)] = made[i].weight
+    starts, taper = jnp.asarray(made[0].starts), jnp.asarray(made[0].window)
+    return Energies(starts, taper, jnp.asarray(weight), jnp.asarray(measured[kept]), first)
+
+
+def joined(parts: Sequence[Energies]) -> Energies:
+    """Bands of one motion as one."""
+    first = min(one.first for one in parts)
+    end = max(one.first + one.weight.shape[1] for one in parts)
+    rows = [jnp.pad(one.weight, ((0, 0), (one.first - first, end - one.first - one.weight.shape[1]))) for one in parts]
+    measured = jnp.concatenate([one.measured for one in parts])
+    return Energies(parts[0].starts, parts[0].window, jnp.concatenate(rows), measured, first)

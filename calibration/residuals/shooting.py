@@ -1,0 +1,217 @@
+"""Multiple shooting: tests in waves fitted by blocks, each simulated from an initial state of its own.
+
+Over an hour a natural period that is slightly wrong puts slow motions out of phase: the sum of squares of the whole motion has
+many minima, and is about phase alone. In a block of a few periods the phase cannot wander. What is unknown beside the
+parameters: position and rate of the fitted motions at every block's start, with a vague prior about what the record has there,
+and of every motion of a test a constant, for only what is about the mean is fitted. What is not fitted, and loads' memories,
+start from where the continuous run is, of the model that a round of the fit begins with. That blocks join is not asked for; how
+far they do not says what the model lacks.
+
+Bock 1983, Recent advances in parameter identification techniques for O.D.E.; Bock and Plitt 1984, A multiple shooting algorithm
+for direct solution of optimal control problems, IFAC Proceedings 17(2), 1603-1608.
+"""
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from calibration.parameters.space import ParameterSpace
+from calibration.residuals.blocks import Blocks, Cutting
+from calibration.residuals.decays import Unknowns
+from calibration.residuals.seas import SeaProblem, SeaRun
+from jaxhydro.dynamics.integrate import MORE, Grid, integrate, states
+from jaxhydro.dynamics.model import Model, State
+from jaxhydro.dynamics.observe import motion_behind, observe
+from jaxhydro.dynamics.simulate import farthest
+from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.environment import DOFS
+
+
+class Shot(NamedTuple):
+    """What blocks come to: residuals, where they begin and where they are when the next one begins (m, rad), and how far the
+    hull goes beyond the sea's box (m)."""
+
+    residual: Float[Array, "b c t"]
+    first: Float[Array, "b c"]
+    last: Float[Array, "b c"]
+    beyond: Float[Array, " b"]
+
+
+class BlockProblem(eqx.Module):
+    """A calibration's fixed part in waves, by blocks.
+
+    Its `Unknowns`: `shared` are the parameters' coordinates and every motion's constant, `own` position and rate of every
+    block. What is recorded of a motion is its position from `rest`, or from the reference position, plus its constant.
+    """
+
+    sea: SeaProblem
+    blocks: tuple[Blocks, ...]  # of every run
+    constant: Float[Array, " m"]  # m, rad: the difference of the means at first
+    wide: Float[Array, " m"]  # what a coordinate of 1 adds
+    dofs: tuple[int, ...] = eqx.field(static=True)
+
+    @property
+    def model(self) -> Model:
+        return self.sea.model
+
+    @property
+    def space(self) -> ParameterSpace:
+        return self.sea.space
+
+    @property
+    def observations(self) -> int:
+        """One for every motion of a test."""
+        return self.constant.shape[0]
+
+    @property
+    def piece(self) -> Int[Array, "b c"]:
+        """`Blocks.piece` of all."""
+        return jnp.concatenate([one.piece for one in self.blocks])
+
+    def begin(self) -> Unknowns:
+        """From the starting values, and from what the records have."""
+        shared = jnp.concatenate([self.space.start, jnp.zeros(self.observations)])
+        return Unknowns(shared, jnp.zeros((len(self.piece), 2 * len(self.dofs))))
+
+    def continued(self, x: Float[Array, " p"]) -> "BlockProblem":
+        """With what is not fitted where the continuous runs of other coefficients are."""
+        model = self.space.model(self.model, x)
+        paths = [_continuous(model, run) for run in self.sea.runs]
+        found = [jax.tree.map(lambda leaf, b=b: leaf[b.begin], path) for path, b in zip(paths, self.blocks, strict=True)]
+        return eqx.tree_at(lambda problem: [blocks.state for blocks in problem.blocks], self, found)
+
+    def simulated(
+        self, x: Float[Array, " p"], constants: Float[Array, " m"], own: Float[Array, " o"], block: Blocks, run: SeaRun
+    ) -> tuple[Float[Array, "c t"], Grid, Float[Array, " c"]]:
+        """What one block should have read, its motion, and the constants."""
+        model, dofs = self.space.model(self.sea.model, x), jnp.array(self.dofs)
+        here = model if run.state is None else model.in_sea(run.state)
+        base = jnp.zeros(6)
+        if self.sea.from_rest:
+            base = equilibrium(model) if self.sea.rest is None else self.sea.rest
+        constant = jnp.append(self.constant + self.wide * constants, 0.0)[block.piece]
+        position, rate = block.smooth + block.loose * own.reshape(2, -1)
+        fitted, there = block.loose[0] > 0, block.state
+        rates = model.position_rate(there.position, there.velocity)
+        reading, reading_rate = jax.jvp(model.seen, (there.position,), (rates,))
+        origin = model.seen(base)[dofs]
+        reading = reading.at[dofs].set(jnp.where(fitted, origin + position - constant, reading[dofs]))
+        reading_rate = reading_rate.at[dofs].set(jnp.where(fitted, rate, reading_rate[dofs]))
+        q, rates = motion_behind(model, reading, reading_rate)
+        sea = run.sea.from_step(block.begin, block.steps + MORE)
+        state = State(q, model.body_velocity(q, rates), there.memory)
+        grid = integrate(here, sea, state, sea.start, run.step, block.steps, "ab4")
+        readings = observe(model, grid, block.times, base, in_waves=True)[:, dofs]
+        return (readings + constant).T, grid, constant
+
+    def shoot(self, unknowns: Unknowns) -> Shot:
+        """All blocks."""
+        x, constants = jnp.split(unknowns.shared, [len(self.space.free)])
+
+        def one(own: Array, block: Blocks, run: SeaRun) -> Shot:
+            seen, grid, _ = self.simulated(x, constants, own, block, run)
+            ends = grid.position[:, jnp.array(self.dofs)]  # of the platform itself: what is to join
+            beyond = farthest(grid.position, self.sea.points, run.sea) - run.sea.half
+            return Shot((seen - block.measured) * block.factor, ends[0], ends[block.span], beyond)
+
+        found = self._by_run(unknowns.own, one)
+        longest = max(shot.residual.shape[2] for shot in found)
+        found = [s._replace(residual=jnp.pad(s.residual, ((0, 0), (0, 0), (0, longest - s.residual.shape[2])))) for s in found]
+        return jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
+
+    def products(self, unknowns: Unknowns, until: Float[Array, " b"]) -> Float[Array, "b c+1 k k"]:
+        """For every block and channel [J r]^T [J r], k the unknowns and one; the last channel is the prior of its own unknowns.
+
+        `until` is there for `condensed`.
+        """
+        p = len(self.space.free)
+        x, constants = jnp.split(unknowns.shared, [p])
+        m, o = len(constants), unknowns.own.shape[1]
+        widths = jnp.append(self.wide, 0.0)
+
+        def one(own: Array, block: Blocks, run: SeaRun) -> Array:
+            def residual(z):
+                r = (self.simulated(z[:p], constants, z[p:], block, run)[0] - block.measured) * block.factor
+                return r, r
+
+            slope, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([x, own]))
+            # a constant moves what is read, and, against it, the position that the block begins at
+            safe = jnp.where(block.loose[0] > 0, block.loose[0], jnp.inf)
+            at_start = slope[..., p : p + o // 2] / safe
+            each = (jnp.eye(o // 2)[:, None] * block.factor[..., None] - at_start) * widths[block.piece]
+            by_constant = each @ jax.nn.one_hot(block.piece, m)
+            full = jnp.concatenate([slope[..., :p], by_constant, slope[..., p:], r[..., None]], axis=-1)
+            prior = jnp.concatenate([jnp.zeros((o, p + m)), jnp.eye(o), own[:, None]], axis=1)
+            return jnp.concatenate([jnp.einsum("ctk,ctl->ckl", full, full), (prior.T @ prior)[None]])
+
+        return jnp.concatenate(self._by_run(unknowns.own, one))
+
+    def _by_run(self, own: Array, one: Callable[[Array, Blocks, SeaRun], Any]) -> list[Any]:
+        """one(own unknowns, block, run) of every block, block after block; one entry for each run."""
+        found, done = [], 0
+        for run, blocks in zip(self.sea.runs, self.blocks, strict=True):
+            count = blocks.begin.shape[0]
+            found.append(jax.lax.map(partial(_of_pair, one, run), (own[done : done + count], blocks)))
+            done += count
+        return found
+
+
+def _of_pair(one: Callable[[Array, Blocks, SeaRun], Any], run: SeaRun, pair: tuple[Array, Blocks]) -> Any:
+    return one(*pair, run)
+
+
+@eqx.filter_jit
+def shoot(problem: BlockProblem, unknowns: Unknowns) -> Shot:
+    """`BlockProblem.shoot`, compiled."""
+    return problem.shoot(unknowns)
+
+
+def pose_blocks(sea: SeaProblem, period: float) -> BlockProblem:
+    """The tests of a problem in waves, cut into blocks of `CYCLES` times a period (s)."""
+    dofs = _fitted(sea)
+    total = sum(len(run.pieces) for run in sea.runs)
+    origin = sea.model.seen(equilibrium(sea.model) if sea.from_rest else jnp.zeros(6))
+    late = sea.model.clock_lag()
+    lag = 0.0 if late is None else float(late)
+    blocks: list[Blocks] = []
+    constant: list[float] = []
+    wide: list[float] = []
+    for run in sea.runs:
+        path = _continuous(sea.model, run)
+        readings = np.asarray(sea.model.seen(path.position) - origin)
+        made = Cutting(run, path, dofs, [], lag)
+        for test in dict.fromkeys(piece.test for piece in run.pieces):
+            pieces = [piece for piece in run.pieces if piece.test == test]
+            made.cut(pieces, range(len(constant), len(constant) + len(pieces)), period, total)
+            for piece in pieces:
+                x = np.asarray(piece.measured)
+                at = made.step_of(np.arange(piece.begin, piece.begin + len(x)))
+                constant.append(float(x.mean() - readings[at, piece.dof].mean()))
+                wide.append(float(x.std()))
+        blocks.append(made.stacked())
+    return BlockProblem(sea, tuple(blocks), jnp.asarray(constant), jnp.asarray(wide), dofs)
+
+
+def slowest(sea: SeaProblem) -> float:
+    """The longest natural period (s) of the motions that are fitted; inf where none has one."""
+    modes = natural_modes(sea.model)
+    periods = [modes.of(DOFS[dof]) for dof in _fitted(sea)]
+    return max((period for period in periods if math.isfinite(period)), default=math.inf)
+
+
+def _fitted(sea: SeaProblem) -> tuple[int, ...]:
+    return tuple(sorted({piece.dof for run in sea.runs for piece in run.pieces}))
+
+
+def _continuous(model: Model, run: SeaRun) -> State:
+    """A run as one simulation: the state after every step."""
+    here = model if run.state is None else model.in_sea(run.state)
+    start = State(equilibrium(model), jnp.zeros(6), model.rest().memory) if run.start is None else run.start
+    return states(here, run.sea, start, run.times[0], run.step, run.steps)

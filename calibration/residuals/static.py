@@ -1,0 +1,143 @@
+"""Static offsets and natural periods against the model: residuals that need no simulation."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from calibration.campaign.manifest import Period
+from calibration.campaign.records import Record
+from calibration.parameters.space import ParameterSpace
+from calibration.residuals.decays import group_products
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised, strain_energy
+from jaxhydro.environment import DOFS
+
+ALIKE = 0.7  # of a mode's largest share of strain energy: surge and sway of one period may come mixed
+NEAR = 1e-4  # of an eigenvalue, off which inverse iterations are shifted
+CORRECTIONS = 3  # steps of Newton's method, where sensors track another point
+
+
+class OffsetProblem(eqx.Module):
+    """Means of static tests in which an unknown force holds one motion where it was measured; the others follow from balance.
+
+    A residual is in shares of the held motion, an angle counting as the length (m) times it.
+    """
+
+    model: Model
+    measured: Float[Array, "s 6"]  # m, rad; from the position measured as zero
+    unit: Float[Array, "s 6"]  # m, rad: what counts as 1
+    held: tuple[int, ...] = eqx.field(static=True)
+    compared: tuple[tuple[int, int], ...] = eqx.field(static=True)  # test and motion
+    space: ParameterSpace = eqx.field(static=True)
+    from_rest: bool = eqx.field(static=True)
+    tail: Float[Array, "1"] | None = None
+
+    def readings(self, x: Float[Array, " p"]) -> Float[Array, "s 6"]:
+        """What the sensors read in every test (m, rad), from the position measured as zero."""
+        model = self.space.model(self.model, x)
+        base = equilibrium(model) if self.from_rest else jnp.zeros(6)
+
+        def reading(dof: int, at: Float[Array, ""]) -> Float[Array, "6"]:
+            return model.seen(held_at(model, dof, at)) - model.seen(base)
+
+        def held(dof: int, measured: Float[Array, ""]) -> Float[Array, ""]:
+            """Where the motion of the platform is held for the tracked point to read what was measured (Newton)."""
+
+            def corrected(_: int, at: Float[Array, ""]) -> Float[Array, ""]:
+                value, slope = jax.jvp(lambda at: reading(dof, at)[dof], (at,), (jnp.ones_like(at),))
+                return at + (measured - value) / slope
+
+            return jax.lax.fori_loop(0, CORRECTIONS if model.senses else 0, corrected, measured + base[dof])
+
+        return jnp.stack([reading(dof, held(dof, q[dof])) for dof, q in zip(self.held, self.measured, strict=True)])
+
+    def residuals(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
+        off = (self.readings(x) - self.measured) / self.unit
+        return off[tuple(jnp.array(self.compared).T)]
+
+    def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:
+        """One group."""
+        return group_products(lambda x: (self.residuals(x),), x, self.tail)
+
+
+def pose_offsets(model: Model, records: Sequence[Record], space: ParameterSpace, from_rest: bool) -> OffsetProblem:
+    """Static tests with a `degree_of_freedom`, which is the motion that was held."""
+    length = characteristic_length(model)
+    lengths = np.array([1.0, 1.0, 1.0, length, length, length])
+    shape = (len(records), 6)
+    measured, unit = np.zeros(shape), np.ones(shape)
+    held, compared = [], []
+    for i, record in enumerate(records):
+        dof = DOFS.index(str(record.degree_of_freedom))
+        held.append(dof)
+        for name, values in record.values.items():
+            measured[i, DOFS.index(name)] = float(np.mean(values))
+            compared += [(i, DOFS.index(name))] if DOFS.index(name) != dof else []
+        unit[i] = max(abs(measured[i, dof]) * lengths[dof], 1e-3) / lengths
+    return OffsetProblem(
+        model, jnp.asarray(measured), jnp.asarray(unit), tuple(held), tuple(compared), space, from_rest
+    )  # fmt: skip
+
+
+class PeriodProblem(eqx.Module):
+    """Stated natural periods: ln(T / stated) over its relative standard deviation. T is that of the undamped natural mode in
+    which the motion has the largest strain energy (`natural_modes`)."""
+
+    model: Model
+    stated: Float[Array, " n"]  # s
+    deviation: Float[Array, " n"]  # relative
+    dofs: tuple[int, ...] = eqx.field(static=True)
+    space: ParameterSpace = eqx.field(static=True)
+    tail: Float[Array, "1"] | None = None
+
+    def periods(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
+        """(s)"""
+        model = self.space.model(self.model, x)
+        return jnp.stack([natural_period(model, dof) for dof in self.dofs])
+
+    def residuals(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
+        return jnp.log(self.periods(x) / self.stated) / self.deviation
+
+    def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:
+        """One group."""
+        return group_products(lambda x: (self.residuals(x),), x, self.tail)
+
+
+def natural_period(model: Model, dof: int) -> Float[Array, ""]:
+    """The period of `natural_modes(model).of`, differentiable: T = 2 pi (l M r / l K r)^0.5, l and r the left and right
+    eigenvectors of M^-1 K, whose own change is of second order in T (Fox and Kapoor 1968, AIAA Journal 6, 2426-2429).
+
+    They come from the symmetric part of K, and by two inverse iterations from K itself. NaN where nothing restores the motion.
+    """
+    mass, stiffness = linearised(model, equilibrium(model))
+    m, k = jax.lax.stop_gradient((mass, stiffness))
+    half = jnp.linalg.cholesky(m)
+
+    def scaled(matrix: Float[Array, "6 6"]) -> Float[Array, "6 6"]:
+        inner = jax.scipy.linalg.solve_triangular(half, matrix, lower=True)
+        return jax.scipy.linalg.solve_triangular(half, inner.T, lower=True).T
+
+    whole = scaled(k)
+    square, vectors = jnp.linalg.eigh(0.5 * (whole + whole.T))
+    share = strain_energy(k, jax.scipy.linalg.solve_triangular(half.T, vectors, lower=False))
+    mine = (share[dof] > ALIKE * share.max(axis=0)) & (square > 1e-10 * jnp.abs(square).max())
+    at = jnp.argmin(jnp.where(mine, square, jnp.inf))
+    right = left = vectors[:, at]
+    near = whole - square[at] * (1 + NEAR) * jnp.eye(6)
+    for _ in range(2):
+        right, left = (x / jnp.linalg.norm(x) for x in (jnp.linalg.solve(near, right), jnp.linalg.solve(near.T, left)))
+    right, left = (jax.scipy.linalg.solve_triangular(half.T, x, lower=False) for x in (right, left))
+    period = 2 * jnp.pi * jnp.sqrt((left @ mass @ right) / (left @ stiffness @ right))
+    return jnp.where(mine.any(), period, jnp.nan)
+
+
+def pose_periods(model: Model, stated: Mapping[Any, Period], space: ParameterSpace, scale: float) -> PeriodProblem:
+    """Periods by motion, at the scale of the files."""
+    values = jnp.array([one.value * scale**0.5 for one in stated.values()])
+    deviations = jnp.array([one.standard_deviation / one.value for one in stated.values()])
+    return PeriodProblem(model, values, deviations, tuple(DOFS.index(dof) for dof in stated), space)

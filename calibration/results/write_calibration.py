@@ -1,0 +1,243 @@
+"""What a calibration leaves behind: calibration.json, simulated.nc and figures, in one folder, whole or not at all."""
+
+import math
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+import jaxhydro
+from calibration.decay_analysis.linear_quadratic import classical
+from calibration.result import Calibration, Series, TestFit
+from calibration.results.result_folder import RESULT, draw, or_null, outdated, write_json, write_motion
+from jaxhydro.dynamics.model import Model
+from jaxhydro.environment import DOFS
+from jaxhydro.files import staged
+from jaxhydro.loads.sea_state_law import reference_of
+from jaxhydro.platform.drag_laws import drag_laws_of
+from jaxhydro.units import for_people, unit_of
+
+_EVEN = 1e-3  # of a step: times that differ by less are the same
+
+
+class NotFinite(ValueError):
+    """A result that is not a number, which no file can hold: the simulation of a fitted test grew beyond all bounds."""
+
+
+def write_calibration(
+    calibration: Calibration, folder: str | PathLike[str], figures: bool = True, truth: Mapping[str, float] | None = None
+) -> Path:
+    """Write all results into `folder` (made where absent); gives the folder.
+
+    The results of an earlier calibration there are replaced when the new ones are complete, its report page taken away;
+    other files stay. Angles are in degrees. `truth` are the coefficients that a synthetic campaign was made with: they are
+    written beside the result, for its report. Raises NotFinite, and InputError where the folder cannot be written.
+    """
+    folder = Path(folder)
+    with staged(folder, lambda temporary: outdated(folder, temporary)) as temporary:
+        drawn = []
+        if figures:
+            from calibration.plots import decay_figures as plot
+
+            drawn = draw(plot.figures(calibration), temporary)
+        known = {} if truth is None else {"truth": dict(truth)}
+        write_json({**document(calibration), **known, "figures": drawn}, temporary / RESULT)
+        write_motion(dataset(calibration), temporary)
+    return folder
+
+
+def document(calibration: Calibration) -> dict[str, Any]:
+    """The content of calibration.json. See outputs.schema.json; What goes beyond it is for reports."""
+    # offsets and periods alone have no series
+    fit = calibration.objective("fit") if any(test.use == "fit" for test in calibration.tests) else 0.0
+    if fit is None or not math.isfinite(fit):
+        raise NotFinite("the simulated motion of a fitted test is not finite")
+    parameters = {}
+    for label, one in calibration.parameters.items():
+        if not math.isfinite(one.value):
+            raise NotFinite(f"the parameter {label} is not finite")
+        parameters[label] = {
+            "value": float(one.value),
+            "standard_deviation": or_null(one.standard_deviation),
+            "unit": one.unit,
+            "at_bound": one.at_bound,
+            "identifiable": one.identifiable,
+            "start": or_null(one.start),
+            "meaning": one.meaning,
+        }
+    return {
+        "campaign": calibration.campaign,
+        "platform": calibration.platform,
+        "jaxhydro": jaxhydro.__version__,
+        "baseline": {
+            "parameters": parameters,
+            "error": {test.id: _errors(test) for test in calibration.tests},
+            "objective": {"fit": fit, "holdout": or_null(calibration.objective("holdout"))},
+            "converged": bool(calibration.converged),
+            "iterations": int(calibration.iterations),
+            "seconds": or_null(calibration.seconds),
+            "history": [or_null(value) for value in calibration.history],
+            "notes": list(calibration.notes),
+            **_laws(calibration),
+        },
+        "tests": {test.id: _about(test) for test in calibration.tests},
+    }
+
+
+def _laws(calibration: Calibration) -> dict[str, Any]:
+    """The sea state that exponents among the parameters count from (m, s), and laws of drag that is not plain."""
+    reference, drag = reference_of(calibration.model.loads), drag_laws(calibration.model)
+    found: dict[str, Any] = {} if reference is None else {"sea_state_reference": reference._asdict()}
+    return found | ({"drag_laws": drag} if drag else {})
+
+
+def drag_laws(model: Model) -> dict[str, dict[str, Any]]:
+    """Coefficient -> its law, as a platform file has it, for those that are not of plain drag."""
+    return {label: law.model_dump(exclude_none=True) for label, law in drag_laws_of(model).items()}
+
+
+def _errors(test: TestFit) -> dict[str, Any]:
+    """RMSE by channel; what is not finite (a held-out test's motion that diverged) is left out."""
+    errors: dict[str, Any] = {"use": test.use}
+    for series in test.series:
+        if math.isfinite(series.rmse) and math.isfinite(series.relative):
+            errors[series.channel] = {
+                **_error(series.channel, series.rmse, series.relative),
+                "in_objective": bool(series.scored),
+                "before": _before(test, series),
+            }
+    return errors | _bands(test, "bands", "after")
+
+
+def _bands(test: TestFit, key: str, name: str) -> dict[str, Any]:
+    """Band errors of one model under `key`, where there are any that are finite."""
+    each = {channel: {k: v for k, one in row.items() if math.isfinite(v := float(getattr(one, name)))}
+            for channel, row in test.bands.items()}  # fmt: skip
+    return {key: {channel: row for channel, row in each.items() if row}} if any(each.values()) else {}
+
+
+def _error(channel: str, rmse: float, relative: float) -> dict[str, Any]:
+    return {"rmse": float(for_people(channel, rmse)), "unit": unit_of(channel), "relative": float(relative)}
+
+
+def _before(test: TestFit, series: Series) -> dict[str, Any] | None:
+    start = test.start.get(series.channel)
+    if start is None or not np.isfinite(start).all():
+        return None
+    rmse = float(np.sqrt(np.mean((series.measured - start) ** 2)))
+    return _error(series.channel, rmse, rmse / max(float(np.std(series.measured)), 1e-300))
+
+
+def _about(test: TestFit) -> dict[str, Any]:
+    return {
+        "use": test.use,
+        "kind": test.kind,
+        "degree_of_freedom": test.degree_of_freedom,
+        "file": test.file,
+        "duration": float(test.time[-1] - test.time[0]),
+        "samples": len(test.time),
+        **_bands(test, "bands_before", "before"),  # the contract's `error` has no place for it
+        **_linear_quadratic(test),
+    }
+
+
+def _linear_quadratic(test: TestFit) -> dict[str, Any]:
+    """The classical analysis of a decay, measured and simulated; nothing where it has too few cycles."""
+    if test.kind != "decay":
+        return {}
+    main = test.main
+    try:
+        measured, simulated = (classical(test.time, x, main.noise).fit for x in (main.measured, main.simulated))
+    except ValueError:
+        return {}
+    terms = {
+        name: {
+            "measured": float(getattr(measured, name).value),
+            "half_width": 0.5 * float(getattr(measured, name).upper - getattr(measured, name).lower),
+            "simulated": float(getattr(simulated, name).value),
+        }
+        for name in ("linear", "quadratic")
+    }
+    if not all(math.isfinite(x) for term in terms.values() for x in term.values()):
+        return {}
+    unit = "m" if unit_of(main.channel) == "m" else "rad"
+    return {"linear_quadratic": {"period": measured.period, "unit": unit, **terms}}
+
+
+def dataset(calibration: Calibration) -> xr.Dataset:
+    """Measured and simulated series of all tests, (test, channel, time), nan where there is none; m and deg.
+
+    `time` counts from every test's own start (`start_time`, on its file's axis). Tests sampled alike keep their
+    samples; others are interpolated linearly to the finest sampling, which the attribute `sampling` says.
+    """
+    tests = calibration.tests
+    channels = [dof for dof in DOFS if any(series.channel == dof for test in tests for series in test.series)]
+    times = [test.time - test.time[0] for test in tests]
+    axis, alike = common_axis(times)
+    shape = (len(tests), len(channels), len(axis))
+    motion = {name: np.full(shape, np.nan) for name in ("measured", "simulated", "before")}
+    each = {name: np.full(shape[:2], np.nan) for name in ("noise", "sensor_offset")}
+    scored = np.zeros(shape[:2], dtype="int8")
+    for i, (test, time) in enumerate(zip(tests, times)):
+        for series in test.series:
+            j, name = channels.index(series.channel), series.channel
+            values = {"measured": series.measured, "simulated": series.simulated, "before": test.start.get(name)}
+            for key, column in values.items():
+                if column is None:
+                    continue
+                column = for_people(name, column)
+                if alike:
+                    motion[key][i, j, : len(time)] = column
+                else:
+                    motion[key][i, j] = np.interp(axis, time, column, left=np.nan, right=np.nan)
+            each["noise"][i, j] = for_people(name, series.noise)
+            each["sensor_offset"][i, j] = for_people(name, series.offset)
+            scored[i, j] = series.scored
+    both = "m; deg for roll, pitch and yaw"
+    long = {
+        "measured": "measured motion of the reference point, still water at zero, sensor offset taken off",
+        "simulated": "motion of the calibrated model",
+        "before": "motion of the model before calibration",
+        "noise": "standard deviation of the measurement noise",
+        "sensor_offset": "sensor offset that was taken off the measured series",
+    }
+    dims, units = ("test", "channel", "time"), [unit_of(name) for name in channels]
+    data: dict[str, Any] = {}
+    for name, array in (motion | each).items():
+        data[name] = (dims[: array.ndim], array, {"units": both, "long_name": long[name]})
+    data["in_objective"] = (dims[:2], scored, {"units": "1", "long_name": "1 where the series counts in the objective"})
+    text = {"use": "fit, holdout or ignore", "kind": "kind of test", "degree_of_freedom": "motion that was released"}
+    coordinates: dict[str, Any] = {
+        "time": ("time", axis, {"units": "s", "long_name": "time since the start of the test"}),
+        "test": ("test", np.array([test.id for test in tests], dtype=object), {"long_name": "test"}),
+        "channel": ("channel", np.array(channels, dtype=object), {"long_name": "motion"}),
+        "unit": ("channel", np.array(units, dtype=object), {"long_name": "unit of the channel"}),
+        "start_time": (
+            "test", np.array([float(test.time[0]) for test in tests]),
+            {"units": "s", "long_name": "start of the test on its file's time axis, at full scale"},
+        ),
+        **{name: ("test", np.array([getattr(test, name) or "" for test in tests], dtype=object), {"long_name": words})
+           for name, words in text.items()},
+    }  # fmt: skip
+    about = {
+        "title": f"Calibration of {calibration.campaign}",
+        "source": f"jaxhydro {jaxhydro.__version__}",
+        "converged": int(calibration.converged),
+        "sampling": "as recorded" if alike else "interpolated linearly to the finest sampling",
+    }
+    return xr.Dataset(data, coordinates, about)
+
+
+def common_axis(times: list[np.ndarray]) -> tuple[np.ndarray, bool]:
+    """One time axis, and whether every test's samples lie on it."""
+    if not times:
+        return np.zeros(0), True
+    longest = max(times, key=len)
+    step = min(float(np.median(np.diff(time))) for time in times)
+    if all(np.abs(longest[: len(time)] - time).max() < _EVEN * step for time in times):
+        return longest, True
+    end = max(float(time[-1]) for time in times)
+    return step * np.arange(math.floor(end / step * (1 + 1e-12)) + 1), False

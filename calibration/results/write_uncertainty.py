@@ -1,0 +1,186 @@
+"""What `jaxhydro uncertainty` leaves behind: uncertainty.json and figures, whole or not at all."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import jaxhydro
+from calibration.formatting import interval
+from calibration.results.read_calibration import Saved
+from calibration.results.read_uncertainty import WAYS
+from calibration.results.result_folder import UNCERTAINTY, draw, or_null, outdated, write_json
+from calibration.uncertainty.bootstrap import Bootstrap
+from calibration.uncertainty.likelihood import Likelihood
+from calibration.uncertainty.nuts import Samples
+from calibration.uncertainty.profile import Profile
+from jaxhydro.files import safe_name, staged
+
+APART = 0.25  # of half the width, by which intervals differ
+Interval = tuple[float | None, float | None]
+AGREED = 1.05  # r-hat above which chains have not yet seen the same
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Intervals of a calibration's parameters, found in several ways. `source` is its file, `asked` how many resamplings were
+    asked for, `bootstraps` are by method; `sampled`, whether draws from the posterior were."""
+
+    saved: Saved
+    source: str
+    likelihood: Likelihood
+    level: float
+    seed: int
+    profiles: dict[str, Profile] = field(default_factory=dict)
+    asked: int = 0
+    bootstraps: dict[str, Bootstrap] = field(default_factory=dict)
+    samples: Samples | None = None
+    sampled: bool = False
+
+    @property
+    def converged(self) -> bool:
+        return bool(self.likelihood.fit.converged)
+
+    def ways(self, label: str) -> dict[str, Interval]:
+        """A parameter's intervals beside the Laplace interval, by way: quantiles of draws; of repeats, which may be as few as
+        two, the estimate and the draws' deviation."""
+        found: dict[str, Interval] = {}
+        if label in self.profiles:
+            found["profile"] = self.profiles[label].interval
+        for method, one in self.bootstraps.items():
+            found[method] = one.interval(label, self.level, "normal" if method == "repeats" else "percentile")
+        if self.samples is not None:
+            found["nuts"] = self.samples.interval(label, self.level)
+        return found
+
+    def notes(self) -> tuple[str, ...]:
+        """What is to be known before an interval is believed."""
+        return tuple(self._notes())
+
+    def _notes(self) -> Iterator[str]:
+        fitted = self.saved.best.parameters
+        if lost := [label for label in self.likelihood.labels if not fitted[label].identifiable]:
+            yield f"the records do not determine {', '.join(lost)}: the prior has a part in the interval"
+        if bound := [label for label in self.likelihood.labels if fitted[label].at_bound]:
+            yield f"at a bound: {', '.join(bound)}; the Laplace interval is not to be relied on there, a profile is"
+        for method, one in self.bootstraps.items():
+            kept = len(one.value)
+            if kept < self.asked:
+                yield f"bootstrap over {method}: in {self.asked - kept} of {self.asked} resamplings a motion ran away; left out"
+            if one.unsettled:
+                yield f"bootstrap over {method}: {one.unsettled} of {self.asked} resamplings had not come to rest"
+            alone = [ids[0] for ids in one.groups.values() if isinstance(ids, tuple) and len(ids) == 1]
+            if alone:
+                yield f"bootstrap over repeats: {', '.join(alone)} without repeats; what differs there is not counted"
+        for label, along in self.profiles.items():
+            if _apart(along):
+                profiled, laplace = interval(*along.interval), interval(*along.laplace)
+                yield f"{label}: {profiled} by the profile, {laplace} by the covariance: believe the profile"
+        if self.sampled and self.samples is None:
+            yield "NUTS: stopped by the user before there were draws enough"
+        if self.samples is not None:
+            kept = self.samples.value.shape[1]
+            if kept < self.samples.asked:
+                yield f"NUTS: stopped by the user after {kept} of {self.samples.asked} draws of every chain"
+            if self.samples.divergences:
+                yield f"NUTS: {self.samples.divergences} steps went astray"
+            apart = [k for k, x in zip(self.samples.labels, self.samples.r_hat, strict=True) if not x < AGREED]
+            if apart:
+                yield f"NUTS: the chains do not agree yet on {', '.join(apart)}"
+
+
+def _apart(one: Profile) -> bool:
+    """Whether an end of a profile's interval is open, or off Laplace's by more than `APART` of half its width."""
+    half = 0.5 * (one.laplace[1] - one.laplace[0])
+    return any(a is None or abs(a - b) > APART * half for a, b in zip(one.interval, one.laplace, strict=True))
+
+
+def document(found: Uncertainty) -> dict[str, Any]:
+    """The content of uncertainty.json, figures aside. Values are in the parameters' units, angles in radians."""
+    likely, parameters = found.likelihood, {}
+    excess = likely.excess()
+    for label in likely.labels:
+        one = found.saved.best.parameters[label]
+        parameters[label] = {
+            "value": float(one.value),
+            "unit": one.unit,
+            "meaning": one.meaning,
+            "identifiable": one.identifiable,
+            "at_bound": one.at_bound,
+            "laplace": _ends(likely.interval(label, found.level)),
+            "white": _ends(likely.interval(label, found.level, white=True)),
+            "white_too_small_by": or_null(excess[label]),
+            **{way: _ends(ends) for way, ends in found.ways(label).items()},
+        }
+    return {
+        "campaign": found.saved.campaign,
+        "platform": found.saved.platform,
+        "jaxhydro": jaxhydro.__version__,
+        "calibration": found.source,
+        "level": found.level,
+        "seed": found.seed,
+        "converged": found.converged,
+        "parameters": parameters,
+        "profiles": {label: _profile(one) for label, one in found.profiles.items()},
+        "bootstrap": {method: _bootstrap(one, found.asked) for method, one in found.bootstraps.items()},
+        "nuts": None if found.samples is None else _samples(found.samples),
+        "notes": list(found.notes()),
+    }
+
+
+def _ends(ends: Interval) -> list[float | None]:
+    return [or_null(end) for end in ends]
+
+
+def _profile(one: Profile) -> dict[str, Any]:
+    return {"values": [or_null(x) for x in one.grid], "drop": [or_null(x) for x in one.drop], "nu": or_null(one.nu)}
+
+
+def _bootstrap(one: Bootstrap, asked: int) -> dict[str, Any]:
+    groups = {name: list(of) if isinstance(of, tuple) else float(of) for name, of in one.groups.items()}
+    return {"asked": asked, "draws": len(one.value), "unsettled": one.unsettled, "groups": groups}
+
+
+def _samples(one: Samples) -> dict[str, Any]:
+    chains, draws = one.value.shape[:2]
+    by_label = {
+        name: {label: or_null(x) for label, x in zip(one.labels, values, strict=True)}
+        for name, values in (("r_hat", one.r_hat), ("effective", one.effective))
+    }
+    return {"chains": chains, "draws": draws, "divergences": one.divergences, **by_label}
+
+
+def write_uncertainty(found: Uncertainty, folder: Path, figures: bool = True) -> None:
+    """Write uncertainty.json and figures into `folder` (made where absent), in place of earlier ones. Raises InputError where
+    the folder cannot be written."""
+    with staged(folder, lambda temporary: outdated(folder, temporary, UNCERTAINTY)) as temporary:
+        drawn = draw(_figures(found), temporary) if figures else []
+        write_json({**document(found), "figures": drawn}, temporary / UNCERTAINTY)
+
+
+def _figures(found: Uncertainty) -> Iterator[tuple[str, str, Any]]:
+    from calibration.plots import uncertainty_figures as uncertainty_plot
+
+    for label, one in found.profiles.items():
+        words = "rise of -2 ln L, all else refitted, its level, and the parabola of the covariance"
+        yield f"profile-{safe_name(label)}.png", f"{label}: {words}", uncertainty_plot.profile_figure(one)
+    pair = most_correlated(found.likelihood)
+    draws: dict[str, Bootstrap | Samples] = {**found.bootstraps, **({"nuts": found.samples} if found.samples else {})}
+    if pair is not None:
+        for way, drawn in draws.items():
+            caption = f"{WAYS[way]}: draws of the two parameters that are tied most, and the ellipse of the covariance (95 %)"
+            yield f"draws-{way}.png", caption, uncertainty_plot.draws_figure(drawn, *pair)
+
+
+def most_correlated(likelihood: Likelihood) -> tuple[str, str] | None:
+    """The two parameters whose correlation is farthest from none; None where there is one parameter."""
+    labels, deviation = likelihood.labels, likelihood.deviation()
+    if len(labels) < 2:
+        return None
+    p = len(labels)
+    correlation = likelihood.covariance[:p, :p] / np.outer(deviation, deviation)
+    first, second = np.triu_indices(p, 1)
+    k = int(np.argmax(np.abs(correlation[first, second])))
+    return labels[first[k]], labels[second[k]]

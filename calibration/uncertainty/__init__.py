@@ -1,0 +1,1 @@
+"""How well a calibration is known: likelihood, profiles, bootstrap, draws, test design."""

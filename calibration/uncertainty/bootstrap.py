@@ -1,0 +1,254 @@
+"""Bootstrap of a calibration: repeats of tests drawn anew, or blocks of the residuals; every draw is fitted again.
+
+The draws go through one compiled program in one process, CHUNK of them side by side in every operation. For a body without
+members that halves the time of a refit, for a hull of hundreds of strips it is even with one after the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+from scipy.stats import norm
+
+from calibration.identifiability.information import inverse
+from calibration.identifiability.standard_deviations import memory
+from calibration.residuals.decays import Problem, Unknowns
+from calibration.uncertainty.likelihood import LEVEL, RCOND, Likelihood
+from jaxhydro.choices import check
+from jaxhydro.errors import InputError
+from jaxhydro.errors import Problem as Wrong
+from jaxhydro.interrupts import stop_if_asked
+
+CHUNK = 16
+STEPS = 12  # Gauss-Newton at most
+LONGEST = 0.7  # step of a coordinate
+SETTLED = 0.03  # standard deviations that the last step moves at most
+LEAST_FREEDOM = 0.25  # a residual that a fit has taken three quarters of is raised twofold, and no more
+
+Progress = Callable[[int, int], None]
+Prior = tuple[Float[Array, " p"], Float[Array, " p"]]
+
+
+@dataclass(frozen=True, eq=False)
+class Bootstrap:
+    """Draws of the free parameters. `coordinate` (d, p), `value` (d, p) in the parameters' units, `estimate` (p,) coordinates.
+
+    `groups` says what was drawn from: ids of repeats, or, of each record, its block (s). `unsettled` is how many draws had not
+    come to rest; those stay in, unless they ran away.
+    """
+
+    method: Literal["repeats", "blocks"]
+    labels: tuple[str, ...]
+    coordinate: np.ndarray
+    value: np.ndarray
+    estimate: np.ndarray
+    groups: dict[str, tuple[str, ...] | float]
+    unsettled: int
+    seed: int
+    likelihood: Likelihood
+
+    def deviation(self) -> np.ndarray:
+        """Standard deviations (p,) of the coordinates."""
+        return np.asarray(self.coordinate.std(axis=0, ddof=1))
+
+    def interval(
+        self, label: str, level: float = LEVEL, kind: Literal["percentile", "basic", "normal"] = "percentile"
+    ) -> tuple[float, float]:
+        """Interval in values: quantiles of the draws, or these mirrored at the estimate in the coordinate, which takes a bias
+        off, or the estimate and the draws' deviation, for which 50 draws are enough (Davison and Hinkley 1997, chapter 5).
+        Raises InputError for an unknown label, UnknownName for another kind."""
+        check(kind=(kind, ("percentile", "basic", "normal")))
+        i, sides = self.likelihood.index(label), [0.5 - 0.5 * level, 0.5 + 0.5 * level]
+        ends = np.quantile(self.coordinate[:, i], sides)
+        if kind == "normal":
+            ends = self.estimate[i] + norm.ppf(sides) * self.deviation()[i]
+        if kind == "basic":
+            ends = (2 * self.estimate[i] - ends)[::-1]
+        low, high = sorted(self.likelihood.value(label, float(x)) for x in ends)
+        return low, high
+
+
+def newton(
+    problem: Problem, unknowns: Unknowns, weight: Float[Array, "r c"], until: Float[Array, " r"], prior: Prior
+) -> Unknowns:
+    """One Gauss-Newton step on sum w |r|^2 + |ridge (x - mean)|^2, no longer than LONGEST; each record's own unknowns are
+    eliminated."""
+    mean, ridge = prior
+    p = len(mean)
+    block = jnp.einsum("rckl,rc->rkl", problem.products(unknowns, until), weight)
+    own = block[:, p:-1, p:-1]
+    # a channel that is not there, or a record that was not drawn, leaves its unknowns where they are
+    size = jnp.diagonal(own, axis1=1, axis2=2)
+    own = own + jax.vmap(jnp.diag)(jnp.where(size > 0, 1e-12 * size, 1.0))
+    across = jnp.concatenate([block[:, p:-1, :p], block[:, p:-1, -1:]], axis=-1)
+    follow = jnp.linalg.solve(own, across)
+    left = block[:, :p, :p] - jnp.einsum("rkp,rkq->rpq", block[:, p:-1, :p], follow[..., :-1])
+    slope = block[:, :p, -1] - jnp.einsum("rkp,rk->rp", block[:, p:-1, :p], follow[..., -1])
+    shared = -jnp.linalg.solve(left.sum(0) + jnp.diag(ridge**2), slope.sum(0) + ridge**2 * (unknowns.shared - mean))
+    mine = -follow[..., -1] - follow[..., :-1] @ shared
+    longest = jnp.maximum(jnp.abs(shared).max(), jnp.abs(mine).max())
+    scale = jnp.minimum(1.0, LONGEST / jnp.maximum(longest, 1e-300))
+    return Unknowns(unknowns.shared + scale * shared, unknowns.own + scale * mine)
+
+
+@eqx.filter_jit
+def _steps(
+    problem: Problem, unknowns: Unknowns, measured: Float[Array, "d r c t"], weight: Float[Array, "d r c"], until, prior: Prior
+) -> Unknowns:
+    """`newton` of many draws at once."""
+
+    def one(unknowns, measured, weight):
+        here = eqx.tree_at(lambda q: q.data.measured, problem, measured)
+        return newton(here, unknowns, weight, until, prior)
+
+    return jax.vmap(one)(unknowns, measured, weight)
+
+
+def bootstrap_repeats(likelihood: Likelihood, draws: int = 200, seed: int = 0, progress: Progress | None = None) -> Bootstrap:
+    """Bootstrap over repeats (`repeat_of` in the manifest): what differs between tests that should be alike, whatever it is.
+
+    Of n repeats n - 1 are drawn with replacement and weigh n / (n - 1) each, which has the right variance where there are only
+    two or three (Rao and Wu 1988, Journal of the American Statistical Association 83, 231-241, section 2). A test without
+    repeats is in every draw, so that its own scatter is not counted. Raises InputError where there are no repeats.
+    """
+    records = likelihood.fit.records
+    groups = repeats({record.id: record.test.repeat_of for record in records})
+    if not any(len(group) > 1 for group in groups.values()):
+        ids = ", ".join(record.id for record in records)
+        hint = "Say `repeat_of: <id>` in the manifest, or bootstrap over blocks."
+        raise InputError("bootstrap", [Wrong("tests", "repeats of a fitted test", f"none among {ids}", hint)])
+    order = {record.id: i for i, record in enumerate(records)}
+    random, weight = np.random.default_rng(seed), np.ones((draws, len(records)))
+    for group in groups.values():
+        n = len(group)
+        if n > 1:
+            count = random.multinomial(n - 1, np.full(n, 1 / n), size=draws)
+            weight[:, [order[id] for id in group]] = count * n / (n - 1)
+    weights = weight[:, :, None] * np.asarray(likelihood.fit.weight)
+
+    def inputs(k: slice) -> tuple[np.ndarray, np.ndarray]:
+        measured = np.asarray(likelihood.fit.problem.data.measured)
+        return np.broadcast_to(measured, (len(weights[k]), *measured.shape)), weights[k]
+
+    return _drawn(likelihood, "repeats", inputs, draws, seed, dict(groups), progress)
+
+
+def repeats(of: dict[str, str | None]) -> dict[str, tuple[str, ...]]:
+    """Ids of tests that repeat each other, by the first's, from every test's `repeat_of`. A test that is not there stands for
+    those that repeat it."""
+    groups: dict[str, tuple[str, ...]] = {}
+    for id in of:
+        first, seen = id, {id}
+        while (other := of.get(first)) is not None and other not in seen:
+            first = other
+            seen.add(other)
+        # a ring has no first: the least of its ids
+        first = min(seen) if of.get(first) is not None else first
+        groups[first] = (*groups.get(first, ()), id)
+    return groups
+
+
+def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, progress: Progress | None = None) -> Bootstrap:
+    """Moving blocks of the residuals (Kuensch 1989, Annals of Statistics 17, 1217-1241) on the fitted motion, fitted again.
+
+    A block is as long as the released motion's period or twice the residual's memory, and at most a third of the record; a
+    record's channels are drawn together. What the fit has taken from a residual near the decay's frequency is given back,
+    frequency by frequency, by (1 - h)^-1/2, h its leverage there (the HC2 of MacKinnon and White 1985, Journal of
+    Econometrics 29, 305-325): residuals as they are would be too quiet where it matters.
+    """
+    fit = likelihood.fit
+    raised, lengths = _raised(likelihood), {}
+    for i, record in enumerate(fit.records):
+        n = len(record.time)
+        step = float(record.time[-1] - record.time[0]) / (n - 1)
+        period = 2 * np.pi / float(fit.problem.data.pace[i]) / step
+        size = max([period, *(2 * memory(raised[i, j, :n]) for k, j in likelihood.spectra if k == i)])
+        lengths[record.id] = max(1, min(round(size), n // 3)), step
+    random = np.random.default_rng(seed)
+    fitted = np.asarray(fit.problem.data.measured) + likelihood.residual
+    weight = np.asarray(fit.weight)
+
+    def inputs(k: slice) -> tuple[np.ndarray, np.ndarray]:
+        count = len(range(draws)[k])
+        noise = np.zeros((count, *fitted.shape))
+        for i, record in enumerate(fit.records):
+            n, length = len(record.time), lengths[record.id][0]
+            first = random.integers(0, n - length + 1, size=(count, -(-n // length)))
+            at = (first[:, :, None] + np.arange(length)).reshape(count, -1)[:, :n]
+            noise[:, i, :, :n] = np.moveaxis(raised[i][:, at], 0, 1)
+        present = np.asarray(fit.problem.data.present)
+        return (fitted - noise) * present, np.broadcast_to(weight, (count, *weight.shape))
+
+    groups: dict[str, tuple[str, ...] | float] = {id: length * step for id, (length, step) in lengths.items()}
+    return _drawn(likelihood, "blocks", inputs, draws, seed, groups, progress)
+
+
+def _raised(likelihood: Likelihood) -> np.ndarray:
+    """Residuals (r, c, t) with what the fit took from them given back, mean zero."""
+    raised = np.zeros(likelihood.residual.shape)
+    for (i, j), one in likelihood.spectra.items():
+        n = len(likelihood.fit.records[i].time)
+        wave = np.fft.rfft(likelihood.residual[i, j, :n]) / np.sqrt(np.maximum(one.freedom, LEAST_FREEDOM))
+        wave[0] = 0.0
+        raised[i, j, :n] = np.fft.irfft(wave, n)
+    return raised
+
+
+def _linear(likelihood: Likelihood, measured: np.ndarray, weight: np.ndarray) -> Unknowns:
+    """Where the draws should end by the slopes at the estimate: no simulation, and right but for what is not linear."""
+    fit, slope = likelihood.fit, likelihood.slope
+    data, p = fit.problem.data, len(fit.problem.space.free)
+    residual = likelihood.residual + (np.asarray(data.measured) - measured) * np.asarray(data.present)
+    score = np.einsum("rctk,drct,drc->drk", slope, residual, weight)
+    mean, ridge = map(np.asarray, (fit.prior[0], fit.ridge))
+    shared = score[..., :p].sum(axis=1) + ridge**2 * (likelihood.estimate[:p] - mean)
+    step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ inverse(likelihood.hessian, RCOND)
+    step *= np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
+    own = fit.unknowns.own
+    return Unknowns(fit.unknowns.shared + step[:, :p], own + step[:, p:].reshape(-1, *own.shape))
+
+
+def _drawn(
+    likelihood: Likelihood,
+    method: Literal["repeats", "blocks"],
+    inputs: Callable[[slice], tuple[np.ndarray, np.ndarray]],
+    draws: int,
+    seed: int,
+    groups: dict[str, tuple[str, ...] | float],
+    progress: Progress | None,
+) -> Bootstrap:
+    """All draws refitted, CHUNK at once."""
+    fit = likelihood.fit
+    prior = (jnp.asarray(fit.prior[0]), jnp.asarray(fit.ridge))
+    scale, found, unsettled = likelihood.deviation(), [], 0
+    for begin in range(0, draws, CHUNK):
+        series, weights = inputs(slice(begin, min(begin + CHUNK, draws)))
+        count = len(weights)
+        # the last chunk is filled up, so that one compilation serves all
+        fill = [(0, CHUNK - count), (0, 0), (0, 0)]
+        measured = jnp.asarray(np.pad(series, [*fill, (0, 0)], mode="edge"))
+        weight = jnp.asarray(np.pad(weights, fill, mode="edge"))
+        unknowns, change = _linear(likelihood, np.asarray(measured), np.asarray(weight)), np.full((CHUNK, 1), np.inf)
+        for _ in range(STEPS):
+            stop_if_asked()
+            before, unknowns = unknowns, _steps(fit.problem, unknowns, measured, weight, fit.ends, prior)
+            change = np.abs(np.asarray(unknowns.shared - before.shared)) / scale
+            if (change < SETTLED).all() or not np.isfinite(change).any():
+                break
+        found.append(np.asarray(unknowns.shared)[:count])
+        unsettled += int((~np.asarray((change < SETTLED).all(axis=1))[:count]).sum())
+        if progress is not None:
+            progress(begin + count, draws)
+    coordinate = np.concatenate(found)
+    coordinate = coordinate[np.isfinite(coordinate).all(axis=1)]  # a motion that ran away
+    forward = [jax.vmap(p.transform.forward) for p in fit.problem.space.free]
+    value = np.stack([np.asarray(f(jnp.asarray(x))) for f, x in zip(forward, coordinate.T, strict=True)], axis=1)
+    estimate = likelihood.estimate[: len(scale)]
+    return Bootstrap(method, likelihood.labels, coordinate, value, estimate, groups, unsettled, seed, likelihood)

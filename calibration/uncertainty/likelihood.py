@@ -1,0 +1,221 @@
+"""A finished fit as a likelihood: its information, the scatter of its score with coloured errors, and intervals from both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+from scipy.stats import norm
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.fitting.decay_fit import Fit, prepare, run
+from calibration.identifiability.information import inverse
+from calibration.identifiability.residual_spectra import Colour, Periodogram, coloured, colours, periodogram
+from calibration.identifiability.standard_deviations import assemble
+from calibration.parameters.space import Free
+from calibration.residuals.decays import Problem, Unknowns
+from calibration.result import Calibration
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, suggest
+from jaxhydro.errors import Problem as Wrong
+from jaxhydro.hull.coefficient_labels import shared_hint
+
+LEVEL = 0.95
+RCOND = 1e-14  # of all unknowns together, releases that are known far better than coefficients among them
+WHITE = Colour(1.0, 0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Likelihood:
+    """A finished fit's sum of squares Q = sum w |r|^2 + the prior's, about its lowest point.
+
+    Rows are the shared coordinates, then every record's own. `information` (n, n) is J^T W J of the records alone, `scatter`
+    (n, n) the covariance of J^T W e, `prior` (n,) what the prior adds to the diagonal of either: `hessian` is the former with
+    it. `covariance` is the sandwich H^-1 S H^-1 with coloured errors (White 1982, theorem 3.2), `white` the same with every
+    sample counting as one. `slope` (r, c, t, k) and `residual` (r, c, t) are those at the lowest point, in m and rad.
+    `colour` is by released and measured motion, `spectra` by record and channel.
+    """
+
+    fit: Fit
+    slope: np.ndarray
+    residual: np.ndarray
+    information: np.ndarray
+    scatter: np.ndarray
+    prior: tuple[np.ndarray, np.ndarray]
+    covariance: np.ndarray
+    white: np.ndarray
+    colour: dict[tuple[str, str], Colour]
+    spectra: dict[tuple[int, int], Periodogram]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        return self.fit.problem.space.labels
+
+    @property
+    def estimate(self) -> np.ndarray:
+        """Coordinates (n,) of all unknowns."""
+        return coordinates(self.fit.unknowns)
+
+    @property
+    def hessian(self) -> np.ndarray:
+        return self.information + np.diag(self.prior[0])
+
+    def index(self, label: str) -> int:
+        """Its place among the free parameters. Raises InputError, which lists them."""
+        if label not in self.labels:
+            known = f"a free parameter of this fit ({', '.join(self.labels)})"
+            hint = shared_hint(label, self.fit.problem.model.hull.elements.shares) or suggest(label, self.labels)
+            raise InputError("uncertainty", [Wrong("parameter", known, repr(label), hint)])
+        return self.labels.index(label)
+
+    def free(self, label: str) -> Free:
+        """How a parameter is transformed."""
+        return self.fit.problem.space.free[self.index(label)]
+
+    def value(self, label: str, coordinate: float) -> float:
+        """A parameter's value (its own unit) at a coordinate."""
+        return float(self.free(label).transform.forward(jnp.asarray(coordinate)))
+
+    def interval(self, label: str, level: float = LEVEL, white: bool = False) -> tuple[float, float]:
+        """The Laplace interval: x +- z sd in the coordinate, mapped to values, and so never outside the bounds."""
+        i, z = self.index(label), float(norm.ppf(0.5 + 0.5 * level))
+        reach = z * self.deviation(white)[i]
+        low, high = sorted(self.value(label, self.estimate[i] + sign * reach) for sign in (-1, 1))
+        return low, high
+
+    def deviation(self, white: bool = False) -> np.ndarray:
+        """Standard deviations (p,) of the shared coordinates."""
+        return np.sqrt(np.diag(self.white if white else self.covariance)[: len(self.labels)])
+
+    def excess(self) -> dict[str, float]:
+        """How many times too small the standard deviation is that takes every sample as independent of the others."""
+        ratio = self.deviation() / self.deviation(white=True)
+        return {label: float(x) for label, x in zip(self.labels, ratio, strict=True)}
+
+    def stretch(self, label: str) -> tuple[float, np.ndarray]:
+        """nu, by which a drop of Q in this parameter is too large to be a chi-square of one degree of freedom, and how all
+        unknowns move (n,) with a unit step of it.
+
+        nu = d^T S d / d^T H d along d = H^-1 e_i, which is [H^-1 S H^-1]_ii / [H^-1]_ii: Kent 1982 (Biometrika 69, 19-27,
+        section 3) with one parameter of interest. Its own prior is left out where the manifest states none.
+        """
+        i = self.index(label)
+        move = inverse(self.hessian, RCOND)[:, i]
+        counted = np.ones(len(move))
+        counted[i] = np.isfinite(self.free(label).prior_deviation)
+        bread, meat = (
+            move @ matrix @ move + counted @ (move**2 * more)
+            for matrix, more in zip((self.information, self.scatter), self.prior, strict=True)
+        )
+        least = 1e-9 * self.prior[0][i] * move[i] ** 2
+        ratio = meat / bread if bread > least else np.trace(self.scatter) / np.trace(self.information)
+        return float(ratio), move / move[i]
+
+    def scale(self) -> float:
+        """What Q is multiplied by to be -2 log likelihood on the average over all directions: n / tr(H^-1 S)."""
+        meat = self.scatter + np.diag(self.prior[1])
+        return float(len(meat) / np.trace(inverse(self.hessian, RCOND) @ meat))
+
+
+def coordinates(unknowns: Unknowns) -> np.ndarray:
+    """All coordinates (n,): shared, then every record's own."""
+    return np.concatenate([np.asarray(unknowns.shared), np.asarray(unknowns.own).ravel()])
+
+
+def reposed(
+    campaign: Campaign, began: Mapping[str, Any], ended: Mapping[str, float], report: Callable[..., None] = lambda *_: None
+) -> Fit:
+    """The fit that a calibration to decays was, with its free parameters and priors, where it `ended`; the records' releases
+    and offsets, which a calibration does not keep, begin from the records. `began` are values, of free parameters and others,
+    that it began from in place of the platform's; `report` is that of `prepare`."""
+    declared = campaign.model.values
+    # only what is not as declared, so that types stay, and what was compiled for the fit serves again
+    start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
+    fit = prepare(campaign, free=list(ended), start=start, report=report)
+    there = [p.transform.inverse(float(ended[p.label])) for p in fit.problem.space.free]
+    fit.unknowns = fit.unknowns._replace(shared=jnp.array(there))
+    return fit
+
+
+def likelihood(campaign: Campaign, result: Calibration) -> Likelihood:
+    """The likelihood of a calibration to decays (`calibrate`). The records' releases are fitted again, from its values."""
+    found = result.parameters
+    fit = reposed(
+        campaign,
+        {**result.model.values, **{label: one.start for label, one in found.items()}},
+        {label: one.value for label, one in found.items()},
+    )
+    run(fit)
+    return likelihood_of(fit)
+
+
+@eqx.filter_jit
+def _slopes(problem: Problem, unknowns: Unknowns) -> tuple[Float[Array, "r c t k"], Float[Array, "r c t"]]:
+    """Residual, and its derivatives to the shared coordinates and the record's own."""
+    split = len(unknowns.shared)
+
+    def of_record(inputs):
+        own, record = inputs
+
+        def residual(z):
+            r = (problem.motion(z[:split], z[split:], record) - record.measured) * record.present
+            return r, r
+
+        return jax.jacfwd(residual, has_aux=True)(jnp.concatenate([unknowns.shared, own]))
+
+    return jax.lax.map(of_record, (unknowns.own, problem.data))
+
+
+def likelihood_of(fit: Fit) -> Likelihood:
+    """The likelihood of a finished fit (`run`).
+
+    The errors of a channel are taken as stationary in each record, of one colour in all records, or in all that were released
+    alike, whichever is likelier, and as independent between channels and between records.
+    """
+    data, weight, shared = fit.problem.data, np.asarray(fit.weight), len(fit.problem.space.free)
+    slope, residual = map(np.asarray, _slopes(fit.problem, fit.unknowns))
+    # the residual's own row and column, which `assemble` leaves out
+    blocks = np.pad(np.einsum("rctk,rctl,rc->rkl", slope, slope, weight), ((0, 0), (0, 1), (0, 1)))
+    information = assemble(blocks, shared)
+    size, own = len(information), slope.shape[-1] - shared
+    ridge, width = np.asarray(fit.ridge) ** 2, 1 / np.asarray(fit.prior[1])
+    prior = tuple(np.concatenate([x, np.zeros(size - shared)]) for x in (ridge, ridge**2 * width**2))
+    back = inverse(information + np.diag(prior[0]), RCOND)
+    seen: dict[tuple[str, str], list[tuple[int, int, Periodogram]]] = {}
+    for i, record in enumerate(fit.records):
+        at = np.r_[:shared, shared + i * own : shared + (i + 1) * own]
+        mine, n = back[np.ix_(at, at)], len(record.time)
+        for j, dof in enumerate(data.dofs):
+            if weight[i, j] == 0 or DOFS[dof] not in record.values:
+                continue
+            wave = np.fft.rfft(slope[i, j, :n], axis=0)
+            leverage = weight[i, j] * np.einsum("fk,kl,fl->f", wave.conj(), mine, wave).real / n
+            one = periodogram(residual[i, j, :n], leverage, step_of(record.time))
+            seen.setdefault((str(record.degree_of_freedom), DOFS[dof]), []).append((i, j, one))
+    colour, blocks, flat = {}, np.zeros_like(blocks), np.zeros_like(blocks)
+    for channel in dict.fromkeys(channel for _, channel in seen):
+        kinds = [kind for kind in seen if kind[1] == channel]
+        for kind, (found, variances) in zip(kinds, colours([[one for *_, one in seen[kind]] for kind in kinds]), strict=True):
+            colour[kind] = found
+            for (i, j, one), variance in zip(seen[kind], variances, strict=True):
+                time = fit.records[i].time
+                for into, power, of in ((blocks, float(variance), found), (flat, one.variance, WHITE)):
+                    part = coloured(slope[i, j, : len(time)], power, of, step_of(time))
+                    into[i, :-1, :-1] += weight[i, j] ** 2 * part
+    scatters = [assemble(blocks, shared), assemble(flat, shared)]
+    covariance, white = (back @ (scatter + np.diag(prior[1])) @ back for scatter in scatters)
+    spectra = {(i, j): one for group in seen.values() for i, j, one in group}
+    return Likelihood(
+        fit, slope, residual, information, scatters[0], (prior[0], prior[1]), covariance, white, colour, spectra
+    )
+
+
+def step_of(time: np.ndarray) -> float:
+    """Sampling interval (s), taken as even."""
+    return float((time[-1] - time[0]) / (len(time) - 1))

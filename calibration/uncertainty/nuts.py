@@ -1,0 +1,194 @@
+"""NUTS: draws of all unknowns from the posterior, through numpyro (an extra: pip install jaxhydro[nuts])."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+from scipy.linalg import cholesky, eigh
+
+from calibration.fitting.cores import cores
+from calibration.residuals.decays import Problem, Unknowns
+from calibration.uncertainty.likelihood import LEVEL, Likelihood, coordinates
+from jaxhydro.interrupts import stop_if_asked, stopping
+
+DEEPEST = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
+LEAST = 50  # draws of every chain that are worth keeping where it is stopped
+EVERY = 0.5  # s between looks at the chains
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Draws of the free parameters: `coordinate` and `value` (chain, draw, p), values in the parameters' units.
+
+    `r_hat` (p,) compares the halves of all chains with each other (1 once they agree; Gelman et al. 2013, equation 11.4),
+    `effective` (p,) is how many independent draws they stand for, `divergences` how many steps went astray. `asked`: draws of
+    a chain, of which there are fewer where it was stopped.
+    """
+
+    labels: tuple[str, ...]
+    coordinate: np.ndarray
+    value: np.ndarray
+    r_hat: np.ndarray
+    effective: np.ndarray
+    divergences: int
+    seed: int
+    asked: int
+    likelihood: Likelihood
+
+    def deviation(self) -> np.ndarray:
+        """Standard deviations (p,) of the coordinates."""
+        return np.asarray(self.coordinate.reshape(-1, len(self.labels)).std(axis=0, ddof=1))
+
+    def interval(self, label: str, level: float = LEVEL) -> tuple[float, float]:
+        """Equal-tailed interval in values. Raises InputError for an unknown label."""
+        mine = self.value[..., self.likelihood.index(label)].ravel()
+        low, high = np.quantile(mine, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
+        return float(low), float(high)
+
+
+Energy = Callable[[Float[Array, " n"]], Float[Array, ""]]
+
+
+def potential(likelihood: Likelihood, scale: float) -> Energy:
+    """Energy of all coordinates (n,): half of `scale` times the sum of squares, and half of the prior's.
+
+    Every free parameter has a normal prior in its coordinate, wide unless the manifest says otherwise, so that no Jacobian of
+    the transforms enters. Its gradient J^T W r is a column of the products that the fit works with: one forward-mode pass,
+    and nothing goes back through the solver.
+    """
+    fit, weight = likelihood.fit, jnp.asarray(likelihood.fit.weight)
+    mean, precision = fit.prior
+    problem, shape, ends = fit.problem, fit.unknowns.own.shape, fit.ends
+    p = len(fit.unknowns.shared)
+
+    def both(z: Float[Array, " n"]) -> tuple[Float[Array, ""], Float[Array, " n"]]:
+        return _energy(problem, Unknowns(z[:p], z[p:].reshape(shape)), weight, ends, mean, precision, scale)
+
+    @jax.custom_vjp
+    def energy(z: Float[Array, " n"]) -> Float[Array, ""]:
+        return both(z)[0]
+
+    energy.defvjp(both, lambda gradient, ct: (ct * gradient,))
+    return energy
+
+
+def _energy(problem: Problem, unknowns: Unknowns, weight, until, mean, precision, scale):
+    """Energy and its gradient."""
+    p = len(mean)
+    block = scale * jnp.einsum("rckl,rc->rkl", problem.products(unknowns, until), weight)
+    off = precision * (unknowns.shared - mean)
+    slope = jnp.concatenate([block[:, :p, -1].sum(0) + precision * off, block[:, p:-1, -1].ravel()])
+    energy = 0.5 * (block[:, -1, -1].sum() + off @ off)
+    # a motion that runs away is no place to be, rather than an error
+    fine = jnp.isfinite(energy) & jnp.isfinite(slope).all()
+    return jnp.where(fine, energy, jnp.inf), jnp.where(fine, slope, 0.0)
+
+
+def sample(
+    likelihood: Likelihood,
+    draws: int = 500,
+    warmup: int = 200,
+    chains: int = 4,
+    seed: int = 0,
+    progress: Callable[[int, str], None] = lambda done, remark: None,
+) -> Samples:
+    """Draws by the no-U-turn sampler (Hoffman and Gelman 2014, Journal of Machine Learning Research 15, 1593-1623).
+
+    The density is exp(-energy) of `potential`, the same sum of squares as the profile's, in coordinates whitened by the
+    fit's information, so that steps are long and few. Errors that are neither white nor of known size are taken into account
+    as in the profile: every draw's distance from the estimate is stretched so that its covariance near it is the
+    sandwich's (the open-faced sandwich, Shaby 2014, Journal of Computational and Graphical Statistics 23, 853-876, equation 7),
+    along the directions that both covariances have in common. Chains run side by side, as many as there are cores;
+    `progress` is told how many draws are done, and where.
+
+    Stopped (KeyboardInterrupt) it gives what there is of all chains, if that is `LEAST` draws of each. Raises ImportError where
+    numpyro is not installed.
+    """
+    try:
+        from numpyro.diagnostics import effective_sample_size, split_gelman_rubin
+        from numpyro.infer import NUTS
+    except ImportError as error:
+        raise ImportError("sampling needs numpyro: pip install 'jaxhydro[nuts]'") from error
+    fit, centre, scale = likelihood.fit, coordinates(likelihood.fit.unknowns), likelihood.scale()
+    root, stretch = whitening(likelihood, scale)
+    energy = potential(likelihood, scale)
+    away, unseen = jnp.asarray(root), jnp.asarray(np.diag(likelihood.information) <= 0).at[: len(likelihood.labels)].set(False)
+
+    @jax.jit
+    def whitened(z: Float[Array, " n"]) -> Float[Array, ""]:
+        off = away @ z
+        # a channel that a record lacks would wander without end
+        return energy(jnp.asarray(centre) + off) + 0.5 * jnp.sum(jnp.where(unseen, off, 0.0) ** 2)
+
+    kernel, key = NUTS(potential_fn=whitened, max_tree_depth=DEEPEST), jax.random.key(seed)
+    start = jax.random.normal(jax.random.fold_in(key, 1), (chains, len(centre)))
+    begun = [kernel.init(jax.random.fold_in(key, 2 + k), warmup, start[k], (), {}) for k in range(chains)]
+    step = jax.jit(lambda state: kernel.sample(state, (), {}))
+    rows = _walked(step, begun, warmup, draws, progress)
+    z, lost = np.array([[at for at, _ in row] for row in rows]), sum(astray for row in rows for _, astray in row)
+    shared = len(fit.problem.space.free)
+    coordinate = (centre + z @ (stretch @ root).T)[..., :shared]
+    value = np.empty_like(coordinate)
+    for i, one in enumerate(fit.problem.space.free):
+        value[..., i] = jax.vmap(one.transform.forward)(jnp.asarray(coordinate[..., i].ravel())).reshape(coordinate.shape[:-1])
+    r_hat, effective = (np.asarray(f(coordinate)) for f in (split_gelman_rubin, effective_sample_size))
+    return Samples(likelihood.labels, coordinate, value, r_hat, effective, lost, seed, draws, likelihood)
+
+
+def _walked(
+    step: Callable[[Any], Any], begun: list[Any], warmup: int, draws: int, progress: Callable[[int, str], None]
+) -> list[list[tuple[np.ndarray, bool]]]:
+    """Where chains were after their warm-up, and whether a step went astray: as many draws of each as all have."""
+    rows: list[list[tuple[np.ndarray, bool]]] = [[] for _ in begun]
+    done, stop = [0] * len(begun), threading.Event()
+
+    def walk(k: int) -> None:
+        state = begun[k]
+        for i in range(warmup + draws):
+            if stop.is_set():
+                return
+            state = step(state)
+            if i >= warmup:
+                rows[k].append((np.asarray(state.z), bool(state.diverging)))
+            done[k] = i + 1
+
+    with ThreadPoolExecutor(min(len(begun), cores())) as pool:
+        under_way = {pool.submit(walk, k) for k in range(len(begun))}
+        try:
+            while under_way:
+                over, under_way = wait(under_way, timeout=EVERY)
+                stop_if_asked()
+                for one in over:
+                    one.result()
+                progress(sum(done), "finding the step" if min(done) < warmup else "drawing")
+        except BaseException as stopped:
+            stop.set()
+            stopping()
+            pool.shutdown(cancel_futures=True)
+            if not isinstance(stopped, KeyboardInterrupt) or min(map(len, rows)) < LEAST:
+                raise
+    count = min(map(len, rows))
+    return [row[:count] for row in rows]
+
+
+def whitening(likelihood: Likelihood, scale: float) -> tuple[np.ndarray, np.ndarray]:
+    """L (n, n) with L L^T the covariance that the energy has at the estimate, and Omega (n, n) that stretches it: Omega L L^T
+    Omega^T is the sandwich's. Omega = C V nu^1/2 V^T with the common directions C' V = C V nu, V^T C V = 1."""
+    precision = np.zeros(len(likelihood.information))
+    precision[: len(likelihood.labels)] = np.asarray(likelihood.fit.prior[1]) ** 2
+    hessian = scale * likelihood.information + np.diag(precision)
+    # what no record sees at all: a channel that one record lacks
+    hessian[np.diag_indices_from(hessian)] += np.where(np.diag(hessian) > 0, 0.0, 1.0)
+    covariance = np.linalg.inv(hessian)
+    covariance = 0.5 * (covariance + covariance.T)
+    meat = scale**2 * likelihood.scatter + np.diag(np.where(np.diag(likelihood.information) > 0, precision, np.diag(hessian)))
+    ratio, common = eigh(covariance @ meat @ covariance, covariance)
+    stretch = covariance @ common @ np.diag(np.sqrt(np.maximum(ratio, 0.0))) @ common.T
+    return cholesky(covariance, lower=True), stretch

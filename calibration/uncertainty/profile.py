@@ -1,0 +1,169 @@
+"""Profile likelihood: how far a parameter may move if all others make the best of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.stats import chi2
+
+from calibration.fitting.levenberg_marquardt import descend
+from calibration.formatting import number
+from calibration.residuals.decays import Unknowns, condensed
+from calibration.uncertainty.likelihood import LEVEL, Likelihood
+from jaxhydro.interrupts import stop_if_asked
+
+ROOT_STEP = 0.7  # of the signed root from one point of the grid to the next: three points to the 95 % level's 1.96
+LONGEST_ROOT = 1.5  # what is farther away is gone to in smaller steps
+FARTHEST = 16  # points on either side at most: steps double where nothing happens, so that is far
+LEAST_SHARE = 0.01  # of the drop at the level: what a refit may leave
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Rise of -2 log likelihood along one parameter, all other unknowns refitted.
+
+    `grid` (n,) are values, ascending, in `unit`, `coordinate` (n,) theirs, `drop` (n,) a chi-square of one degree of freedom:
+    the adjusted one of Kent 1982, for errors that are neither white nor of known size. `lower` and `upper` are where it
+    reaches the chi-square's `level`, None where the records do not bound the parameter on that side. `laplace` is the interval
+    of the fit's covariance. `nu` is what the drop of the sum of squares was divided by.
+    """
+
+    label: str
+    unit: str
+    estimate: float
+    grid: np.ndarray
+    coordinate: np.ndarray
+    drop: np.ndarray
+    lower: float | None
+    upper: float | None
+    level: float
+    laplace: tuple[float, float]
+    nu: float
+
+    @property
+    def interval(self) -> tuple[float | None, float | None]:
+        return self.lower, self.upper
+
+    def holds(self, value: float) -> bool:
+        """Whether a value is in the interval."""
+        return (self.lower is None or value >= self.lower) and (self.upper is None or value <= self.upper)
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        low, high = ("" if x is None else number(x, 3) for x in self.interval)
+        if not low and not high:
+            return f"{self.label}: the records bound it on neither side"
+        words = f"between {low} and {high}{unit}" if low and high else f"at {'least' if low else 'most'} {low or high}{unit}"
+        return f"{self.label}: {words} ({100 * self.level:.0f} %)"
+
+
+def _held(unknowns: Unknowns, args):
+    """Residuals with one shared coordinate held at a value: its column is zero, so that no step moves it."""
+    problem, weight, until, (mean, ridge), index, value = args
+    there = unknowns._replace(shared=unknowns.shared.at[index].set(value))
+    rows, products = condensed(there, problem, weight, until)
+    return (rows, ridge * (there.shared - mean)), products
+
+
+class _Refit:
+    """Q and the other unknowns with one coordinate held."""
+
+    def __init__(self, likelihood: Likelihood, label: str, level: float) -> None:
+        fit = likelihood.fit
+        self.index, self.start = likelihood.index(label), fit.unknowns
+        self.nu, self.move = likelihood.stretch(label)
+        self.ridge = np.array(fit.ridge)
+        if not np.isfinite(likelihood.free(label).prior_deviation):
+            self.ridge[self.index] = 0.0  # a vague prior is no record
+        self.mean, self.weight = np.asarray(fit.prior[0]), np.asarray(fit.weight)
+        self.args = (fit.problem, jnp.asarray(self.weight), fit.ends, (jnp.asarray(self.mean), jnp.asarray(self.ridge)))
+        self.size = 1.0  # of Q, for a tolerance relative to it: a fit normalises its weights so
+        self.gain = LEAST_SHARE * self.nu * float(chi2.ppf(level, 1))
+
+    def moved(self, unknowns: Unknowns, step: float) -> Unknowns:
+        """Where the others should be after a step of the held one, to first order."""
+        p, move = len(unknowns.shared), jnp.asarray(self.move * step)
+        return Unknowns(unknowns.shared + move[:p], unknowns.own + move[p:].reshape(unknowns.own.shape))
+
+    def __call__(self, unknowns: Unknowns, value: float) -> tuple[float, Unknowns]:
+        """Q and the unknowns with the coordinate at `value`, begun from `unknowns`."""
+        args = (*self.args, jnp.asarray(self.index), jnp.asarray(value))
+        cost, reached = np.inf, unknowns
+        for now in descend(_held, unknowns, args, self.gain / self.size):
+            shared = now.unknowns.shared.at[self.index].set(value)
+            rest = float(np.sum((self.ridge * (np.asarray(shared) - self.mean)) ** 2))
+            cost = float(np.sum(np.asarray(now.aux)[..., -1, -1] * self.weight)) + rest
+            reached = now.unknowns._replace(shared=shared)
+        return cost, reached
+
+
+def profile(likelihood: Likelihood, label: str, level: float = LEVEL) -> Profile:
+    """Profile likelihood of a free parameter, from the estimate outwards on either side until the drop exceeds the level, or
+    the parameter is at the end of its range.
+
+    drop(psi) = (min Q | psi - min Q) / nu, a chi-square of one degree of freedom (Wilks 1938, Annals of Mathematical Statistics
+    9, 60-62) once it is adjusted by nu of `Likelihood.stretch`. For a model that is linear in its unknowns the interval is
+    that of the covariance. Raises InputError for an unknown label.
+    """
+    refit = _Refit(likelihood, label, level)
+    at = float(likelihood.estimate[refit.index])
+    lowest, start = refit(refit.start, at)
+    refit.size = lowest
+    points = {at: lowest}
+    for sign in (-1, 1):
+        points |= _outward(refit, likelihood, label, at, lowest, start, sign, level)
+    x = np.array(sorted(points))
+    cost = np.array([points[c] for c in x])
+    x, cost = x[np.isfinite(cost)], cost[np.isfinite(cost)]
+    # a parameter that is hardly known may have been left short of the lowest point
+    drop = (cost - cost.min()) / refit.nu
+    limit, middle = float(np.sqrt(chi2.ppf(level, 1))), int(np.argmin(cost))
+    ends = [_crossing(x[: middle + 1][::-1], drop[: middle + 1][::-1], limit), _crossing(x[middle:], drop[middle:], limit)]
+    lower, upper = (None if end is None else likelihood.value(label, end) for end in ends)
+    about = likelihood.fit.problem.model.about(label)
+    return Profile(
+        label, about.unit, likelihood.value(label, at), np.array([likelihood.value(label, c) for c in x]), x, drop,
+        lower, upper, level, likelihood.interval(label, level), refit.nu,
+    )  # fmt: skip
+
+
+def _outward(
+    refit: _Refit, likelihood: Likelihood, label: str, at: float, lowest: float, unknowns: Unknowns, sign: int, level: float
+) -> dict[float, float]:
+    """Q by coordinate on one side, its points even in the signed root."""
+    transform, limit = likelihood.free(label).transform, float(np.sqrt(chi2.ppf(level, 1)))
+    points: dict[float, float] = {}
+    root, x = 0.0, at
+    step = ROOT_STEP * float(likelihood.deviation()[refit.index])
+    while len(points) < FARTHEST and not (points and transform.at_bound(x)):
+        stop_if_asked()
+        cost, there = refit(refit.moved(unknowns, sign * step), x + sign * step)
+        before, root = root, float(np.sqrt(max(cost - lowest, 0.0) / refit.nu))
+        if not root - before < LONGEST_ROOT:  # a long step that the others do not follow in a straight line
+            other, here = refit(unknowns, x + sign * step)
+            if other < cost or not np.isfinite(cost):
+                cost, there, root = other, here, float(np.sqrt(max(other - lowest, 0.0) / refit.nu))
+        points[x + sign * step] = cost
+        if not root - before < LONGEST_ROOT:  # too far to draw a line through, or a motion that has run away
+            step, root = 0.4 * step, before
+            continue
+        x, unknowns = x + sign * step, there
+        if root > limit:
+            break
+        step *= float(np.clip(ROOT_STEP / max(root - before, 1e-9), 0.5, 2.0))
+    return points
+
+
+def _crossing(x: np.ndarray, drop: np.ndarray, limit: float) -> float | None:
+    """Where the root of the drop first reaches the limit, going outwards; None where it does not."""
+    root = np.sqrt(drop)
+    beyond = np.flatnonzero(root > limit)
+    if not len(beyond):
+        return None
+    last = int(beyond[0])
+    rising = [0]
+    rising += [k for k in range(1, last + 1) if root[k] > root[rising[-1]] + 1e-9]
+    return float(PchipInterpolator(root[rising], x[rising])(limit)) if len(rising) > 1 else None

@@ -1,0 +1,123 @@
+"""What a further test would add to a calibration, before it is made: its information, and which of several adds most."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from calibration.campaign.manifest import Test
+from calibration.campaign.records import Record
+from calibration.fitting.decay_fit import STEPS_PER_PERIOD, Fit
+from calibration.fitting.fit_uncertainty import errors_of
+from calibration.formatting import listed, percent
+from calibration.identifiability.directions import Identifiability, active_of, weak_directions
+from calibration.identifiability.information import eliminated, within
+from calibration.identifiability.statements import Direction, Parameters
+from calibration.parameters.space import ParameterSpace
+from calibration.residuals.decays import Problem, Unknowns, gather
+from calibration.result import TestFit
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.simulate import free_decay, memory_step
+from jaxhydro.dynamics.statics import equilibrium, natural_modes
+from jaxhydro.environment import DOFS
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """What a further test would add: standard deviations of the coordinates `before` and `after` it (p,), `gain`, by how
+    much the logarithm of the volume of the confidence region shrinks, and what would still be weak or untouched."""
+
+    name: str
+    parameters: Parameters
+    before: np.ndarray
+    after: np.ndarray
+    gain: float
+    weak: tuple[Direction, ...]
+    untouched: tuple[str, ...]
+
+    def sentence(self) -> str:
+        """In words, with the three parameters that gain most."""
+        best = [i for i in np.argsort(self.after / self.before)[:3] if self.after[i] < 0.9 * self.before[i]]
+        pairs = [f"{self.parameters.labels[i]} from {percent(self.before[i])} to {percent(self.after[i])}" for i in best]
+        left = f"{len(self.weak)} weak direction{'' if len(self.weak) == 1 else 's'} left"
+        return f"{self.name}: {listed(pairs) or 'nothing much better known'}; {left}; log-volume {-self.gain:+.2f}"
+
+
+def expected_information(known: Identifiability, candidate: np.ndarray, name: str = "a further test") -> Expected:
+    """What a test with the information `candidate` (p, p), its own unknowns eliminated, would add to what is `known`.
+
+    The gain is 0.5 ln det(1 + C F), C the posterior covariance: Bayesian D-optimality (Chaloner and Verdinelli 1995,
+    Statistical Science 10, 273-304), finite also where the records leave a direction open.
+    """
+    candidate = within(candidate, [i for i, label in enumerate(known.parameters.labels) if label not in known.at_bound])
+    values, vectors = np.linalg.eigh(known.covariance)
+    root = vectors * np.sqrt(np.maximum(values, 0)) @ vectors.T
+    ratio = np.eye(len(root)) + root @ candidate @ root
+    after = root @ np.linalg.solve(ratio, root)
+    together = known.information + candidate
+    active, untouched = active_of(known.parameters, together, known.at_bound)
+    before, later = np.sqrt(np.diag(known.covariance)), np.sqrt(np.diag(after))
+    weak = weak_directions(known.parameters, together, active)
+    return Expected(name, known.parameters, before, later, float(0.5 * np.linalg.slogdet(ratio)[1]), weak, untouched)
+
+
+def rank_tests(known: Identifiability, candidates: Mapping[str, np.ndarray]) -> tuple[Expected, ...]:
+    """Candidate tests, name -> information, the one that adds most first."""
+    found = [expected_information(known, matrix, name) for name, matrix in candidates.items()]
+    return tuple(sorted(found, key=lambda one: -one.gain))
+
+
+def effective_noise(fit: Fit, tests: Sequence[TestFit]) -> dict[str, float]:
+    """Channel -> standard deviation (m, rad) of independent noise that would leave the parameters as uncertain as the
+    residuals of the fit do: what to expect of a further test's samples at the same rate."""
+    variance, inflation = errors_of(fit, tests)
+    there = np.asarray(fit.problem.data.present).any(axis=-1)
+    power = (variance * inflation * there).sum(axis=0) / np.maximum(there.sum(axis=0), 1)
+    return {DOFS[dof]: float(np.sqrt(x)) for dof, x in zip(fit.problem.data.dofs, power, strict=True)}
+
+
+@eqx.filter_jit
+def _products(problem: Problem, unknowns: Unknowns, until):
+    return problem.products(unknowns, until)
+
+
+def decay_information(
+    model: Model,
+    space: ParameterSpace,
+    dof: str,
+    amplitude: float,
+    noise: Mapping[str, float],
+    *,
+    cycles: float = 8.0,
+    interval: float | None = None,
+) -> np.ndarray:
+    """Information (p, p) on the free parameters of `space` in a free decay of `model`, its release and offsets eliminated.
+
+    Released at rest `amplitude` (m, rad) off the equilibrium in `dof` and followed for so many natural periods, a sample
+    every `interval` (s; a fortieth of the period by default). `noise`, motion measured -> standard deviation (m, rad) of a
+    sample, is taken as independent from sample to sample: `effective_noise` of a fit at the same rate stands for its errors.
+    Raises ValueError where `dof` is not measured, or the model has no oscillation in it.
+    """
+    if dof not in noise:
+        raise ValueError(f"noise: expected one of {dof}, the motion released, found {', '.join(noise) or 'none'}")
+    modes = natural_modes(model)
+    period = modes.of(dof)
+    if not np.isfinite(period):
+        raise ValueError(f"dof: expected a motion with a natural period, found {dof}, which nothing restores")
+    time = np.arange(0.0, cycles * period, period / 40 if interval is None else interval)
+    rest = equilibrium(model)
+    motion = free_decay(model, {dof: amplitude}, time)
+    values = {name: np.asarray(motion[name]) - float(rest[DOFS.index(name)]) for name in noise}
+    stated = {"id": f"{dof} decay", "kind": "decay", "file": "simulated", "degree_of_freedom": dof}
+    test = Test.model_validate(stated)
+    record = Record(test.id, test.kind, test.use, dof, time, values, None, None, dict(noise), True, 0.0, test, test.file)
+    data = gather([record], model, min(float(modes.period.min()) / STEPS_PER_PERIOD, memory_step(model)))
+    problem = Problem(model, data, space, True, None if space.moves_equilibrium else rest)
+    own = np.zeros((3, len(data.dofs)))
+    own[0] = [values[DOFS[i]][0] / float(unit) for i, unit in zip(data.dofs, data.unit[0], strict=True)]
+    x = jnp.array([p.transform.inverse(float(model.values[p.label])) for p in space.free])
+    products = np.asarray(_products(problem, Unknowns(x, jnp.asarray(own.reshape(1, -1))), jnp.array([time[-1]])))
+    variance = np.array([[noise[DOFS[i]] ** 2 for i in data.dofs]])
+    return eliminated(products, 1 / variance, variance, np.ones(variance.shape), len(x))

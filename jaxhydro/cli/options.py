@@ -1,0 +1,110 @@
+"""Checks of command-line options. What is wrong is told with the option's name."""
+
+import math
+from pathlib import Path
+
+import typer
+
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem, suggest, suggest_path
+from jaxhydro.files import YAML, check_folder, is_there
+from jaxhydro.platform.schema import builtin_platforms
+
+LARGEST = 5_000_000  # samples or steps of one simulation
+
+
+def wrong(option: str, message: str) -> typer.BadParameter:
+    """The error of an option."""
+    return typer.BadParameter(message, param_hint=option)
+
+
+def positive(value: float, option: str) -> float:
+    """A finite number > 0."""
+    if not (math.isfinite(value) and value > 0):
+        raise wrong(option, f"a number > 0 expected, found {value:g}")
+    return value
+
+
+def finite(value: float, option: str) -> float:
+    """A finite number."""
+    if not math.isfinite(value):
+        raise wrong(option, f"a finite number expected, found {value:g}")
+    return value
+
+
+def interval(value: float, option: str, duration: float) -> float:
+    """A time step that divides a duration into a number of steps that fits into memory."""
+    if not 1 <= duration / positive(value, option) <= LARGEST:
+        limits = f"from {duration / LARGEST:g} to {duration:g} s expected, for a duration of {duration:g} s"
+        raise wrong(option, f"{limits}; found {value:g}")
+    return value
+
+
+def regular(height: float | None, period: float | None) -> tuple[float, float] | None:
+    """Height (m) and period (s) of regular waves, or None."""
+    if height is None and period is None:
+        return None
+    if height is None or period is None:
+        raise wrong("--wave-height", "--wave-height and --wave-period belong together")
+    return positive(height, "--wave-height"), positive(period, "--wave-period")
+
+
+def releases(given: list[str]) -> dict[str, float]:
+    """Offsets by motion (m, rad) of `surge=5` and the like (m, deg)."""
+    offsets: dict[str, float] = {}
+    for text in given:
+        name, _, number = (part.strip() for part in text.partition("="))
+        if name not in DOFS:
+            expected = f"a motion ({', '.join(DOFS)}) and its offset expected, as surge=5"
+            raise wrong("--release", f"{expected}; found {text!r}. {suggest(name, DOFS)}".strip())
+        try:
+            value = float(number)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise wrong("--release", f"a number after {name}= expected, found {number!r}")
+        if name in offsets:
+            raise wrong("--release", f"{name} is given twice")
+        if name in ("roll", "pitch") and abs(value) >= 90:
+            raise wrong("--release", f"less than 90 deg expected, found {text!r}")
+        offsets[name] = math.radians(value) if name in DOFS[3:] else value
+    return offsets
+
+
+RESULTS = {
+    "motion.csv": "a simulation", "calibration.json": "a calibration", "diagnosis.json": "a diagnosis",
+    "comparison.json": "a campaign's seas", "uncertainty.json": "an uncertainty", "sweep.json": "a sweep",
+}  # fmt: skip
+
+
+def results_folder(out: Path, mine: str) -> Path:
+    """A folder that can be written, and has no results of another command than that which writes `mine`: some are called
+    alike, and would be lost."""
+    out = check_folder(out)
+    for name, of in RESULTS.items():
+        # a motion.csv may be anybody's
+        ours = (out / name).exists() and (name != "motion.csv" or (out / "simulated.nc").exists())
+        if name != mine and ours:
+            raise InputError("--out", [Problem("", "another folder", f"{str(out)!r}, which has the results of {of}")])
+    return out
+
+
+def platforms_like(incomplete: str) -> list[str]:
+    """Built-in platforms that begin so, for the shell to complete; where there is none, it completes names of files."""
+    return [name for name in builtin_platforms() if name.startswith(incomplete)]
+
+
+def check_platform(name: str) -> None:
+    """Raise InputError where a platform's argument is no built-in name and no file. What is in a file is not checked."""
+    known = builtin_platforms()
+    if name.lower() in known or is_there(Path(name)) or Path(name).suffix in YAML:
+        return
+    expected = f"a platform file, a built-in platform ({', '.join(known)}), or a campaign's folder"
+    raise InputError(name, [Problem("", expected, "no such file or folder", suggest(name, known) or suggest_path(name))])
+
+
+def check_results(folder: Path) -> None:
+    """Raise InputError where a folder of results does not exist."""
+    if not is_there(folder):
+        expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
+        raise InputError(str(folder), [Problem("", expected, "no such folder", suggest_path(folder))])

@@ -1,0 +1,88 @@
+"""The simulate command in irregular seas: from options to files, tables and figures."""
+
+import time as clock
+from typing import Any
+
+import numpy as np
+
+import jaxhydro
+from jaxhydro.analysis.sea_statistics import in_order, summary, tables
+from jaxhydro.cli.console import complain, say, table
+from jaxhydro.cli.sea_options import transient_of, with_band
+from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest, told_of_bed
+from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.requested_sea import LEAST, Asked, build_sea, impossible, outside
+from jaxhydro.dynamics.simulate import free_decay, largest_step
+from jaxhydro.errors import InputError, Problem
+
+
+def run(model: Model, job: Job, asked: Asked) -> bool:
+    """Simulate, write and print; False where the motion grows beyond all bounds.
+
+    Raises InputError for a sea that cannot be, BadParameter for a transient, EquilibriumError where the platform does not rest.
+    """
+    pace = float(model.pace)
+    asked = with_band(asked, pace)
+    begin = 0.0 if asked.record is None else float(asked.record.times[0])
+    times = begin + job.times
+    transient = transient_of(asked, job.duration, pace)
+    kept = times >= begin + transient
+    if kept.sum() < LEAST:
+        expected = f"{LEAST} samples or more after the transient of {transient:g} s"
+        raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
+    say("Building the sea ...", stderr=True)
+    sea, about, target, notes = build_sea(model, asked, job.duration)
+    print_remarks([*model.remarks, *outside(model, sea, about)])
+    print_rest(model, job.platform)
+    step = largest_step(model, asked.band(pace)[1]) if job.step is None else job.step
+    about |= {"transient": transient, "step_at_most": step}
+    table("Sea", ("Property", "Value"), _about(about), left=2)
+    for note in notes:
+        say(f"Note: {note}")
+    say(f"Simulating {job.duration:g} s in steps of {step:.3g} s, compiled first ...", stderr=True)
+    since = clock.perf_counter()
+    try:
+        position = np.asarray(free_decay(model, job.offset, times, sea=sea, step=step).position)
+    except ValueError as error:
+        if "is carried" in str(error):
+            complain(f"{error}; nothing was written")
+            return False
+        raise impossible("--cutoff" if "cut the sea off" in str(error) else "--step", error) from None
+    if not finite(times, position):
+        return False
+    told_of_bed(model, times, position)
+    say(f"Simulated in {clock.perf_counter() - since:.1f} s", stderr=True)
+    motion = Motion.of(times, position, sea.gauge(times))
+    first_order = motion.wave if asked.order == 1 else sea.gauge(times, order=1)
+    channels = in_order(motion.values, np.asarray(motion.wave))
+    results = summary(times[kept], {name: values[kept] for name, values in channels.items()}, about["peak_period"])
+    state = SeaState(np.asarray(first_order), target, about, results)
+    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}", state, job.figures)
+    of_statistics, of_bands = tables(results)
+    span = f"from {times[kept][0]:g} to {times[-1]:g} s"
+    table(f"Statistics, {span}", *of_statistics)
+    table("Energy by band", *of_bands)
+    height = 4 * results["statistics"]["wave"]["standard_deviation"]
+    say(f"Significant wave height, 4 standard deviations, {span}: {height:.3g} m")
+    say(f"Results are in {job.out}")
+    return True
+
+
+UNITS = {
+    "significant_wave_height": "m", "significant_wave_height_of_components": "m", "peak_period": "s", "lowest_frequency": "Hz",
+    "cutoff": "Hz", "repeat_period": "s", "heading": "deg", "transient": "s", "step_at_most": "s", "wave_position": "m",
+}  # fmt: skip
+
+
+def _about(about: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    for name, value in about.items():
+        shown = f"{value:.4g}" if isinstance(value, float) else str(value)
+        if name in ("share_of_record", "mismatch") or name.startswith("share_outside"):
+            shown = f"{value:.2%}"
+        if isinstance(value, list):
+            shown = ", ".join(f"{x:g}" for x in value)
+        if value is not None:
+            rows.append((name.replace("_", " ").capitalize(), f"{shown} {UNITS.get(name, '')}".strip()))
+    return rows

@@ -1,0 +1,178 @@
+"""An irregular sea as the command line asks for it. What is wrong is told with its option."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import signal
+
+from jaxhydro.cli.options import finite, positive, wrong
+from jaxhydro.dynamics.requested_sea import Asked, Record, usual_transient
+from jaxhydro.errors import InputError, Problem, suggest
+from jaxhydro.waves.irregular import sampling_interval
+
+ORDER, SEED = 2, 0
+DEFAULTS = {"--heading": 0.0, "--dt": 0.1}
+OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes")
+OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
+OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
+NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
+STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
+TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
+
+
+def with_band(sea: Asked, pace: float) -> Asked:
+    """A sea with a band, for a platform of a `pace` (`jaxhydro.scales`). Raises BadParameter where it is none."""
+    low, cutoff = sea.band(pace)
+    if cutoff <= low:
+        raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
+    return replace(sea, low=low, cutoff=cutoff)
+
+
+def transient_of(sea: Asked, duration: float, pace: float = 1.0) -> float:
+    """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
+    if sea.transient is None:
+        return usual_transient(duration, pace)
+    if not 0 <= sea.transient < duration:
+        limits = f"from 0 to less than the duration, {duration:g} s, expected"
+        raise wrong("--transient", f"{limits}; found {sea.transient:g}")
+    return sea.transient
+
+
+def by_option(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters of the command by the names of their options, those only that are given."""
+    return {f"--{name.replace('_', '-')}": value for name, value in given.items() if value not in (None, (), [])}
+
+
+def is_campaign(name: str) -> bool:
+    """Whether the first argument is a campaign, not a platform."""
+    return Path(name).is_dir() or Path(name).name == "campaign.yaml"
+
+
+def of_campaign(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Order, stretching, diffraction and cut-off (Hz) of a campaign's seas, those that are asked for. Raises BadParameter for
+    what does not go with one."""
+    unused = [name for name in OF_SEA + OF_RECORD + NOT_OF_CAMPAIGNS if name not in ("--order", "--cutoff")]
+    for name in given:
+        if name in unused or given[name] != DEFAULTS.get(name, given[name]):
+            raise wrong(name, "it goes with a platform, not with a campaign, whose files say it: name its platform file")
+    if "--cutoff" in given:
+        positive(given["--cutoff"], "--cutoff")
+    how = {name: given.get(f"--{name}") for name in ("order", "stretching", "diffraction", "cutoff")}
+    return {name: value if isinstance(value, int | float) else str(value) for name, value in how.items() if value is not None}
+
+
+def stretching(given: Mapping[str, Any]) -> Any:
+    """The stretching asked for."""
+    return str(given.get("--stretching", "vertical"))
+
+
+def asked(given: Mapping[str, Any], heading: float) -> Asked | None:
+    """The irregular sea of the options given, the record yet to be read; None without one. Raises BadParameter."""
+    named = {name: given[name] for name in OF_SEA if name in given}
+    record, of_spectrum = "--wave" in given, [name for name in named if name in OF_SPECTRUM]
+    if record and of_spectrum:
+        raise wrong(of_spectrum[0], "--wave takes the sea from a record: not both")
+    if not record and (of_gauge := [name for name in OF_RECORD if name in given]):
+        raise wrong(of_gauge[0], "a record expected with it, --wave FILE")
+    if not record and "--hs" not in named:
+        if named:
+            what = "a significant wave height expected with it" if of_spectrum else "a sea expected with it"
+            raise wrong(next(iter(named)), f"{what}: --hs 3.1 --tp 8.96" + ("" if of_spectrum else ", or --wave FILE"))
+        return None
+    kind = str(named.get("--spectrum", "jonswap"))
+    hs, tp, gamma = (named.get(name) for name in ("--hs", "--tp", "--gamma"))
+    if not record:
+        positive(named["--hs"], "--hs")
+        _spectrum(kind, tp, gamma)
+    low, cutoff = (finite(named[name], name) if name in named else None for name in ("--low", "--cutoff"))
+    if low is not None and low < 0:
+        raise wrong("--low", f"a number from 0 on expected, found {low:g}")
+    if low is not None and cutoff is not None and cutoff <= low:
+        raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
+    seed, amplitudes = named.get("--seed", SEED), str(named.get("--amplitudes", "deterministic"))
+    how = (named.get("--order", ORDER), stretching(given), heading, named.get("--transient"))
+    return Asked(hs, tp, gamma, kind, seed, amplitudes, low, cutoff, *how)
+
+
+def duration(given: float | None, sea: Asked | None) -> float:
+    """Duration (s) given or chosen. Raises BadParameter for one that is longer than the record."""
+    record = None if sea is None else sea.record
+    if record is None:
+        return positive(given, "--duration") if given is not None else 600.0 if sea is None else 3600.0
+    whole = float(record.times[-1] - record.times[0])
+    if given is not None and positive(given, "--duration") > whole * (1 + 1e-9):
+        raise wrong("--duration", f"at most the record's length, {whole:g} s, expected, found {given:g}")
+    return whole if given is None else given
+
+
+def _spectrum(kind: str, tp: float | None, gamma: float | None) -> None:
+    if kind == "white" and tp is not None:
+        raise wrong("--tp", "white noise has no peak: leave it out")
+    if kind != "white":
+        if tp is None:
+            raise wrong("--tp", "a peak period expected with --hs, as --tp 8.96")
+        positive(tp, "--tp")
+    if gamma is not None and kind != "jonswap":
+        raise wrong("--gamma", f"a JONSWAP spectrum expected with it, found {kind}")
+    if gamma is not None and not 1 <= gamma <= 7:
+        raise wrong("--gamma", f"from 1 to 7 expected, found {gamma:g}")
+
+
+def with_record(sea: Asked, file: Path, table: Any, given: Mapping[str, Any]) -> Asked:
+    """The sea with the record in a file's table (pandas).
+
+    Raises InputError for columns that are not there, gaps and uneven sampling; BadParameter for the gauge's place.
+    """
+
+    def wrong_file(where: str, expected: str, found: str, hint: str = "") -> InputError:
+        return InputError(str(file), [Problem(where, expected, found, hint)])
+
+    def pick(option: str, default: str) -> tuple[str, np.ndarray]:
+        names, name = [str(column) for column in table.columns], str(given.get(option, default))
+        if name not in names and name.isdigit() and int(name) < len(names):
+            name = names[int(name)]
+        if name not in names:
+            hint = suggest(name, names) or f"{option} says which."
+            raise wrong_file("", f"a column {name!r}", ", ".join(names[:12]), hint)
+        values = table.iloc[:, names.index(name)].to_numpy()
+        if values.dtype.kind != "f":
+            raise wrong_file(f"column {name}", "numbers", f"text such as {values[0]!r}")
+        if gaps := int(np.sum(~np.isfinite(values))):
+            raise wrong_file(f"column {name}", "numbers without gaps", f"{gaps} of {len(values)} that are none")
+        return name, values
+
+    time_name, times = pick("--wave-time-column", TIME_COLUMN)
+    name, elevation = pick("--wave-column", WAVE_COLUMN)
+    try:
+        sampling_interval(times)
+    except ValueError as error:
+        hint = "Interpolate to even times, or make it a campaign, which takes such records."
+        raise wrong_file(f"column {time_name}", "even sampling", f"none ({error})", hint) from None
+    stated = table.attrs.get("stated", {})
+    unit = str(given.get("--wave-unit", "m"))
+    if unit not in UNITS:
+        raise wrong("--wave-unit", f"one of {', '.join(UNITS)} expected, found {unit}")
+    if name in stated and stated[name] != unit:
+        found = f"{stated[name]}, as the file states"
+        raise wrong_file(f"column {name}", f"a unit of {unit}", found, "--wave-unit says which.")
+    if stated.get(time_name, "s") != "s":
+        raise wrong_file(f"column {time_name}", "times in s", f"{stated[time_name]}, as the file states")
+    elevation = elevation * UNITS[unit]
+    height, length = 4 * float(np.std(elevation)), _peak_length(times, elevation)
+    if height > STEEPEST * length:
+        found = f"waves {height:.3g} m high and {length:.3g} m long"
+        expected = "waves less than 1/7 as high as long, at full scale"
+        raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")
+    x, y = (finite(float(value), "--wave-position") for value in given.get("--wave-position", (0.0, 0.0)))
+    return replace(sea, record=Record(str(file), name, times, elevation, (x, y)))
+
+
+def _peak_length(times: np.ndarray, elevation: np.ndarray) -> float:
+    """Length (m) in deep water of the waves at the spectrum's peak (Welch): no water makes them longer."""
+    step = float(times[-1] - times[0]) / (len(times) - 1)
+    frequency, density = signal.welch(elevation, 1 / step, nperseg=min(len(times), max(round(1000.0 / step), 8)))
+    return 9.80665 / (2 * np.pi * float(frequency[max(int(density.argmax()), 1)]) ** 2)

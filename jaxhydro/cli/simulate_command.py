@@ -1,0 +1,195 @@
+"""The simulate command: from options to files and tables."""
+
+import math
+from collections.abc import Collection, Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+import jaxhydro
+from jaxhydro.cli.calibrated_model import Used, with_calibration
+from jaxhydro.cli.console import complain, say, table
+from jaxhydro.cli.simulation_files import Motion, write_motion
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.simulate import default_step, free_decay
+from jaxhydro.dynamics.statics import equilibrium, natural_modes, stable_modes
+from jaxhydro.dynamics.table_ranges import regular_fault
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.loads import Buoyancy
+from jaxhydro.platform.build import build
+from jaxhydro.platform.schema import load_platform
+from jaxhydro.remarks import Remark
+from jaxhydro.rotations import rotation
+from jaxhydro.units import for_people, unit_of
+from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
+
+GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
+STEPS_PER_WAVE = 32
+CLOSE = 1e-6  # of the depth: what is below the bed by less touches it
+
+
+class Job(NamedTuple):
+    """What every simulation is told: the platform's name, where results go, duration and sampling (s), offset from rest (m,
+    rad), largest step (s; None: chosen), and whether figures are drawn."""
+
+    platform: str
+    out: Path
+    duration: float
+    dt: float
+    offset: dict[str, float]
+    step: float | None
+    figures: bool = True
+
+    @property
+    def times(self) -> np.ndarray:
+        """Of the samples that are written, from 0 (s)."""
+        return self.dt * np.arange(math.floor(self.duration / self.dt * (1 + 1e-12)) + 1)
+
+
+def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
+    """The model with the values, laws and effects of a calibration.json or diagnosis.json; what is to be known of them is
+    printed. `asked` is the platform as it was asked for, `name` its own. Raises InputError."""
+    model, used = with_calibration(model, asked, name, source)
+    print_used(used)
+    return model
+
+
+def print_used(used: Used) -> None:
+    """Labels of calibrated values that are used, and what is to be known of them."""
+    counted = ""
+    if used.reference is not None:
+        hs, tp = used.reference
+        counted = f"; exponents count from Hs {hs:.3g} m, Tp {tp:.3g} s"
+    say(f"Calibrated values used: {', '.join(used.values)}{counted}")
+    if of_sensors := sorted({label.split(".")[0] for label in used.values if label.startswith("sensor_")}):
+        say(f"{' and '.join(of_sensors)}: of that campaign's sensors; the motions here are those of the reference point")
+    if used.strips is not None:
+        say(f"Strips as they were when these were found: {used.strips}")
+    for warning in used.warnings:
+        complain(f"warning: {warning}")
+
+
+def finite(times: np.ndarray, position: np.ndarray) -> bool:
+    """Whether a motion is all numbers; where it is not, says from when on."""
+    if np.isfinite(position).all():
+        return True
+    first = times[np.argmin(np.isfinite(position).all(axis=1))]
+    complain(f"the motion grows beyond all bounds at {first:.4g} s; nothing was written. Try a smaller --step.")
+    return False
+
+
+def told_of_bed(model: Model, times: np.ndarray, position: np.ndarray) -> None:
+    """Print a warning where a motion takes the hull through the sea bed, which does not hold it and where there is no water."""
+    points = jnp.asarray(model.hull.extremities())
+    if not points.size:
+        return
+    lowest = position[:, 2] + np.asarray(_lowest(jnp.asarray(position), points))
+    below = -float(model.environment.depth) - lowest
+    if (below > CLOSE * float(model.environment.depth)).any():
+        first, most = times[np.argmax(below > 0)], below.max()
+        where = f"the hull goes {most:.3g} m through the sea bed, first at {first:.4g} s"
+        complain(f"warning: {where}: nothing holds it there, and the water's motion is that at the bed")
+
+
+@jax.jit
+def _lowest(position: Float[Array, "t 6"], points: Float[Array, "3 p"]) -> Float[Array, " t"]:
+    return jax.lax.map(lambda q: (rotation(q[3:])[2] @ points).min(), position)
+
+
+def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float, stretching: Stretching = "vertical") -> bool:
+    """Simulate, write and print; False where the motion grows beyond all bounds. `heading` in deg.
+
+    Raises InputError for a wave that cannot be, EquilibriumError where the platform does not rest.
+    """
+    sea, ramp, step = None, 0.0, job.step
+    print_remarks(model.remarks)
+    if wave is not None:
+        if (fault := regular_fault(model, wave[1])) is not None:
+            raise InputError("--wave-period", [Problem("", *fault)])
+        ramp = min(GROWTH * wave[1], 0.25 * job.duration)
+        sea = _sea(model, wave, heading, ramp, stretching)
+        step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
+    print_rest(model, job.platform, DOFS if wave is not None else list(job.offset))
+    times = job.times
+    position = np.asarray(free_decay(model, job.offset, times, sea=sea, step=step).position)
+    if not finite(times, position):
+        return False
+    told_of_bed(model, times, position)
+    elevation = None
+    if sea is not None:
+        here = jnp.zeros((2, 1))
+        elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, here)[0])(jnp.asarray(times)))
+    motion = Motion.of(times, position, elevation)
+    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}", figures=job.figures)
+    _print_motion(motion, wave, ramp)
+    say(f"Results are in {job.out}")
+    return True
+
+
+def _sea(model: Model, wave: tuple[float, float], heading: float, ramp: float, stretching: Stretching) -> WaveSea:
+    try:
+        return regular_wave(*wave, model.environment, heading=math.radians(heading), ramp=ramp, stretching=stretching)
+    except ValueError as error:
+        expected = "a wave that does not break"
+        raise InputError("--wave-height", [Problem("", expected, f"one too steep ({error})")]) from None
+
+
+def print_remarks(remarks: Iterable[Remark]) -> None:
+    """Print what is to be known of what was read, warnings first."""
+    remarks = list(remarks)
+    for one in remarks:
+        if one.warning:
+            complain(f"warning: {one.text}")
+    for one in remarks:
+        if not one.warning:
+            say(f"Note: {one.text}")
+
+
+def print_rest(model: Model, platform: str, moved: Collection[str] = DOFS) -> None:
+    """Print where the platform rests, and its natural periods. Raises EquilibriumError where it does not stay there once it is
+    `moved`."""
+    rest, modes = np.asarray(equilibrium(model)), stable_modes(model, moved)
+    if modes.unstable:
+        complain(f"warning: the platform is unstable in {' and '.join(modes.unstable)}, which nothing moves here")
+    rest = rest.round(8) + 0.0  # no -0.0000
+    rows = [(f"{dof} ({unit_of(dof)})", f"{float(for_people(dof, q)):.4f}") for dof, q in zip(DOFS, rest)]
+    table(f"{platform}: at rest", ("Motion", "Position"), rows)
+    rows = []
+    for period, shape in zip(modes.period, modes.shape):
+        shares = sorted(((abs(share), dof) for share, dof in zip(shape, DOFS) if abs(share) > 0.2), reverse=True)
+        rows.append((" and ".join(dof for _, dof in shares), f"{period:.2f} s"))
+    table("Natural periods, undamped", ("Mode", "Period"), rows)
+
+
+def _print_motion(motion: Motion, wave: tuple[float, float] | None, ramp: float) -> None:
+    values = motion.values
+    heads = ["Motion", "Mean", "Standard deviation", "Least", "Largest"]
+    columns = [values.mean(axis=0), values.std(axis=0), values.min(axis=0), values.max(axis=0)]
+    if wave is not None:
+        heads += [f"Amplitude at {wave[1]:g} s", "per m of wave amplitude"]
+        amplitude = motion.amplitude(wave[1])
+        columns += [amplitude, amplitude / (0.5 * wave[0])]
+        say(f"Waves grow over the first {ramp:g} s; amplitudes are those of the last half")
+    rows = []
+    for i, dof in enumerate(DOFS):
+        numbers = (f"{column[i]:.4g}" if abs(column[i]) > 1e-9 else "0" for column in columns)
+        rows.append((f"{dof} ({unit_of(dof)})", *numbers))
+    table("Motion", heads, rows)
+
+
+def particulars(name: str) -> tuple[str, ...]:
+    """A built-in platform: name, title, mass (t), displaced volume (m3), natural periods of surge, heave, pitch (s)."""
+    platform = load_platform(name)
+    model = build(platform)
+    load = next(load for load in model.loads if isinstance(load, Buoyancy))
+    volume = platform.hydrostatics.displaced_volume
+    if volume is None:
+        volume = float(load.geometry(jnp.zeros(()), jnp.array([0.0, 0.0, 1.0]))[0].sum())
+    modes = natural_modes(model)
+    periods = (modes.of(dof) for dof in ("surge", "heave", "pitch"))
+    return name, platform.name, f"{float(model.body.mass) / 1e3:.0f}", f"{volume:.0f}", *(f"{p:.1f}" for p in periods)

@@ -1,0 +1,122 @@
+"""What a simulation leaves behind: simulated.nc, motion.csv and figures, in m and deg, whole or not at all."""
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from jaxhydro.analysis.sea_statistics import in_order
+from jaxhydro.environment import DOFS
+from jaxhydro.files import staged
+from jaxhydro.plots import seas as sea_plot
+from jaxhydro.plots.style import motion_figure, save, style
+from jaxhydro.units import for_people, unit_of
+
+STATISTICS = "statistics.json"
+OF_SEAS = (STATISTICS, "figures/motion.png", "figures/window.png", "figures/spectra.png")
+HIGHEST = 0.2  # Hz, that spectra are drawn to
+
+
+class Motion(NamedTuple):
+    """A simulated motion as people read it: time (s), surge ... yaw (m, deg; sample, dof), elevation (m) or None."""
+
+    time: np.ndarray
+    values: np.ndarray
+    wave: np.ndarray | None
+
+    @classmethod
+    def of(cls, time: np.ndarray, position: np.ndarray, wave: np.ndarray | None = None) -> "Motion":
+        """From positions in m and rad."""
+        columns = [for_people(dof, position[:, i]) for i, dof in enumerate(DOFS)]
+        return cls(np.asarray(time), np.stack(columns, axis=1), wave)
+
+    def amplitude(self, period: float) -> np.ndarray:
+        """(6,) amplitude at a period (s), by least squares over the last half of the record in whole periods."""
+        span = self.time[-1] - self.time[0]
+        whole = max(1.0, np.floor(0.5 * span / period)) * period
+        keep = self.time >= self.time[-1] - whole - 1e-9
+        phase = 2 * np.pi / period * self.time[keep]
+        basis = np.stack([np.ones(keep.sum()), np.cos(phase), np.sin(phase)], axis=1)
+        solution = np.linalg.lstsq(basis, self.values[keep], rcond=None)[0]
+        return np.hypot(solution[1], solution[2])
+
+
+class SeaState(NamedTuple):
+    """What is written about an irregular sea: its first order (m), the spectrum asked for (Hz -> m2/Hz; None: a record), how it
+    was made, and `summary`'s results."""
+
+    first_order: np.ndarray
+    target: Callable[[np.ndarray], np.ndarray] | None
+    about: Mapping[str, Any]
+    results: Mapping[str, Any]
+
+
+def write_motion(
+    motion: Motion, folder: Path, title: str, source: str, sea: SeaState | None = None, figures: bool = True
+) -> None:
+    """Write a motion's files into a folder; without `figures` those of an earlier simulation there are taken away."""
+    names = ["time_s", *(f"{dof}_{unit_of(dof)}" for dof in DOFS)]
+    columns = [motion.time, *motion.values.T]
+    about = {"units": "m; deg for roll, pitch and yaw", "long_name": "motion of the reference point"}
+    data: dict[str, Any] = {"simulated": (("channel", "time"), motion.values.T, about)}
+    if motion.wave is not None:
+        names.append("wave_m")
+        columns.append(motion.wave)
+        about = {"units": "m", "long_name": "wave elevation at the reference position"}
+        data["wave"] = (("time",), motion.wave, about)
+    if sea is not None:
+        data["wave_first_order"] = (("time",), sea.first_order, {"units": "m", "long_name": "first order of the elevation"})
+    coordinates = {
+        "time": ("time", motion.time, {"units": "s", "long_name": "time"}),
+        "channel": ("channel", np.array(DOFS, dtype=object), {"long_name": "motion"}),
+        "unit": ("channel", np.array([unit_of(dof) for dof in DOFS], dtype=object), {"long_name": "unit of a channel"}),
+    }
+    of_sea = {} if sea is None else {name: value for name, value in sea.about.items() if value is not None}
+    dataset = xr.Dataset(data, coordinates, {"title": title, "source": source, **of_sea})
+    with staged(folder, lambda temporary: _stale(folder, temporary)) as temporary:
+        rows, header = np.stack(columns, axis=1), ",".join(names)
+        np.savetxt(temporary / "motion.csv", rows, fmt="%.9g", delimiter=",", header=header, comments="")
+        packed = {name: {"zlib": True, "complevel": 4} for name in data}
+        dataset.to_netcdf(temporary / "simulated.nc", engine="h5netcdf", encoding=packed)
+        if sea is not None:
+            _statistics(sea, temporary, title, source)
+        if figures:
+            _draw(motion, sea, temporary, title)
+
+
+def _draw(motion: Motion, sea: SeaState | None, folder: Path, title: str) -> None:
+    with style():
+        if sea is not None and motion.wave is not None:
+            _sea_figures(motion, motion.wave, sea, folder, title)
+        else:
+            figure = motion_figure(motion.time, dict(zip(DOFS, motion.values.T, strict=True)), motion.wave, title)
+            save(figure, folder / "figures" / "motion.png")
+
+
+def _statistics(sea: SeaState, folder: Path, title: str, source: str) -> None:
+    """Write statistics.json."""
+    text = {"platform": title, "source": source, "sea": dict(sea.about), **sea.results}
+    (folder / STATISTICS).write_text(json.dumps(text, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _sea_figures(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, title: str) -> None:
+    time, channels, start = motion.time, in_order(motion.values, wave), sea.results["window"][0]
+    second = sea.first_order if sea.about["order"] == 2 else None
+    kept = {name: values[time >= start] for name, values in channels.items()}
+    height, peak = sea.about["significant_wave_height"], sea.about["peak_period"]
+    title += f"\nHs {height:.3g} m" + (f", Tp {peak:.3g} s" if peak else ", white")
+    for name, figure in (
+        ("motion", sea_plot.record_figure(time, channels, start, title)),
+        ("window", sea_plot.window_figure(time, channels, second, start, title)),
+        ("spectra", sea_plot.spectra_figure(time[time >= start], kept, peak, HIGHEST, sea.target, title)),
+    ):
+        save(figure, folder / "figures" / f"{name}.png")
+
+
+def _stale(folder: Path, temporary: Path) -> Iterable[str]:
+    """What an earlier simulation in a sea wrote and the new one does not."""
+    if (folder / "motion.csv").is_file():
+        yield from (name for name in OF_SEAS if (folder / name).is_file() and not (temporary / name).exists())

@@ -1,0 +1,147 @@
+"""The sweep command: from a sweep file to its store, tables and figures."""
+
+import os
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from jaxhydro.cli.console import complain, counting, say, table
+from jaxhydro.cli.simulate_command import print_remarks, print_rest, print_used
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
+from jaxhydro.sweep.cluster import workers_of
+from jaxhydro.sweep.resources import chosen
+from jaxhydro.sweep.run_sweep import Prepared, Progress, Ran, opened, prepared, run_all, to_do
+from jaxhydro.sweep.store import RESULTS, alone, open_results
+from jaxhydro.sweep.sweep_file import load_sweep
+from jaxhydro.sweep.write_sweep import Summary, summary_of, write_outputs
+
+LISTED = 5  # failures that are printed, of runs that failed alike
+
+
+class Stopped(Exception):
+    """Stopped by a key, by SIGTERM, or for want of a scheduler: what is done is kept."""
+
+
+def sweep(
+    source: Path,
+    out: Path,
+    workers: int | None = None,
+    batch: int | None = None,
+    restart: bool = False,
+    retry_failed: bool = False,
+    scheduler: str | None = None,
+) -> bool:
+    """Run a sweep or what is left of it, write and print; False where runs failed.
+
+    Raises InputError for bad input, EquilibriumError where the platform does not rest, Stopped.
+    """
+    os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # GPU memory is for the workers
+    if scheduler is not None and workers is not None:
+        raise InputError("--workers", [Problem("", "none with --scheduler, whose cluster has its own", f"{workers}")])
+    try:
+        made = prepared(load_sweep(source), str(source))
+        # bad input is told before anything is begun
+        workers_there = 0 if scheduler is None else workers_of(scheduler)
+        stop_if_asked()
+        with alone(out):
+            return _sweep(made, out, workers, batch, restart, retry_failed, scheduler, workers_there)
+    except (KeyboardInterrupt, Exception) as error:
+        if not (asked_to_stop() or isinstance(error, KeyboardInterrupt)):
+            raise
+        raise Stopped(f"stopped; {_kept(out)}") from None
+
+
+def _kept(out: Path) -> str:
+    if (out / RESULTS).is_dir():
+        return f"what is done is in {out / RESULTS}, and the same command goes on"
+    return "nothing was written"
+
+
+def _sweep(
+    made: Prepared, out: Path, workers: int | None, batch: int | None, restart: bool, retry_failed: bool, scheduler: str | None,
+    workers_there: int,
+) -> bool:  # fmt: skip
+    print_remarks(made.remarks)
+    resumed = opened(out, made, restart)
+    numbers = to_do(out, retry_failed)
+    _print_plan(made)
+    if resumed:
+        done = len(made.inputs.plan) - len(numbers)
+        say(f"{out} has {done} of {len(made.inputs.plan)} runs" + (": they stay" if numbers else ": nothing is left to do"))
+    ran = Ran(0, 0, 0.0, 0.0)
+    if numbers:
+        how = chosen(made.setup, len(numbers), workers, batch)
+        say(how.words if scheduler is None else _cluster(scheduler, workers_there, how.batch), stderr=True)
+        with counting(len(made.inputs.plan), len(made.inputs.plan) - len(numbers), "runs") as show:
+            try:
+                ran = run_all(out, made, numbers, how, scheduler, partial(_show, show))
+            except OSError as error:
+                said = str(error.strerror or error)
+                if scheduler is not None:  # workers write, and say it themselves where they cannot
+                    raise Stopped(f"the scheduler at {scheduler} was lost ({said}); {_kept(out)}") from None
+                raise InputError("--out", [Problem("", "a folder that can be written", f"{str(out)!r} ({said})")]) from None
+        many = f"{ran.runs} run{'s' * (ran.runs != 1)}"
+        say(f"{many} in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
+    data = open_results(out)
+    summary = summary_of(data)
+    write_outputs(out, data, summary, made.about)
+    finished()
+    _print_results(summary, data.exponent.values)
+    say(f"Results are in {out}")
+    return not summary.failed
+
+
+def _cluster(scheduler: str, workers: int, batch: int) -> str:
+    there = f"{workers} worker{'s' * (workers != 1)}" if workers else "no worker yet, and nothing runs until there is one"
+    return f"On the cluster of {scheduler}: {there}; {batch} run{'s' * (batch != 1)} at a time each"
+
+
+def _show(show: Callable[[int, str], None], now: Progress) -> None:
+    stop_if_asked()
+    show(now.done + now.failed, _remark(now))
+
+
+def _remark(now: Progress) -> str:
+    failed = f"{now.failed} failed, " if now.failed else ""
+    return f"{failed}{now.speed:.0f} times real time"
+
+
+def _print_plan(made: Prepared) -> None:
+    plan = made.inputs.plan
+    print_rest(made.setup.model, made.platform)
+    headings = sorted({case.heading for case in plan.cases})
+    states = {case.state for case in plan.cases}
+    rows = [
+        ("Sea states", f"{len(states)}"),
+        ("Headings", ", ".join(f"{heading:g}" for heading in headings[:8]) + (" ..." if len(headings) > 8 else "") + " deg"),
+        ("Cases, a sea state with a heading", f"{len(plan.cases)}"),
+        ("Seeds", f"{len(plan.seeds)}"),
+        ("Runs", f"{len(plan)} of {plan.duration:g} s, statistics from {plan.start:g} s on"),
+        ("Step at most", f"{made.setup.limit:.3g} s"),
+    ]
+    table("Sweep", ("Property", "Value"), rows, left=2)
+    for note in made.notes:
+        say(f"Note: {note}")
+    if made.setup.calibrated is not None:
+        print_used(made.setup.calibrated)
+
+
+def _print_results(summary: Summary, exponents) -> None:
+    rows = []
+    for channel, one in summary.lifetimes.items():
+        numbers = (one.mean, one.standard_deviation, one.standard_deviation_spread, one.minimum, one.maximum)
+        shown = ("-" if value != value else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in (*numbers, *one.ranges))
+        rows.append((f"{channel} ({summary.units[channel]})", *shown))
+    heads = ("Channel", "Mean", "Standard deviation", "Spread over seeds", "Minimum", "Maximum")
+    if summary.done:
+        ranges = (f"Equivalent range m = {m:g}" for m in exponents)
+        table("Over the life", (*heads, *ranges), rows)
+    if summary.failed:
+        share = f"; cases of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
+        complain(f"{summary.failed} of {summary.total} runs failed{share}")
+        listed, others = summary.failures[:LISTED], summary.failures[LISTED:]
+        for failure in listed:
+            complain(f"{failure.where}: {failure.reason}")
+        if others:
+            complain(f"and {sum(failure.runs for failure in others)} more: see sweep.json")

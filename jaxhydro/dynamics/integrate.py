@@ -1,0 +1,173 @@
+"""Fixed-step time integration, and output at any times."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Literal, TypeAlias, get_args
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax.flatten_util import ravel_pytree
+from jaxtyping import Array, Float, Int
+
+from jaxhydro.choices import check
+from jaxhydro.dynamics.model import Model, State
+from jaxhydro.integrators import adams_bashforth, runge_kutta
+from jaxhydro.waves.sea import AbstractSea
+from jaxhydro.waves.support_sea import Clock
+
+Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
+Adjoint = Literal["forward", "reverse"]
+MORE = 2  # steps, so that differences at the last one are central
+MOTION = 12  # entries of the state before the loads' memories: position and velocity
+LONG = 32  # entries of a state beyond which a forward derivative runs along with the simulation
+Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
+
+
+class Grid(eqx.Module):
+    """Motion at the ends of every step: dof positions, rates and accelerations."""
+
+    start: Float[Array, ""]
+    step: Float[Array, ""]
+    count: Int[Array, ""]
+    position: Float[Array, "n 6"]
+    rate: Float[Array, "n 6"]
+    acceleration: Float[Array, "n 6"]
+
+    def at(
+        self, times: Float[Array, " t"], dofs: slice | tuple[int, ...] = slice(None)
+    ) -> tuple[Float[Array, "t d"], Float[Array, "t d"], Float[Array, "t d"]]:
+        """Position, rate and acceleration at `times` (s), by quintic Hermite interpolation.
+
+        Its error in position is of sixth order in the step. Times outside the grid are clipped to it.
+        """
+        place = (times - self.start) / self.step
+        index = jnp.clip(jnp.floor(place).astype(int), 0, self.count - 1)
+        s = (place - index)[:, None]
+        s = jnp.where(s < 0, 0.0, jnp.where(s > 1, 1.0, s))  # jnp.clip has half the slope where a time is a step's
+        h = self.step
+        position, rate, acceleration = (x[:, dofs] for x in (self.position, self.rate, self.acceleration))
+        x0, x1 = position[index], position[index + 1]
+        v0, v1 = h * rate[index], h * rate[index + 1]
+        a0, a1 = 0.5 * h * h * acceleration[index], 0.5 * h * h * acceleration[index + 1]
+        # x = x0 + v0 s + a0 s^2 + s^3 (c3 + c4 s + c5 s^2), fixed by the far end
+        gap, slope, bend = x1 - x0 - v0 - a0, v1 - v0 - 2 * a0, 2 * (a1 - a0)
+        c3 = 10 * gap - 4 * slope + 0.5 * bend
+        c4 = -15 * gap + 7 * slope - bend
+        c5 = 6 * gap - 3 * slope + 0.5 * bend
+        x = x0 + s * (v0 + s * (a0 + s * (c3 + s * (c4 + s * c5))))
+        v = (v0 + s * (2 * a0 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))) / h
+        a = (2 * a0 + s * (6 * c3 + s * (12 * c4 + s * 20 * c5))) / h**2
+        return x, v, a
+
+
+def _rate_of(unravel: Callable[[Array], State]) -> runge_kutta.Rate:
+    """The equation of motion of states in one array."""
+
+    @eqx.filter_jit  # traced once, not by every stage and derivative
+    def rate(driver: tuple[Model, AbstractSea], time: Float[Array, ""], y: Float[Array, " s"]) -> tuple[Array, ...]:
+        return tuple(leaf.reshape(-1) for leaf in jax.tree.leaves(driver[0].rate(time, unravel(y), driver[1])))
+
+    return rate
+
+
+def _by_loop(
+    method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
+) -> Motion:
+    """A scheme as one of this package's own loops: positions and body velocities at the ends of the steps."""
+    y, unravel = ravel_pytree(state)
+    loop = adams_bashforth if method == "ab4" else runge_kutta
+    options: dict[str, Any] = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
+    run: Any = loop.forward if adjoint == "forward" else loop.backward
+    if adjoint == "forward" and y.shape[0] > LONG:
+        run, options["shown"] = loop.direct, MOTION
+
+    path = run((model, sea), y, start, step, count, rate=_rate_of(unravel), capacity=capacity, **options)
+    return path[:, :6], path[:, 6:MOTION]
+
+
+def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
+    """diffrax's Tsitouras 5(4) on the same grid.
+
+    `StepTo`, not `ConstantStepSize`, whose reverse gradients are wrong with output on the step grid (diffrax 0.7.2).
+    """
+    import diffrax
+
+    grid = start + step * jnp.arange(capacity + 1.0)
+    solution = diffrax.diffeqsolve(
+        diffrax.ODETerm(lambda t, y, args: args[0].rate(t, y, args[1])),
+        diffrax.Tsit5(),
+        t0=grid[0],
+        t1=grid[-1],
+        dt0=None,
+        y0=state,
+        args=(model, sea),
+        stepsize_controller=diffrax.StepTo(ts=grid),
+        saveat=diffrax.SaveAt(ts=grid),
+        adjoint=diffrax.ForwardMode() if adjoint == "forward" else diffrax.RecursiveCheckpointAdjoint(),
+        max_steps=capacity + 1,
+    )
+    return solution.ys.position, solution.ys.velocity
+
+
+def integrate(
+    model: Model,
+    sea: AbstractSea,
+    state: State,
+    start: Float[Array, ""],
+    step: Float[Array, ""],
+    capacity: int,
+    method: Method = "tsit5",
+    adjoint: Adjoint = "forward",
+    count: Int[Array, ""] | None = None,
+) -> Grid:
+    """Motion over `capacity` steps of `step` seconds from `start`.
+
+    Simulations of different lengths share one compilation by sharing a capacity: `count` says how many steps of it are
+    taken (with adjoint "forward", and not by diffrax: there all are).
+    """
+    check(method=(method, get_args(Method)), adjoint=(adjoint, get_args(Adjoint)))
+    count = jnp.asarray(capacity) if count is None else count
+    run = _by_diffrax if method == "diffrax" else partial(_by_loop, method)
+    position, velocity = run(model, sea, state, start, step, count + MORE, capacity + MORE, adjoint)
+    rate = jax.vmap(model.position_rate)(position, velocity)
+    return Grid(start, step, count, position, rate, differences(rate, step))
+
+
+@eqx.filter_jit
+def states(
+    model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], count: int
+) -> State:
+    """Whole states, memories included, after 0, 1 ... `count` steps by "ab4" of `integrate`: stacked."""
+    y, unravel = ravel_pytree(state)
+    path = adams_bashforth.direct(
+        (model, sea), y, start, step, jnp.asarray(count), rate=_rate_of(unravel), capacity=count, shown=y.shape[0]
+    )
+    return jax.vmap(unravel)(path)
+
+
+def clock(method: Method, start: float, step: float, count: int) -> Clock:
+    """When an integration over `count` steps asks for the sea."""
+    check(method=(method, get_args(Method)))
+    if method == "ab4":
+        return Clock(start, step, count + MORE, (0.0,), adams_bashforth.START)
+    if method == "diffrax":
+        import diffrax
+
+        nodes = (0.0, *map(float, diffrax.Tsit5.tableau.c))
+    else:
+        nodes = (runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()).nodes
+    return Clock(start, step, count + MORE + 1, tuple(sorted({node for node in nodes if node < 1.0})))
+
+
+def differences(values: Float[Array, "n 6"], step: Float[Array, ""]) -> Float[Array, "n 6"]:
+    """Time derivative on an even grid by five-point differences, of fourth order at the ends too. Fewer points: `gradient`.
+
+    Abramowitz and Stegun 1964, table 25.2, m = 5.
+    """
+    if values.shape[0] < 5:
+        return jnp.asarray(jnp.gradient(values, axis=0)) / step
+    inside = (values[:-4] - 8 * values[1:-3] + 8 * values[3:-1] - values[4:]) / 12
+    first = jnp.array([[-25.0, 48.0, -36.0, 16.0, -3.0], [-3.0, -10.0, 18.0, -6.0, 1.0]]) / 12
+    begin, end = first @ values[:5], -(first @ values[-1:-6:-1])[::-1]
+    return jnp.concatenate([begin, inside, end]) / step

@@ -1,0 +1,209 @@
+"""An irregular sea as asked for, of a spectrum or a wave record, and the sea that is made of it."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from jaxhydro.analysis.spectral import power_spectrum
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.table_ranges import outside_tables
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.remarks import Remark
+from jaxhydro.waves import wave_bands
+from jaxhydro.waves.components import Components
+from jaxhydro.waves.irregular import separated_record, spectrum_components
+from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
+
+MISSED = 0.01  # of a record in the band, that first and second order may miss by root mean square
+CUT = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
+NEARLY_NONE = 0.05  # share, below which it is a mistake
+LEAST = 100  # samples after the transient
+TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
+
+
+def share_within(elevation: np.ndarray, step: float, low: float, high: float) -> float:
+    """Share of the variance of a record, sampled every `step` (s), between two frequencies (Hz)."""
+    power = np.abs(np.fft.rfft(elevation - elevation.mean())) ** 2
+    frequency = np.fft.rfftfreq(len(elevation), step)
+    return float(power[(frequency >= low) & (frequency <= high)].sum() / max(power.sum(), 1e-300))
+
+
+def usual_transient(duration: float, pace: float = 1.0) -> float:
+    """s, left out of statistics where nothing else is asked for."""
+    return min(TRANSIENT * pace, 0.25 * duration)
+
+
+@dataclass(frozen=True)
+class Record:
+    """A measured elevation (m) at even times (s), the gauge's place (m), and where it was read."""
+
+    source: str
+    column: str
+    times: np.ndarray
+    elevation: np.ndarray
+    position: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
+
+    low and cutoff None: those that `jaxhydro.waves.wave_bands` finds for the platform (`band`).
+    """
+
+    hs: float | None
+    tp: float | None
+    gamma: float | None
+    spectrum: str
+    seed: int
+    amplitudes: str
+    low: float | None
+    cutoff: float | None
+    order: int
+    stretching: str
+    heading: float
+    transient: float | None
+    record: Record | None = None
+
+    def band(self, pace: float) -> tuple[float, float]:
+        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave by `wave_bands`."""
+        if self.low is not None and self.cutoff is not None:
+            return self.low, self.cutoff
+        if self.record is not None:
+            step = float(np.median(np.diff(self.record.times)))
+            usual = wave_bands.of_records([(self.record.elevation, step)], pace)
+        else:
+            usual = wave_bands.at_pace(pace) if self.tp is None else wave_bands.of_spectra([self.tp], pace)
+        low, cutoff = (found if given is None else given for given, found in zip((self.low, self.cutoff), usual))
+        return low, cutoff
+
+
+class Built(NamedTuple):
+    """A sea, what is written about it, and the spectrum asked for (Hz -> m2/Hz; None: a record)."""
+
+    sea: IrregularSea
+    about: dict[str, Any]
+    target: Callable[[np.ndarray], np.ndarray] | None
+    notes: list[str]
+
+
+def build_sea(model: Model, asked: Asked, duration: float) -> Built:
+    """The sea that is asked for. Raises InputError that names the option or the record."""
+    notes: list[str] = []
+    low, cutoff = asked.band(float(model.pace))
+    if asked.record is not None:
+        waves, about = _from_record(model, asked, asked.record, notes)
+        target = None
+    else:
+        waves, about, target = _from_spectrum(model, asked, duration, notes)
+    energy = float(0.5 * (waves.amplitude**2).sum())
+    about |= {
+        "lowest_frequency": low,
+        "cutoff": cutoff,
+        "components": int(waves.omega.size),
+        "repeat_period": round(float(waves.period), 6),
+        "significant_wave_height_of_components": 4 * math.sqrt(energy),
+        "heading": asked.heading,
+        "order": asked.order,
+        "stretching": asked.stretching,
+        "diffraction": "none" if model.cylinders is None else model.diffraction,
+    }
+    usual = usual_cutoff(4 * math.sqrt(energy), float(model.environment.gravity))
+    if asked.order == 2 and cutoff > usual:
+        notes.append(
+            f"in a sea this high second order is usually cut off at sqrt(2 g / Hs), --cutoff {usual:.2g} (Stansberg): "
+            "beyond, short waves bind more than they have"
+        )
+    if model.cylinders is None and model.diffraction != "none":
+        notes.append("no member of this platform diffracts waves: 1 + Ca everywhere")
+    sea = IrregularSea(waves, model.environment, 1 if asked.order == 1 else 2, asked.stretching)  # type: ignore[arg-type]
+    if asked.record is not None:
+        record = asked.record
+        left = record.elevation - record.elevation.mean() - sea.gauge(record.times, record.position)
+        about["share_of_record"] = 1 - float(np.var(left) / np.var(record.elevation))
+        if about["share_of_record"] < CUT:
+            notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
+    return Built(sea, about, target, notes)
+
+
+def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
+    """What is to be said of energy outside the model's tables, which goes into `about` as well."""
+    found = outside_tables(model, sea.components)
+    about |= {f"share_outside_{one.key}": share for one, share in found.items()}
+    return [remark for one, share in found.items() if (remark := one.remark(share)) is not None]
+
+
+def usual_cutoff(height: float, gravity: float) -> float:
+    """sqrt(2 g / Hs) / 2 pi (Hz; m, m/s2): where second order of a sea is usually cut off.
+
+    C. T. Stansberg, Non-Gaussian extremes in numerically generated second-order random waves on deep water, ISOPE 1998.
+    """
+    return math.sqrt(2 * gravity / height) / (2 * math.pi)
+
+
+def _from_spectrum(
+    model: Model, asked: Asked, duration: float, notes: list[str]
+) -> tuple[Components, dict[str, Any], Callable[[np.ndarray], np.ndarray]]:
+    hs, tp, gamma = asked.hs or 0.0, asked.tp or 0.0, asked.gamma
+    if asked.spectrum == "jonswap" and gamma is None:
+        gamma = float(peak_enhancement(hs, tp))
+    low, cutoff = asked.band(float(model.pace))
+    band = (2 * math.pi * low * (1 - 1e-9), 2 * math.pi * cutoff * (1 + 1e-9))
+
+    def spectrum(omega):
+        if asked.spectrum == "white":
+            return white_noise(omega, hs, *band)
+        return jonswap(omega, hs, tp, gamma) if asked.spectrum == "jonswap" else pierson_moskowitz(omega, hs, tp)
+
+    try:
+        waves = spectrum_components(
+            spectrum, duration, model.environment, low=low, cutoff=cutoff, seed=asked.seed,
+            amplitudes=asked.amplitudes, heading=math.radians(asked.heading),
+        )  # fmt: skip
+    except ValueError as error:
+        if "break" in str(error):
+            raise InputError("--hs", [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
+        raise impossible("--cutoff", error) from None
+    share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
+    if share < NEARLY_NONE:
+        expected = f"a band, here {low:g} to {cutoff:g} Hz, with waves in it"
+        raise InputError("--cutoff", [Problem("", expected, f"one with {share:.1%} of the spectrum")])
+    if share < CUT:
+        notes.append(f"{share:.1%} of the spectrum lies from {low:g} to {cutoff:g} Hz: see --low and --cutoff")
+    about = {
+        "spectrum": asked.spectrum, "significant_wave_height": hs, "peak_period": asked.tp, "peak_enhancement": gamma,
+        "seed": asked.seed, "amplitudes": asked.amplitudes,
+    }  # fmt: skip
+    return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
+
+
+def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
+    low, cutoff = asked.band(float(model.pace))
+    try:
+        found = separated_record(
+            record.times, record.elevation, model.environment, position=record.position,
+            heading=math.radians(asked.heading), low=low, cutoff=cutoff, order=asked.order,
+        )  # fmt: skip
+    except ValueError as error:
+        option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
+        raise impossible(option, error) from None
+    if found.mismatch > MISSED:
+        missed = f"first and second order miss {found.mismatch:.1%} of the record in the band, and the nearest found is used"
+        notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
+    spectrum = power_spectrum(record.times, record.elevation)
+    inside = (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
+    peak = spectrum.frequency[inside][np.argmax(spectrum.density[inside])] if inside.any() else cutoff
+    return found.waves, {
+        "record": record.source, "record_column": record.column, "wave_position": list(record.position),
+        "significant_wave_height": 4 * float(np.std(record.elevation)), "peak_period": 1 / float(peak),
+        "mismatch": found.mismatch,
+    }  # fmt: skip
+
+
+def impossible(option: str, error: ValueError) -> InputError:
+    return InputError(option, [Problem("", "a sea that can be simulated", f"none ({error})")])

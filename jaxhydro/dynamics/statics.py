@@ -1,0 +1,223 @@
+"""Static equilibrium, and natural periods of small motion about it."""
+
+from collections.abc import Collection
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.choices import unknown
+from jaxhydro.dynamics.model import Model, State
+from jaxhydro.environment import DOFS
+from jaxhydro.waves.sea import StillWater
+
+CLOSE = 1e-12  # of the position: the last step
+ITERATIONS = 64
+UNCOUPLED = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
+ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
+SUNK = 20.0  # the same: heave in which a platform does not float, if it is not less deep
+WIDTH = 50.0  # the same: VolturnUS-S's half width, by which modes compare rotations with displacements
+FREE = 1e-12  # of the stiffest motion's restoring: what is below is none
+
+
+class EquilibriumError(RuntimeError):
+    """The platform has no static equilibrium near its reference position."""
+
+
+def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
+    """Net force over weight, net moment over weight times `ARM`."""
+    weight = model.body.mass * model.environment.gravity
+    arm = jnp.ones(6).at[3:].set(ARM * model.size)
+    return model.force_at_rest(position) / (weight * arm)
+
+
+class _Held(NamedTuple):
+    """A motion that something holds: 1 there (6,), and where (m, rad)."""
+
+    mask: Float[Array, "6"]
+    value: Float[Array, ""]
+
+
+def _unbalanced(position: Float[Array, "6"], model: Model, held: _Held | None) -> Float[Array, "6"]:
+    """What a position of rest makes zero: `_balance`, and of a motion that is held how far it is from there."""
+    found = _balance(position, model)
+    return found if held is None else jnp.where(held.mask > 0, position - held.value, found)
+
+
+@eqx.filter_custom_jvp
+def _root(model: Model, held: _Held | None) -> Float[Array, "6"]:
+    # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start, and programs
+    # with the library's implicit derivative cannot be kept compiled
+
+    def balance(q: Float[Array, "6"]) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
+        found = _unbalanced(q, model, held)
+        return found, found
+
+    def going(at: tuple[Array, Array, Array]) -> Array:
+        root, step, count = at
+        return (jnp.abs(step).max() > CLOSE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
+
+    def newton(at: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        root, _, count = at
+        slopes, found = jax.jacfwd(balance, has_aux=True)(root)
+        # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
+        step = jnp.linalg.pinv(slopes, rtol=FREE) @ found
+        return root - step, step, count + 1
+
+    return jax.lax.while_loop(going, newton, (jnp.zeros(6), jnp.full(6, jnp.inf), jnp.asarray(0)))[0]
+
+
+@_root.def_jvp
+def _root_jvp(primals, tangents):
+    """By the implicit function theorem."""
+    root = _root(*primals)
+    _, balance = eqx.filter_jvp(lambda *at: _unbalanced(root, *at), primals, tangents)
+    return root, -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=FREE) @ balance
+
+
+@eqx.filter_jit
+def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
+    position = _root(model, None)
+    return position, _balance(position, model)
+
+
+def equilibrium(model: Model) -> Float[Array, "6"]:
+    """Where the platform rests in still water: surge, sway, heave (m), roll, pitch, yaw (rad), from its reference position.
+
+    Found by Newton's iteration; differentiable in the model. Motions without restoring stay at zero. Raises
+    EquilibriumError where no balance to 1e-8 of the weight is found, or one that no platform rests in: it sank or rose out of
+    the water, or lies on its side.
+    """
+    position, residual = _solve(model)
+    if isinstance(residual, jax.core.Tracer):
+        return position
+    at = np.asarray(position)
+    worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
+    if not np.abs(np.asarray(residual)).max() < 1e-8:
+        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else ARM * float(model.size))
+        raise EquilibriumError(
+            f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
+            f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
+        )
+    draught = np.abs(np.asarray(model.hull.elements.start)[2]).max(initial=0.0)
+    if abs(at[2]) > max(draught, SUNK * float(model.size)) or (np.abs(at[3:5]) > 1.0).any():
+        where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], at[2:5], ("m", "rad", "rad")))
+        raise EquilibriumError(f"the platform only balances at {where}: check mass, centre of mass, volume and mooring")
+    return position
+
+
+def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"]:
+    """Where the platform rests (m, rad) with one motion held: the other five forces balance. Motions that nothing restrains
+    stay at zero; differentiable in all."""
+    return _root(model, _Held(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))
+
+
+class Modes(NamedTuple):
+    """Undamped natural modes of small motion: period (s), longest first; shape (mode, dof), the largest entry 1; motions in
+    which the platform falls away from rest; and the motion with the largest strain energy in every mode."""
+
+    period: np.ndarray
+    shape: np.ndarray
+    unstable: tuple[str, ...]
+    motion: tuple[str, ...]
+
+    def number(self, dof: str) -> int | None:
+        """Place of the longest mode in which `dof` has the largest strain energy; None if there is none."""
+        return self.motion.index(dof) if dof in self.motion else None
+
+    def of(self, dof: str) -> float:
+        """Longest period (s) of a mode in which `dof` has the largest strain energy; nan if there is none.
+
+        Raises UnknownName for another name."""
+        if dof not in DOFS:
+            raise unknown("degree of freedom", dof, DOFS)
+        at = self.number(dof)
+        return float("nan") if at is None else float(self.period[at])
+
+
+def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) -> Float[Array, "6 m"]:
+    """Share (-) of every degree of freedom in the potential energy of modes with the shapes `vectors`.
+
+    It has no unit to choose, and the height of the reference point hardly matters: a spar that pitches about a point far below
+    still water moves the reference point by more than its angle, but only the angle is restored.
+    """
+    energy = abs(vectors * (stiffness @ vectors))
+    return energy / energy.sum(axis=0)
+
+
+@eqx.filter_jit
+def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, "6 6"], Float[Array, "6 6"]]:
+    """Mass matrix with added mass, and stiffness (N/m, ...), of small motion about a position of rest.
+
+    Every load's memory stays at rest. That is exact for drag laws, whose force is of second order in the motion and the memory
+    together; a memory that a force is proportional to would add to both matrices what is not in them.
+    """
+    rest = model.rest()
+
+    def acceleration(q: Float[Array, "6"]) -> Float[Array, "6"]:
+        return model.rate(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater()).velocity
+
+    def mass_of(q: Float[Array, "6"]) -> Float[Array, "6 6"]:
+        now = model.instant(jnp.zeros(()), State(q, jnp.zeros(6), rest.memory), StillWater())
+        total = model.sum_of_loads(now, rest.memory)
+        return model.body.mass_matrix() + total.added_mass + total.moments @ total.masses
+
+    mass = mass_of(position)
+    return mass, -mass @ jax.jacfwd(acceleration)(position)
+
+
+def widths(model: Model) -> np.ndarray:
+    """What displacements (1) and rotations (m) are times where they are compared: (6,)."""
+    return np.array([1.0, 1.0, 1.0, *3 * [WIDTH * float(model.size)]])
+
+
+def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Modes:
+    """Natural modes about a position of rest (the equilibrium), damping left out. Motions without restoring have none.
+
+    In shapes, rotations are times `widths`, so that metres and radians can be compared.
+    """
+    position = equilibrium(model) if position is None else position
+    mass, stiffness = (np.asarray(m) for m in linearised(model, position))
+    square, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    order = np.argsort(square.real)
+    square, vectors = square.real[order], vectors.real[:, order]
+    largest = np.abs(square).max()
+    kept, falls = square > 1e-10 * largest, square < -1e-6 * largest
+    share = strain_energy(jnp.asarray(stiffness), jnp.asarray(vectors[:, kept]))
+    motion = tuple(DOFS[int(i)] for i in np.argmax(np.asarray(share), axis=0))
+    vectors = vectors * widths(model)[:, None]
+    shape = vectors[:, kept].T
+    shape = shape / np.abs(shape).max(axis=1, keepdims=True)
+    unstable = sorted({int(np.argmax(np.abs(vector))) for vector in vectors[:, falls].T})
+    return Modes(2 * np.pi / np.sqrt(square[kept]), shape, tuple(DOFS[i] for i in unstable), motion)
+
+
+def _coupled(model: Model, moved: Collection[str]) -> set[str]:
+    """Motions that go with some in small motion: by mass or stiffness, or through others that do."""
+    both = [np.abs(np.asarray(matrix)) for matrix in linearised(model, equilibrium(model))]
+    scales = [np.sqrt(np.maximum(np.diag(matrix), UNCOUPLED * matrix.max())) for matrix in both]
+    goes = np.any([matrix > UNCOUPLED * np.outer(s, s) for matrix, s in zip(both, scales)], axis=0)
+    reached = np.linalg.matrix_power(goes | np.eye(6, dtype=bool), 6)
+    return {dof for i, dof in enumerate(DOFS) if any(reached[DOFS.index(name), i] for name in moved)}
+
+
+def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
+    """Natural modes about the equilibrium. Raises EquilibriumError where the platform does not stay there, once it is `moved`:
+    a motion that goes with none of these may be unstable."""
+    for dof in moved:
+        if dof not in DOFS:
+            raise unknown("degree of freedom", dof, DOFS)
+    modes = natural_modes(model)
+    if set(modes.unstable) & (set(DOFS) if set(moved) == set(DOFS) else _coupled(model, moved)):
+        motions = " and ".join(modes.unstable)
+        raise EquilibriumError(f"the platform is unstable in {motions}: check mass, centre of mass, volume and mooring")
+    return modes
+
+
+def characteristic_length(model: Model) -> float:
+    """Length (m) that makes an angle comparable to a displacement: the radius of gyration in roll and pitch."""
+    inertia = np.asarray(model.body.inertia_at_reference())
+    return float(np.sqrt(0.5 * (inertia[0, 0] + inertia[1, 1]) / float(model.body.mass)))

@@ -1,0 +1,97 @@
+"""Waves that tables of other programs do not have: frequencies outside those that a platform's loads were computed at."""
+
+import math
+from typing import NamedTuple
+
+import jax
+import numpy as np
+from jaxtyping import Float
+
+from jaxhydro.dynamics.model import Model
+from jaxhydro.remarks import Remark
+from jaxhydro.waves.components import Components
+from jaxhydro.waves.excitation import CLOSE
+from jaxhydro.waves.sea import AbstractSea, WaveSea
+
+WARNED = 0.01  # of a sea's energy outside a table, from which it is a warning
+SAID = 5e-5  # of a sea's energy outside a table, from which it is said at all
+WHAT = {
+    "excitation": "these waves do not excite the platform",
+    "drift": "these waves do not make it drift",
+    "radiation": "its damping there is extrapolated",
+}
+
+
+class TableRange(NamedTuple):
+    """Frequencies (rad/s), `low` to `high`, that the table of a load was computed at; `key` is its key in the platform file."""
+
+    key: str
+    low: float
+    high: float
+
+    @property
+    def words(self) -> str:
+        """The range in rad/s and in s."""
+        if self.low <= 0:
+            return f"up to {self.high:.5g} rad/s (periods from {2 * math.pi / self.high:.5g} s)"
+        periods = f"{2 * math.pi / self.high:.5g} to {2 * math.pi / self.low:.5g} s"
+        return f"{self.low:.5g} to {self.high:.5g} rad/s (periods {periods})"
+
+    def outside(self, omega: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
+        """Which frequencies (rad/s) the table has not."""
+        return (omega < self.low * (1 - CLOSE)) | (omega > self.high * (1 + CLOSE))
+
+    def share_outside(self, omega: Float[np.ndarray, " w"], energy: Float[np.ndarray, " w"]) -> float:
+        """Share of the energy (any unit) at frequencies (rad/s) that the table has not."""
+        total = float(np.sum(energy))
+        return float(np.sum(energy[self.outside(omega)])) / total if total > 0 else 0.0
+
+    def remark(self, share: float, where: str = "the sea") -> Remark | None:
+        """What is said of a share of a sea's energy outside; None: it is nothing to speak of."""
+        if share < SAID:
+            return None
+        outside = f"{share:.2%} of the energy of {where} lies outside the {self.key} table"
+        return Remark(f"{outside}, which has {self.words}: {WHAT[self.key]}", warning=share > WARNED)
+
+
+def table_ranges(model: Model, candidates: bool = False) -> tuple[TableRange, ...]:
+    """Ranges of the tables that act in a model; with `candidates` also of tables that a diagnosis may add."""
+    found = []
+    for load in model.loads:
+        covers = load.covers()
+        if covers is None or not (candidates or any(_acts(value) for value in load.values.values())):
+            continue
+        found.append(TableRange(*covers))
+    return tuple(found)
+
+
+def _acts(value: object) -> bool:
+    """Whether a share is not 0; one that is being differentiated is taken to act."""
+    return isinstance(value, jax.core.Tracer) or float(value) != 0.0  # type: ignore[arg-type]
+
+
+def outside_tables(model: Model, waves: Components) -> dict[TableRange, float]:
+    """Share of the energy of an irregular sea's first order that every table of the model has not."""
+    omega, energy = np.asarray(waves.omega), np.asarray(waves.amplitude) ** 2
+    return {one: one.share_outside(omega, energy) for one in table_ranges(model)}
+
+
+def regular_fault(model: Model, period: float) -> tuple[str, str] | None:
+    """What is expected and what was found of the period (s) of a regular wave that a table has not; None: all have it."""
+    omega = np.array([2 * math.pi / period])
+    for one in table_ranges(model):
+        if one.outside(omega)[0]:
+            return f"a wave within the {one.key} table, which has {one.words}", f"{period:g} s ({omega[0]:.4g} rad/s)"
+    return None
+
+
+def check_waves(model: Model, sea: AbstractSea) -> None:
+    """Refuse plane waves that a table of the model has not; irregular seas are for `outside_tables`.
+
+    Raises:
+        ValueError: With the table's range and the wave.
+    """
+    if isinstance(sea, WaveSea) and not isinstance(sea.waves.omega, jax.core.Tracer):
+        for omega in np.asarray(sea.waves.omega):
+            if omega > 0 and (fault := regular_fault(model, 2 * math.pi / float(omega))) is not None:
+                raise ValueError(f"expected {fault[0]}, found a period of {fault[1]}")

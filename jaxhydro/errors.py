@@ -1,0 +1,251 @@
+"""How bad input is told: every mistake in a file by its path, what was expected and what was found."""
+
+import reprlib
+import warnings
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self, TypeVar, get_args, get_origin
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from ruamel.yaml import YAML
+from ruamel.yaml.constructor import DuplicateKeyError
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.reader import ReaderError
+
+from jaxhydro import choices
+from jaxhydro.schema_description import Place, arms_of, bare, dotted, locate, tags_of, words
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
+NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
+Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
+Flag = Annotated[bool, Field(strict=True)]
+Text = Annotated[str, Field(strict=True, min_length=1)]
+Vector = tuple[Number, Number, Number]
+
+M = TypeVar("M", bound=BaseModel)
+SHOWN = 20  # problems printed before the rest is only counted
+
+
+class Schema(BaseModel):
+    """Base of what is read from a user's file: immutable, and no key is taken that is not declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One mistake: its dotted path in the file (`members[2].d`), what belongs there, what is there, a way out."""
+
+    where: str
+    expected: str
+    found: str
+    hint: str = ""
+
+    def __str__(self) -> str:
+        line = f"{self.where}: " if self.where else ""
+        line += f"expected {self.expected}, found {self.found}"
+        return " ".join((f"{line}. {self.hint}" if self.hint else line).split())
+
+
+class CheckpointWarning(UserWarning):
+    """What an earlier run reached cannot be gone on from: it is of other inputs or of another program, or damaged."""
+
+
+class InputError(Exception):
+    """A file that cannot be used. `source` names it, `problems` holds every mistake in it."""
+
+    def __init__(self, source: str, problems: Iterable[Problem]) -> None:
+        self.source = source
+        self.problems = tuple(problems)
+        super().__init__(source, self.problems)
+
+    def __str__(self) -> str:
+        if len(self.problems) == 1:
+            return f"{self.source}: {self.problems[0]}"
+        lines = [f"  {problem}" for problem in self.problems[:SHOWN]]
+        if len(self.problems) > SHOWN:
+            lines.append(f"  and {len(self.problems) - SHOWN} more")
+        return "\n".join([f"{self.source}: {len(self.problems)} problems", *lines])
+
+
+class Consistent(Schema):
+    """Base of what has to fit together: `_faults` yields what does not, once every key is right by itself."""
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        if faults := tuple(self._faults()):
+            raise Faults(*faults)
+        return self
+
+    def _faults(self) -> Iterator[Problem]:
+        raise NotImplementedError
+
+
+class Faults(ValueError):
+    """Raised by a validator that found several mistakes; each `where` is relative to what it validates."""
+
+    def __init__(self, *problems: Problem) -> None:
+        self.problems = problems
+        super().__init__("; ".join(map(str, problems)))
+
+
+def nearest(word: object, known: Iterable[str]) -> str:
+    """The known word nearest to `word`, case aside; empty where none is near."""
+    return choices.nearest(word if isinstance(word, str) else shown(word), known)
+
+
+def suggest(word: object, known: Iterable[str]) -> str:
+    """A hint for a misspelt word: `Did you mean 'heading'?`, or nothing where no known word is near."""
+    near = nearest(word, known)
+    return f"Did you mean '{near}'?" if near else ""
+
+
+def suggest_path(path: str | PathLike[str]) -> str:
+    """A hint for a path that does not exist: `Did you mean 'tank/campaign.yaml'?`, or nothing where no name is near."""
+    missing = path = Path(path)
+    try:
+        while not missing.parent.exists():
+            missing = missing.parent
+        # compare names without endings; among equal names, prefer the same ending
+        entries = sorted(missing.parent.iterdir(), key=lambda entry: (entry.suffix == missing.suffix, entry.name))
+        stems = {entry.stem: entry for entry in entries}
+        near = nearest(missing.stem, stems)
+        found = missing.with_name(stems[near].name) / path.relative_to(missing) if near else missing
+        return f"Did you mean '{found}'?" if near and found.exists() else ""
+    except (OSError, ValueError):  # a folder that cannot be read, a name that no file can have
+        return ""
+
+
+_repr = reprlib.Repr()
+_repr.maxlevel, _repr.maxlist, _repr.maxdict, _repr.maxstring, _repr.maxother = 3, 6, 3, 50, 50
+
+
+def shown(value: object) -> str:
+    """A value as a message shows it: short, and in the words of the file (true, nothing)."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        value = list(value)
+    if isinstance(value, str | int | float | list | dict):
+        try:
+            return _repr.repr(value)
+        except ValueError:  # an integer of more digits than Python prints
+            return "a number too long to print"
+    return _repr.repr(str(value))
+
+
+KEYS = {"platform": {"members", "rigid_body"}, "campaign": {"tests", "channels"}, "sweep": {"scatter", "seeds"}}
+
+
+def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
+    """The mapping in a YAML 1.2 file, as plain dicts, lists and scalars; `InputError` for whatever is wrong, and for one that
+    is another of KEYS than the `kind` asked for."""
+    source = str(path)
+
+    def wrong(where: str, expected: str, found: str, hint: str = "") -> InputError:
+        return InputError(source, [Problem(where, expected, found, hint)])
+
+    try:
+        text = Path(path).read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise wrong("", "a YAML file", "no such file", suggest_path(path)) from None
+    except IsADirectoryError:
+        raise wrong("", "a YAML file", "a folder") from None
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        raise wrong(f"line {line}", "text in UTF-8", f"the byte 0x{error.object[error.start]:02x}") from None
+    except (OSError, ValueError) as error:
+        raise wrong("", "a readable YAML file", str(getattr(error, "strerror", None) or error)) from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            data = YAML(typ="safe", pure=True).load(text)
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        where = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        said = " ".join(str(error.problem or error.context).split()).removeprefix("but ")[:160]
+        if isinstance(error, DuplicateKeyError):
+            raise wrong(where, "each key once", said.removeprefix("found ")) from None
+        raise wrong(where, "valid YAML", f"a mistake in its syntax ({said})") from None
+    except ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        raise wrong(f"line {line}", "text", f"the control character 0x{ord(text[error.position]):02x}") from None
+    except RecursionError:
+        raise wrong("", "valid YAML", "lists or mappings nested too deeply") from None
+    except Exception as error:  # the YAML reader lets errors of the values it makes through (dates, tags)
+        raise wrong("", "valid YAML", f"a value that cannot be read ({shown(str(error))})") from None
+    if not isinstance(data, dict):
+        data_file = kind and isinstance(data, str) and "," in data
+        hint = f"Name the {kind} file, not a file of data." if data_file else ""
+        raise wrong("", "a mapping of keys to values", "an empty file" if data is None else shown(data), hint)
+    others = [name for name, keys in KEYS.items() if keys & data.keys()]
+    if kind and others and kind not in others:
+        raise wrong("", f"a {kind} file ({', '.join(sorted(KEYS[kind]))})", f"a {others[0]} file")
+    return data
+
+
+def validate(model_class: type[M], data: object, source: str) -> M:
+    """`data` as a `model_class`; `InputError` of `source` with every mistake pydantic and its validators found."""
+    try:
+        return model_class.model_validate(data)
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+    problems: list[Problem] = []
+    misspelt: set[str] = set()  # `masss: 1` is not also a missing `mass`
+    for detail in details:
+        loc = detail["loc"]
+        if detail["type"] == "too_short" and any(d["loc"][: len(loc)] == loc != d["loc"] for d in details):
+            continue  # pydantic counts only the elements that are right
+        at = locate(model_class, data, detail)
+        problems += _told(detail, at)
+        if detail["type"] == "extra_forbidden":
+            misspelt.add(dotted(at.where.rpartition(".")[0], nearest(loc[-1], at.known)))
+    raise InputError(source, dict.fromkeys(p for p in problems if p.found != "nothing" or p.where not in misspelt))
+
+
+def _told(detail: Any, at: Place) -> Iterator[Problem]:
+    cause = detail.get("ctx", {}).get("error")
+    if isinstance(cause, Faults):
+        for problem in cause.problems:
+            yield replace(problem, where=dotted(at.where, problem.where))
+    elif cause is not None:
+        yield Problem(at.where, str(cause), shown(at.value))
+    elif detail["type"] in ("extra_forbidden", "invalid_key"):
+        key = detail["loc"][-1]
+        yield Problem(at.where, f"a known key ({', '.join(at.known)})", shown(key), suggest(key, at.known))
+    elif "[key]" in detail["loc"]:
+        yield Problem(at.where, "a key that is text", shown(detail["loc"][-2]), "Put it in quotes.")
+    elif detail["type"].startswith("union_tag") and isinstance(at.value, dict):
+        key = detail["ctx"]["discriminator"].strip("'")
+        tags = [str(tag) for arm in arms_of(bare(at.kind, at.notes)[0]) for tag in tags_of(arm)]
+        value = at.value.get(key)
+        yield Problem(dotted(at.where, key), f"one of {', '.join(tags)}", shown(value), suggest(value, tags))
+    else:
+        expected = at.description or words(at.kind, at.notes)
+        if detail["type"] == "finite_number":
+            expected = expected.replace("a number", "a finite number")
+        if detail["type"] == "string_too_short":
+            expected += " that is not empty"
+        elif detail["type"] == "too_short":
+            expected += f" ({detail['ctx']['min_length']} or more)"
+        yield Problem(at.where, expected, shown(at.value), _way_out(detail, at))
+
+
+def _way_out(detail: Any, at: Place) -> str:
+    kind, value = bare(at.kind, at.notes)[0], at.value
+    if get_origin(kind) is Literal:
+        return suggest(value, map(str, get_args(kind)))
+    if kind is str and value is not None and not isinstance(value, dict | list | str):
+        return "Put it in quotes to make it text."
+    if isinstance(value, str) and detail["type"] in ("float_type", "int_type"):
+        try:
+            float(value)
+        except ValueError:
+            return ""
+        return "Write the number without quotes, as 12.5 or 1.0e6; not .nan or .inf."
+    return ""

@@ -1,0 +1,284 @@
+"""Members cut into load elements, and these into the points that every hydrodynamic load is integrated over.
+
+Everything is in body axes about the reference point; the strip is the last axis. A strip is loaded in the two directions
+across its member's axis, an end along it. A member steeper than 45 degrees is a column: both directions take the transverse
+coefficients (t) and its ends the axial ones (z). A flatter one is a pontoon: its horizontal direction takes t, the other,
+near-vertical one z, and its ends take none but the pressure.
+
+Where the section of a member changes, its side looks along the axis too. Every strip of a tapered element therefore has a
+face, which is loaded along the axis as an end is. A step in size is a short taper.
+
+A load element is integrated by Gauss quadrature over the length that is under water (Abramowitz and Stegun 1964, eq.
+25.4.30). So the strips of a column that pierces the surface move along it with the surface: the wetted length is
+exact, forces are smooth in the motion, and no strip is spent on what is dry.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.hull.coefficient_labels import Shares, parameter_labels, shares_of
+from jaxhydro.hull.waterplane import wet_section
+
+COLUMN_SLOPE = math.cos(math.radians(45.0))
+UPRIGHT = math.cos(math.radians(10.0))  # of an axis that counts as vertical
+SPACING = 2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
+PONTOON_SPACING = 5.0  # the same of a pontoon
+PARTLY_WET = 0.05  # of the height of a pontoon: less, under or above still water, does not matter
+FLOATING = 8  # load elements at least along a member that lies at the surface
+NEARLY = 0.05  # of a strip, that a hull may ask for beyond a whole number
+ENTERING = 0.1  # m times the size of the hull, in which an element's end enters the water
+COVERING = 0.5  # the same, in which water covers a face
+
+
+class Member(NamedTuple):
+    """One straight member: ends a, b (m), station sizes along it, and the group whose coefficients it uses.
+
+    `stations` are fractions 0..1 of the length, `sizes` (station, 2) the extents (m) along direction 1 and 2: a diameter twice,
+    or width and height. `twist` (rad) turns the directions about the axis. `shared` names the groups whose coefficients
+    it uses in place of its own group's, by the coefficient's name, such as Ca_t.
+    """
+
+    name: str
+    group: str
+    circular: bool
+    a: np.ndarray
+    b: np.ndarray
+    stations: np.ndarray
+    sizes: np.ndarray
+    twist: float = 0.0
+    elements: int | None = None
+    maccamy_fuchs: bool | None = None  # None: where it is vertical, circular and pierces the surface
+    points: int = 2  # strips of each of `elements`; 1: lumped at its middle
+    shared: Mapping[str, str] = {}
+
+    @property
+    def axis(self) -> np.ndarray:
+        """Unit vector from the lower to the upper end of what fills from its lower end, from a to b of others."""
+        return -self._along if self.fills and self._along[2] < 0 else self._along
+
+    @property
+    def _along(self) -> np.ndarray:
+        return (self.b - self.a) / np.linalg.norm(self.b - self.a)
+
+    @property
+    def column(self) -> bool:
+        return abs(self.b[2] - self.a[2]) > COLUMN_SLOPE * float(np.linalg.norm(self.b - self.a))
+
+    @property
+    def directions(self) -> tuple[np.ndarray, np.ndarray]:
+        """The two unit vectors across the axis: for a pontoon horizontal and upward, for a vertical column x and y."""
+        return self._across(self.axis)
+
+    def _across(self, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if abs(axis[2]) > 1.0 - 1e-9:
+            first = np.array([1.0, 0.0, 0.0])
+        else:
+            first = np.cross([0.0, 0.0, 1.0], axis)
+            first /= np.linalg.norm(first)
+        second = np.cross(axis, first)
+        c, s = math.cos(self.twist), math.sin(self.twist)
+        return c * first + s * second, c * second - s * first
+
+    @property
+    def gauge(self) -> np.ndarray:
+        """Where (m) the surface elevation is looked up for it: its axis at still water if it `fills`, else its middle."""
+        if self.fills:
+            return self.a + (self.b - self.a) * (-self.a[2] / (self.b[2] - self.a[2]))
+        return 0.5 * (self.a + self.b)
+
+    def size(self, fraction: np.ndarray) -> np.ndarray:
+        """Extents (n, 2) at fractions of the length."""
+        return np.stack([np.interp(fraction, self.stations, self.sizes[:, i]) for i in range(2)], axis=-1)
+
+    @property
+    def diffracts(self) -> bool:
+        """Whether it diffracts waves as MacCamy and Fuchs have it."""
+        if self.maccamy_fuchs is not None:
+            return self.maccamy_fuchs
+        low, high = sorted((self.a[2], self.b[2]))
+        return self.circular and self.axis[2] > UPRIGHT and low < 0 <= high
+
+    def kinks(self) -> list[float]:
+        """Fractions of the length, strictly inside, at which the change of size along the axis is another."""
+        slope = np.diff(self.sizes, axis=0) / np.diff(self.stations)[:, None]
+        bend = np.abs(np.diff(slope, axis=0)).max(axis=1)
+        return [float(at) for at, one in zip(self.stations[1:-1], bend, strict=True) if one > 1e-9 * self.sizes.max()]
+
+    @property
+    def submerged(self) -> float:
+        """Share (-) of its height that is under still water at the reference position."""
+        heights = np.concatenate(self._edges())
+        low, high = float(heights.min()), float(heights.max())
+        return min(1.0, max(0.0, -low / (high - low)))
+
+    def _edges(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest z (m) of the faces at a and b."""
+        up, other = (abs(float(direction[2])) for direction in self._across(self._along))
+        found = []
+        for end, size in ((self.a, self.sizes[0]), (self.b, self.sizes[-1])):
+            half = 0.5 * math.hypot(up, other) * size[0] if self.circular else 0.5 * (up * size[0] + other * size[1])
+            found.append(np.array([end[2] - half, end[2] + half]))
+        return found[0], found[1]
+
+    @property
+    def pierced(self) -> bool:
+        """Whether still water cuts it lengthwise: a pontoon that is partly wet."""
+        return not self.column and PARTLY_WET < self.submerged < 1 - PARTLY_WET
+
+    @property
+    def upward(self) -> int | None:
+        """Which of its two directions is near vertical, where it lies level enough to be wet by its local depth; else None."""
+        steep = [abs(float(direction[2])) > UPRIGHT for direction in self._across(self._along)]
+        if abs(float(self._along[2])) > math.sqrt(1 - UPRIGHT**2) or not (any(steep) or self.circular):
+            return None
+        return 0 if steep[0] else 1
+
+    @property
+    def fills(self) -> bool:
+        """Whether it fills from its lower end: a column, or an inclined pontoon that still water cuts through its sides."""
+        if self.column:
+            return True
+        low, high = sorted(self._edges(), key=lambda edge: edge[0])
+        return self.pierced and self.upward is None and low[1] <= 0.0 <= high[0]
+
+    @property
+    def floats(self) -> bool:
+        """Whether it lies at the surface: see `waterplane`."""
+        return self.pierced and self.upward is not None
+
+    def area(self, size: np.ndarray) -> np.ndarray:
+        return size[..., 0] * size[..., 1] * (math.pi / 4 if self.circular else 1.0)
+
+    def elements_and_orders(self, size: float = 1.0) -> list[tuple[float, float, int]]:
+        """Load elements as fractions of the length from a to b, with the number of strips of each.
+
+        As many as the platform file says, `points` strips each, cut at `kinks` too; else one between stations, with as many
+        as its length asks for in a hull of a `size` (`scales.size_of`).
+        """
+        length = float(np.linalg.norm(self.b - self.a))
+        if self.floats:
+            at = np.linspace(0.0, 1.0, max(self.elements or 0, FLOATING) + 1)
+            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
+        if self.elements is not None:
+            at = np.linspace(0.0, 1.0, self.elements + 1)
+            far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
+            return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
+        found = []
+        for lo, hi in pairwise(self.stations):
+            low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
+            under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.fills else 1.0
+            spacing = size * (SPACING if self.column else PONTOON_SPACING)
+            count = math.ceil(under * (hi - lo) * length / spacing - NEARLY)
+            found.append((float(lo), float(hi), max(2, min(count, 20))))
+        return found
+
+
+class Strips(eqx.Module):
+    """Strips of all load elements. See the module's docstring for the frame and the two directions.
+
+    A strip is at `start + fraction * reach * axis`, `reach` the wetted length of its element (its whole length where it does
+    not pierce the surface), and stands for the share `weight` of the wetted length. Sizes vary linearly along an element.
+    """
+
+    start: Float[Array, "3 n"]  # m, the lower end of the strip's element
+    axis: Float[Array, "3 n"]
+    directions: Float[Array, "3 2 n"]
+    fraction: Float[Array, " n"]
+    weight: Float[Array, " n"]
+    size: Float[Array, "2 n"]  # m, extent along either direction at the element's start
+    taper: Float[Array, "2 n"]  # its change per metre
+    shape: Float[Array, " n"]  # area over the product of extents: pi/4 for a circle
+    element: tuple[int, ...] = eqx.field(static=True)
+    diffracts: tuple[float, ...] = eqx.field(static=True)  # radius (m) of a strip that diffracts waves, 0 of others
+
+
+class Elements(eqx.Module):
+    """Load elements of all members: what is wetted."""
+
+    start: Float[Array, "3 e"]  # m, the lower end
+    axis: Float[Array, "3 e"]  # upward for a column
+    length: Float[Array, " e"]  # m
+    thickness: Float[Array, " e"]  # m, vertical extent of a pontoon beyond that of its axis; 0: it fills from its lower end
+    gauge: Float[Array, "3 e"]  # m, where the surface is looked up: a column's axis at still water, a pontoon's middle
+    circle: Float[Array, " e"]  # 1: wet by the segment of a circle (a cylinder that lies at the surface), 0: evenly
+    label: tuple[tuple[int, ...], ...] = eqx.field(static=True)  # index into `labels`, by direction and element
+    labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
+    shares: Shares = eqx.field(static=True, default=())
+
+    def parameters(self, symbol: str) -> list[str]:
+        """Labels of a parameter, such as column.Cd_t of `symbol` Cd, in the order of `labels`."""
+        return parameter_labels(self.labels, symbol, self.shares)
+
+
+_STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")
+
+
+def cut(members: Sequence[Member], size: float = 1.0) -> tuple[Elements, Strips]:
+    """Cut members into load elements and strips; `size` as in `Member.elements_and_orders`."""
+    labels: list[tuple[str, str]] = []
+    elements: list[tuple] = []
+    rows: list[tuple] = []
+    for member in members:
+        kinds = ("t", "t" if member.column else "z")
+        for kind in kinds:
+            if (member.group, kind) not in labels:
+                labels.append((member.group, kind))
+        label = [labels.index((member.group, kind)) for kind in kinds]
+        span = float(np.linalg.norm(member.b - member.a))
+        directions = np.stack(member.directions, axis=1)
+        upright = member.axis @ (member.b - member.a) > 0
+        for lo, hi, order in member.elements_and_orders(size):
+            near, far = (lo, hi) if upright else (hi, lo)
+            length = (hi - lo) * span
+            first, last = member.size(np.array(near)), member.size(np.array(far))
+            start = member.a + (member.b - member.a) * near
+            thickness = 0.0 if member.fills else float(np.abs(directions[2]) @ (0.5 * (first + last)))
+            lowered = np.zeros(3)
+            if (up := member.upward) is not None and member.floats:
+                height = 0.5 * float(first[up] + last[up])
+                thickness = height
+                middle = wet_section(member.submerged, member.circular)[1]
+                lowered = middle * height * directions[:, up] * np.sign(directions[2, up])
+            point, weight = np.polynomial.legendre.leggauss(order)
+            for fraction, share in zip(0.5 * (1 + point), 0.5 * weight, strict=True):
+                rows.append(
+                    (
+                        start + lowered,
+                        member.axis,
+                        directions,
+                        fraction,
+                        share,
+                        first,
+                        (last - first) / length,
+                        math.pi / 4 if member.circular else 1.0,
+                        len(elements),
+                        0.25 * float(first[0] + last[0]) if member.diffracts else 0.0,
+                    )
+                )
+            round_ = 1.0 if member.floats and member.circular else 0.0
+            elements.append((start, member.axis, length, thickness, member.gauge, round_, label))
+    triple, pair, flat = np.zeros((3, 0)), np.zeros((2, 0)), np.zeros(0)
+    whole = [triple, triple, flat, flat, triple, flat]
+    parts = [triple, triple, np.zeros((3, 2, 0)), flat, flat, pair, pair, flat]
+    label_of: tuple[tuple[int, ...], ...] = ((), ())
+    element_of: tuple[int, ...] = ()
+    radius_of: tuple[float, ...] = ()
+    if rows:
+        *whole, which = (np.stack(column, axis=-1) for column in zip(*elements, strict=True))
+        *parts, home, radius = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
+        radius_of = tuple(map(float, radius))
+        label_of, element_of = tuple(tuple(map(int, row)) for row in which), tuple(map(int, home))
+    of_strips: dict[str, Any] = dict(zip(_STRIP_ARRAYS, map(jnp.asarray, parts), strict=True))
+    strips = Strips(**of_strips, element=element_of, diffracts=radius_of)
+    names = ("start", "axis", "length", "thickness", "gauge", "circle")
+    of_elements: dict[str, Any] = dict(zip(names, map(jnp.asarray, whole), strict=True))
+    shares = shares_of((member.group, member.shared) for member in members)
+    return Elements(**of_elements, label=label_of, labels=tuple(labels), shares=shares), strips

@@ -1,0 +1,1 @@
+"""Time integration at fixed steps, differentiable forward and in reverse."""

@@ -1,0 +1,149 @@
+"""The four-step Adams-Bashforth scheme at fixed steps, differentiable forward and reverse: one evaluation per step.
+
+What a sea costs is its kinematics, and these are known at even times: so half the evaluations of any Runge-Kutta scheme of that
+order. Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section III.1, eq. (1.5).
+"""
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+from jaxhydro.integrators.runge_kutta import RK4, Rate, linearised
+
+BLOCK = 64  # steps per checkpointed block of a reverse gradient
+BATCH = 4  # evaluations linearised together: their flow fills the cache
+START = 3  # steps by RK4, of four evaluations each
+MEMORY = 4 * START + 1  # slopes that are remembered
+
+
+class _Rows:
+    """What each evaluation does: where it is taken, y + h `at` . slopes, and what it adds to y afterwards, h `add` . slopes.
+
+    Slopes are counted backwards from the newest, which `add` includes and `at` does not.
+    """
+
+    def __init__(self) -> None:
+        rows = 4 * START + 4  # the last one repeats
+        self.at, self.add = np.zeros((rows, MEMORY)), np.zeros((rows, MEMORY))
+        self.time, self.step = np.zeros(rows), np.zeros(rows, int)
+        table = RK4.coefficients()
+        for i in range(4 * START):
+            stage, self.step[i] = i % 4, i // 4
+            self.at[i, :stage] = table[stage, :stage][::-1]
+            self.time[i] = i // 4 + RK4.nodes[stage]
+            if stage == 3:
+                self.add[i, :4] = RK4.weights[::-1]
+        for i in range(4 * START, rows):
+            step = i - 4 * START + START
+            self.time[i] = self.step[i] = step
+            for back, weight in enumerate((55 / 24, -59 / 24, 37 / 24, -9 / 24)):
+                taken = step - back
+                self.add[i, i - (4 * taken if taken < START else 4 * START + taken - START)] = weight
+
+
+ROWS = _Rows()
+
+
+def evaluations(steps: int | Int[Array, ""]) -> Any:
+    """Evaluations that `steps` steps take."""
+    return steps + 3 * START
+
+
+def _row(index: Int[Array, ""]) -> tuple[Array, Array, Array, Array]:
+    """Coefficients, time (in steps) and step of an evaluation."""
+    row = jnp.minimum(index, len(ROWS.time) - 1)
+    late = (index - row).astype(float)
+    return jnp.array(ROWS.at)[row], jnp.array(ROWS.add)[row], jnp.array(ROWS.time)[row] + late, jnp.array(ROWS.step)[row]
+
+
+def _advance(y, slopes, slope, add, step):
+    """The state and the remembered slopes after an evaluation."""
+    slopes = jnp.concatenate([slope[None], slopes[:-1]])
+    return y + step * (add @ slopes), slopes
+
+
+def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool, shown: int | None = None):
+    def body(index, carry):
+        y, slopes, path, taken = carry
+        at, add, time, number = _row(index)
+        path = jax.lax.dynamic_update_index_in_dim(path, y[:shown], number + jnp.maximum(index - len(ROWS.time) + 1, 0), 0)
+        state = y + step * (at @ slopes)
+        slope = jnp.concatenate(rate(driver, start + step * time, state))
+        taken = jax.lax.dynamic_update_index_in_dim(taken, state, index, 0) if keep else None
+        return *_advance(y, slopes, slope, add, step), path, taken
+
+    size = y.shape[0]
+    taken = jnp.zeros((evaluations(capacity + 1), size)) if keep else None
+    carry = (y, jnp.zeros((MEMORY, size)), jnp.zeros((capacity + 1, y[:shown].shape[0])), taken)
+    _, _, path, taken = jax.lax.fori_loop(0, evaluations(count + 1), body, carry)
+    return path, taken
+
+
+def direct(driver, y, start, step, count, *, rate: Rate, capacity: int, shown: int) -> Float[Array, "n _"]:
+    """As `runge_kutta.direct`."""
+    return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
+
+
+@eqx.filter_custom_jvp
+def forward(
+    driver: Any,
+    y: Float[Array, " s"],
+    start: Float[Array, ""],
+    step: Float[Array, ""],
+    count: Int[Array, ""],
+    *,
+    rate: Rate,
+    capacity: int,
+) -> Float[Array, "n s"]:
+    """States after 0, 1 ... `count` steps of dy/dt = rate(driver, t, y), in an array for `capacity` steps, at least three.
+
+    Has forward derivatives with respect to `driver` and `y`, not to times.
+    """
+    return _march(driver, y, start, step, count, rate, capacity, False)[0]
+
+
+@forward.def_jvp
+def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int):
+    """Linearisations at all evaluations, many at once, and then the scheme applied to the linearised equation."""
+    driver, y, start, step, count = primals
+    d_driver, d_y, *_ = tangents
+    path, taken = _march(driver, y, start, step, count, rate, capacity, True)
+    total = evaluations(capacity + 1)
+    index = jnp.arange(total)
+    at, add, time, _ = jax.vmap(_row)(index)
+    slope, push = linearised(rate, driver, d_driver, start + step * time, taken, evaluations(count + 1), BATCH)
+
+    def body(carry, now):
+        d_y, slopes = carry
+        matrix, vector, at, add = now
+        d_slope = matrix @ (d_y + step * (at @ slopes)) + vector
+        return _advance(d_y, slopes, d_slope, add, step), d_y
+
+    d_y = jnp.zeros_like(y) if d_y is None else d_y
+    _, found = jax.lax.scan(body, (d_y, jnp.zeros((MEMORY, y.shape[0]))), (slope, push, at, add))
+    # the state before the first evaluation of every step
+    first = np.concatenate([4 * np.arange(START), np.arange(4 * START, total)])
+    return path, found[first]
+
+
+def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Float[Array, "n s"]:
+    """The same path, all of it, for a reverse gradient: what is carried at the beginning of blocks is kept, the rest
+    recomputed."""
+
+    def advance(carry, index):
+        y, slopes = carry
+        at, add, time, _ = _row(index)
+        slope = jnp.concatenate(rate(driver, start + step * time, y + step * (at @ slopes)))
+        return _advance(y, slopes, slope, add, step), y
+
+    total = evaluations(capacity + 1)
+    blocks = -(-total // BLOCK)
+    index = jnp.arange(blocks * BLOCK).reshape(blocks, BLOCK)
+    carry = (y, jnp.zeros((MEMORY, y.shape[0])))
+    _, saved = jax.lax.scan(jax.checkpoint(lambda c, i: jax.lax.scan(advance, c, i)), carry, index)
+    first = np.concatenate([4 * np.arange(START), np.arange(4 * START, total)])
+    return saved.reshape(-1, y.shape[0])[first]

@@ -1,0 +1,270 @@
+"""Capytaine's datasets (https://capytaine.org, `assemble_dataset`) in NetCDF: added mass and radiation damping."""
+
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem, shown, suggest
+from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
+
+FEWEST = 4  # frequencies
+HDF5 = b"\x89HDF\r\n\x1a\n"  # how a file of NetCDF-4 begins
+PAIR = ("radiating_dof", "influenced_dof")
+BETWEEN = "__"  # a body's name and its motion, in datasets of several bodies: buoy__Heave
+BODY = ("body", "body_name")  # dimensions along which datasets of several bodies may be put together
+LISTED = 8  # frequencies that a note names
+OFF = 1e-3  # of a value, by which water and dataset may differ without a note
+AT_ORIGIN = 1e-6  # m
+
+
+class Dataset(NamedTuple):
+    """A dataset of one body: its variables (xarray), the file, the body's name ("" where it has none), and notes on it.
+
+    `origin` (x, y; m) is where the platform's reference point lies in the dataset, at still water level. `shift` (6, 6) takes
+    velocities of that point to those of the point that the dataset's motions are about.
+    """
+
+    data: Any
+    source: str
+    body: str
+    origin: Float[np.ndarray, "2"]
+    shift: Float[np.ndarray, "6 6"]
+    notes: list[str]
+
+    def wrong(self, where: str, expected: str, found: str, hint: str = "") -> InputError:
+        """The error of a variable."""
+        return InputError(self.source, [Problem(where, expected, found, hint)])
+
+    def scale(self, density: float | None) -> float:
+        """By what forces of the dataset's own water are multiplied for water of another density (kg/m3)."""
+        own = self.number("rho")
+        if density is None or own is None or abs(density / own - 1) < OFF:
+            return 1.0
+        self.notes.append(f"{self.source}: computed for a density of {own:g} kg/m3: forces are scaled to {density:g} kg/m3")
+        return density / own
+
+    def number(self, name: str) -> float | None:
+        """A number that the dataset has once; None where it has not."""
+        if name not in self.data.variables or self.data[name].size != 1:
+            return None
+        value = float(self.data[name].values.reshape(()))
+        return value if np.isfinite(value) else None
+
+
+def open_capytaine(path: str | PathLike[str], needed: tuple[str, ...], body: str | None = None) -> Dataset:
+    """Open a dataset and choose a body by its name.
+
+    Args:
+        path: The file.
+        needed: Variables that it has to have.
+        body: Name of the body; None where the dataset has one only.
+
+    Raises:
+        InputError: With the variable that is missing, or the names of the bodies where none of them is chosen.
+    """
+    import xarray as xr
+
+    source = str(path)
+
+    def wrong(where: str, expected: str, found: str, hint: str = "") -> InputError:
+        return InputError(source, [Problem(where, expected, found, hint)])
+
+    try:
+        with Path(path).open("rb") as file:
+            engine: Literal["h5netcdf", "scipy"] = "h5netcdf" if file.read(8) == HDF5 else "scipy"
+        with xr.open_dataset(path, engine=engine) as opened:  # else xarray would take a folder for a zarr store, too
+            data = opened.load()
+    except FileNotFoundError:
+        raise wrong("", "a NetCDF file of Capytaine", "no such file") from None
+    except Exception as error:  # each of xarray's engines has its own
+        raise wrong("", "a NetCDF file of Capytaine", shown(str(error))) from None
+    known = [str(name) for name in data.variables]
+    if missing := [name for name in needed if name not in data]:
+        raise wrong(missing[0], "this variable", ", ".join(known) or "none", suggest(missing[0], known))
+    names = _bodies(data)
+    if body is None and len(names) > 1:
+        raise wrong("", "the name of a body in `body`", "none", f"The dataset has {', '.join(names)}.")
+    if body is not None and body not in names:
+        raise wrong("body", f"one of {', '.join(names) or 'a body without a name: leave `body` out'}", shown(body),
+                    suggest(body, names))  # fmt: skip
+    body = body or (names[0] if names else "")
+    notes = []
+    for dim in BODY:
+        if dim in data.dims and dim in data.coords:
+            data = data.sel({dim: [name for name in data[dim].values if _text(name) == body]}).squeeze(dim, drop=True)
+    for dim in PAIR:
+        if dim in data.coords and data[dim].ndim == 1:
+            mine = [name for name in data[dim].values if _text(name).rpartition(BETWEEN)[0] in ("", body)]
+            if len(mine) < data.sizes[dim]:
+                notes = [f"{source}: {body} of {len(names)} bodies: the others are held still, what they radiate is left out"]
+                data = data.sel({dim: mine})
+    origin, shift = _reference(data, wrong, source, len(names) > 1, notes)
+    return Dataset(data, source, body, origin, shift, notes)
+
+
+def _text(name: Any) -> str:
+    return name.decode() if isinstance(name, bytes) else str(name)
+
+
+def _bodies(data: Any) -> list[str]:
+    """Names of the bodies of a dataset, in order."""
+    found: dict[str, None] = {}
+    for dim in PAIR:
+        if dim in data.coords:
+            prefixed = [_text(name).rpartition(BETWEEN) for name in np.atleast_1d(data[dim].values)]
+            found |= {name: None for name, between, _ in prefixed if between}
+    for dim in BODY:
+        if not found and dim in data.coords:
+            found |= {_text(name): None for name in np.atleast_1d(data[dim].values)}
+    return list(found)
+
+
+def _reference(
+    data: Any, wrong: Any, source: str, several: bool, notes: list[str]
+) -> tuple[Float[np.ndarray, "2"], Float[np.ndarray, "6 6"]]:
+    """`origin` and `shift` of a `Dataset`, by its centre of rotation (Fossen 2011, Handbook of Marine Craft, section 7.3).
+
+    The reference point is the dataset's origin; of one among several bodies it is above or below its own centre.
+    """
+    origin, shift = np.zeros(2), np.eye(6)
+    if "rotation_center" not in data.variables:
+        return origin, shift
+    centre = np.asarray(data["rotation_center"].values, float).squeeze()
+    if centre.shape != (3,) or not np.isfinite(centre).all():
+        raise wrong("rotation_center", "three numbers", shown(np.asarray(data["rotation_center"].values).tolist()))
+    if several and np.abs(centre[:2]).max() > AT_ORIGIN:
+        origin = centre[:2]
+        notes.append(f"{source}: the platform's reference point is at ({origin[0]:g}, {origin[1]:g}, 0) m of the dataset")
+    x, y, z = centre - np.append(origin, 0.0)
+    if np.abs([x, y, z]).max() > AT_ORIGIN:
+        shift[:3, 3:] = [[0, z, -y], [-z, 0, x], [y, -x, 0]]
+        there = ", ".join(f"{one:g}" for one in centre)
+        notes.append(f"{source}: computed about ({there}) m: moved to the platform's reference point")
+    return origin, shift
+
+
+def read_capytaine(
+    path: str | PathLike[str], *, body: str | None = None, density: float | None = None, notes: list[str] | None = None
+) -> RadiationCoefficients:
+    """Read added mass and radiation damping over omega (rad/s), radiating_dof and influenced_dof, as Capytaine writes them.
+
+    They are dimensional already. Motions are Surge ... Yaw; those left out are zero. Frequencies may include 0 and infinity.
+    Further dimensions (water depth, density) may have one entry only. Frequencies at which nothing was computed, all NaN, are
+    left out with a note: Capytaine skips those it cannot solve, such as k h < 0.1 in finite depth.
+
+    Args:
+        path: The file.
+        body: Name of the body, where the dataset has several.
+        density: Of the platform's water, kg/m3, to which forces are scaled; None: the dataset's own.
+        notes: What is left out, moved or scaled is appended here.
+
+    Raises:
+        InputError: With the variable that is wrong, and frequencies at which only a part was computed.
+    """
+    one = open_capytaine(path, ("added_mass", "radiation_damping"), body)
+    mass, damping = (_cube(one, name) for name in ("added_mass", "radiation_damping"))
+    omega = np.asarray(one.data["added_mass"].coords["omega"].values, float)
+    order = np.argsort(omega)
+    omega, mass, damping = omega[order], mass[order], damping[order]
+    if np.isnan(omega).any() or (omega < 0).any() or (np.diff(omega) == 0).any():
+        raise one.wrong("omega", "frequencies from 0 up, each once", shown(omega.tolist()))
+    inner = (omega > 0) & np.isfinite(omega)
+    kept = computed(one, {"added_mass": (omega, mass), "radiation_damping": (omega[inner], damping[inner])})
+    inner &= np.isin(omega, kept)
+    if inner.sum() < FEWEST:
+        raise one.wrong("omega", f"{FEWEST} finite frequencies above 0 or more", f"{inner.sum()}")
+    scale = one.scale(density)
+
+    def about(matrix: np.ndarray) -> np.ndarray:
+        return scale * one.shift.T @ np.nan_to_num(matrix) @ one.shift
+
+    zero, infinite = ([about(m) for m, w in zip(mass, omega) if w == at and w in kept] for at in (0.0, np.inf))
+    limits = (found[0] if found else None for found in (infinite, zero))
+    if notes is not None:
+        notes += one.notes
+    return RadiationCoefficients(omega[inner], about(mass[inner]), about(damping[inner]), *limits)
+
+
+def computed(one: Dataset, variables: dict[str, tuple[np.ndarray, np.ndarray]]) -> Float[np.ndarray, " n"]:
+    """Frequencies (rad/s) at which the variables, each with its frequencies, were computed; a note names the others.
+
+    Entries of motions that the dataset has not are 0, and are no part of this: a variable's NaN are looked for where any other
+    frequency has a number. Raises InputError for frequencies at which a variable is NaN only in part.
+    """
+    lost: dict[float, None] = {}
+    kept: dict[float, None] = {}
+    for name, (omega, values) in variables.items():
+        flat = values.reshape(len(omega), -1)
+        given = ~(flat == 0).all(axis=0)
+        missing = ~np.isfinite(flat)
+        whole = missing[:, given].all(axis=1) & given.any()
+        partly = missing.any(axis=1) & ~whole
+        if partly.any():
+            count = int(missing[partly].sum())
+            raise one.wrong(name, "finite numbers", f"{count} that are not, at omega {listed(omega[partly])} rad/s",
+                            "Where all of a frequency is NaN, it is left out.")  # fmt: skip
+        lost |= dict.fromkeys(omega[whole].tolist())
+        kept |= dict.fromkeys(omega[~whole].tolist())
+    if mixed := [w for w in lost if w in kept and np.isfinite(w) and w > 0]:
+        names = " and ".join(variables)
+        raise one.wrong(names, "numbers for both at each frequency", f"one alone at omega {listed(np.array(mixed))} rad/s")
+    finite = np.array(sorted(w for w in lost if np.isfinite(w) and w > 0))
+    if finite.size:
+        many = "frequencies" if finite.size > 1 else "frequency"
+        one.notes.append(f"{one.source}: {finite.size} {many} left out, at which nothing was computed (NaN): omega "
+                         f"{listed(finite)} rad/s")  # fmt: skip
+    return np.array([w for w in kept if w not in lost])
+
+
+def listed(omega: Float[np.ndarray, " n"]) -> str:
+    """Frequencies as a message names them."""
+    some = ", ".join(f"{w:.4g}" for w in omega[:LISTED])
+    return some + (f" ... {omega[-1]:.4g}" if len(omega) > LISTED else "")
+
+
+def single(one: Dataset, name: str, apart: tuple[str, ...]) -> Any:
+    """A variable without its dimensions other than `apart`, which may have one entry only."""
+    values = one.data[name]
+    for dim in [dim for dim in values.dims if dim not in apart]:
+        if values.sizes[dim] > 1:
+            raise one.wrong(f"{name}.{dim}", "one entry", f"{values.sizes[dim]}")
+        values = values.isel({dim: 0})
+    return values
+
+
+def along_omega(one: Dataset, name: str) -> str:
+    """The dimension of a variable that omega runs along."""
+    values = one.data[name]
+    if "omega" not in values.coords or values.coords["omega"].ndim != 1:
+        dims = f"dimensions {', '.join(map(str, values.dims))}"
+        raise one.wrong(f"{name}.omega", "a dimension of angular frequencies", dims)
+    return str(values.coords["omega"].dims[0])
+
+
+def motions(one: Dataset, name: str, dim: str) -> list[int]:
+    """The motions, from 0, that a variable's dimension names."""
+    values = one.data[name]
+    if dim not in values.dims or dim not in values.coords:
+        raise one.wrong(f"{name}.{dim}", "a dimension with names", f"dimensions {', '.join(map(str, values.dims))}")
+    names = [_text(label).rpartition(BETWEEN)[2].strip().lower() for label in values.coords[dim].values]
+    if unknown := [label for label in names if label not in DOFS]:
+        among = f"motions among {', '.join(DOFS).title()}"
+        raise one.wrong(f"{name}.{dim}", among, shown(unknown[0]), suggest(unknown[0], DOFS))
+    if len(set(names)) < len(names):
+        twice = next(label for label in names if names.count(label) > 1)
+        raise one.wrong(f"{name}.{dim}", "each motion once", f"{twice} {names.count(twice)} times")
+    return [DOFS.index(label) for label in names]
+
+
+def _cube(one: Dataset, name: str) -> Float[np.ndarray, "w 6 6"]:
+    """A variable by frequency, influenced and radiating motion."""
+    rows = [motions(one, name, dim) for dim in reversed(PAIR)]
+    along = along_omega(one, name)
+    values = single(one, name, (along, *PAIR))
+    cube = np.zeros((values.sizes[along], 6, 6))
+    cube[np.ix_(range(len(cube)), *rows)] = np.asarray(values.transpose(along, *reversed(PAIR)).values)
+    return cube

@@ -1,0 +1,114 @@
+"""Difference-frequency quadratic transfer functions from WAMIT's .12d files."""
+
+from os import PathLike
+
+import numpy as np
+from jaxtyping import Complex, Int
+
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.interop.wamit_tables import UNITS, contradictions, of_heading, table_of, to_omega
+from jaxhydro.waves.transfer import Transfer
+
+COLUMNS = "PER1 PER2 BETA1 BETA2 I MOD PHASE RE IM"
+SAME = 1e-6  # of a period or frequency
+CONJUGATE = 0.01  # of the larger of two values, by which they may differ and still be conjugate
+NOTHING = 1e-4  # of the largest force or moment: smaller differences are rounding
+
+
+def read_transfer(
+    path: str | PathLike[str],
+    density: float,
+    gravity: float,
+    *,
+    length: float = 1.0,
+    heading: float = 0.0,
+    newman: bool = False,
+    by: str = "period",
+    body: int | None = None,
+    warnings: list[str] | None = None,
+) -> Transfer:
+    """Read the transfer function in a .12d file (WAMIT user manual, section 4.13), for waves of one heading.
+
+    T_ij = rho g L^k F_ij, k = 1 for forces and 2 for moments, F_ij for the product of amplitudes A_i conj(A_j) at PER1 and
+    PER2. The file may have either half of the Hermitian table or both, which then have to be conjugate.
+
+    Args:
+        path: The file.
+        density: Of the water, rho, kg/m3.
+        gravity: g, m/s2.
+        length: The file's unit of length L, WAMIT's ULEN, m.
+        heading: BETA1 and BETA2 of the rows that are taken, deg.
+        newman: Use the diagonal alone (`Transfer.of`).
+        by: What the first two columns are: "period" (s), "rad/s" or "Hz".
+        body: Number of the body, from 1; None: the file has one.
+        warnings: What is doubtful is appended here.
+
+    Raises:
+        InputError: With file and row, or with the pair that is given twice and contradicts itself.
+    """
+    rows = table_of(path, ".12d", COLUMNS, periods=slice(0, 2), mode=4, by=by, body=body)
+    mine = of_heading(path, rows, slice(2, 4), heading)
+
+    def wrong(expected: str, found: str, where: str) -> InputError:
+        return InputError(str(path), [Problem(where, expected, found)])
+
+    column = np.unique(mine[:, :2])[::-1]
+    column = column[np.r_[True, np.abs(np.diff(column)) > SAME * column[:-1]]]
+    n, many = len(column), "periods" if by == "period" else "frequencies"
+    if n < 2:
+        raise wrong(f"two {many} or more", f"{n}", "PER1")
+    first, second = (np.abs(mine[:, [i]] - column).argmin(axis=1) for i in (0, 1))
+    mode, value = mine[:, 4].astype(int) - 1, mine[:, 7] + 1j * mine[:, 8]
+
+    def named(pair: np.ndarray) -> str:
+        return " and ".join(f"{column[k]:.5g} {UNITS[by]}" for k in pair)
+
+    if (against := _contradicting(mode, first, second, value)) is not None:
+        one, other, i, *pair = against
+        expected = f"one value for {named(np.array(pair))}, given twice, the halves of the table conjugate"
+        raise wrong(expected, f"{one:.5g} and {other:.5g} (as (i, j) both)", DOFS[i])
+    if warnings is not None:
+        warnings += contradictions(mine, 5, str(path))
+    table = np.full((6, n, n), np.nan, complex)
+    table[mode, second, first] = value.conj()
+    table[mode, first, second] = value
+    for i in range(6):
+        if np.isnan(table[i]).all():  # a mode that the file leaves out
+            table[i] = 0.0
+    lost = np.argwhere(np.isnan(np.einsum("ikk->ik", table) if newman else table))
+    if len(lost):
+        i, *pair = lost[0]
+        raise wrong(f"all pairs of {n} {many}", f"none at {named(np.array(pair))}", DOFS[i])
+    if newman:
+        table = np.where(np.isnan(table), 0.0, table)
+    unit = density * gravity * length ** np.array([1, 1, 1, 2, 2, 2])
+    omega = to_omega(column, by)
+    order = np.argsort(omega)
+    return Transfer.of(omega[order], unit[:, None, None] * table[:, order[:, None], order], newman)
+
+
+def _contradicting(
+    mode: Int[np.ndarray, " r"], first: Int[np.ndarray, " r"], second: Int[np.ndarray, " r"], value: Complex[np.ndarray, " r"]
+) -> tuple[complex, complex, int, int, int] | None:
+    """Two values of one pair of frequencies that differ most, by what they should be, the mode and the pair; None: all agree.
+
+    All are taken to the half of the table in which the first index is not the larger. A value on the diagonal has to be real,
+    as it is its own conjugate.
+    """
+    low, high = np.minimum(first, second), np.maximum(first, second)
+    turned = np.where(first <= second, value, value.conj())
+    worst: tuple[float, tuple[complex, complex, int, int, int] | None] = (1.0, None)
+    for i in np.unique(mode):
+        of = np.flatnonzero(mode == i)
+        # a mode that symmetry makes zero is rounding: forces and moments are each beside the largest of their kind
+        largest = np.abs(value[(mode > 2) == (i > 2)]).max()
+        order = of[np.lexsort((high[of], low[of]))]
+        same = (np.diff(low[order]) == 0) & (np.diff(high[order]) == 0)
+        pairs = [(turned[order[k]], turned[order[k + 1]], order[k]) for k in np.flatnonzero(same)]
+        pairs += [(turned[k], turned[k].conj(), k) for k in of[low[of] == high[of]]]
+        for one, other, k in pairs:
+            limit = CONJUGATE * max(abs(one), abs(other)) + NOTHING * largest
+            if limit > 0 and (excess := abs(one - other) / limit) > worst[0]:
+                worst = (excess, (complex(one), complex(other), int(i), int(low[k]), int(high[k])))
+    return worst[1]

@@ -1,0 +1,1 @@
+"""Platform files: their schema, and the models made of them."""

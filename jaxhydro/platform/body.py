@@ -1,0 +1,253 @@
+"""The body in a platform file: its mass and its members, checked, and as plain values. SI; headings in degrees."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from jaxtyping import Float
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+
+from jaxhydro.errors import Consistent, Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
+from jaxhydro.loads.high_pass_drag import FASTEST, LARGEST_SHARE
+
+STEP = 1e-6  # of a member's length, over which a step in its size is made
+Matrix3 = Float[np.ndarray, "3 3"]
+
+
+class Inertia(Schema):
+    """Inertia about the centre of mass, kg m2. Ixy, Ixz and Iyz are the entries of the matrix as they stand in it,
+    [[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]], so Ixy = -integral of x y dm, as mass matrices are printed
+    by OpenFAST and WAMIT: no sign is changed in reading."""
+
+    Ixx: NonNegative
+    Iyy: NonNegative
+    Izz: NonNegative
+    Ixy: Number = 0.0
+    Ixz: Number = 0.0
+    Iyz: Number = 0.0
+
+    def matrix(self) -> Matrix3:
+        """The symmetric 3 by 3 matrix, kg m2."""
+        rows = [[self.Ixx, self.Ixy, self.Ixz], [self.Ixy, self.Iyy, self.Iyz], [self.Ixz, self.Iyz, self.Izz]]
+        return np.array(rows, dtype=float)
+
+
+class Part(Schema):
+    """A rigid part: mass, kg; centre of mass, m, from the reference point; inertia about it (left out: a point)."""
+
+    name: Text
+    mass: Positive
+    centre_of_mass: Vector
+    inertia: Inertia = Inertia(Ixx=0.0, Iyy=0.0, Izz=0.0)
+
+
+class RigidBody(Schema):
+    """Everything that moves with the hull: mass, centre of mass and inertia, or the parts that make it up."""
+
+    mass: Positive | None = None
+    centre_of_mass: Vector | None = None
+    inertia: Inertia | None = None
+    parts: Annotated[tuple[Part, ...], Field(min_length=1)] | None = None
+
+    def combined(self) -> tuple[float, Float[np.ndarray, "3"], Matrix3]:
+        """Mass, kg, centre of mass, m, and inertia about it, kg m2: the parts put together by Steiner's theorem."""
+        if self.parts is None:
+            assert self.mass is not None and self.centre_of_mass is not None and self.inertia is not None
+            return self.mass, np.array(self.centre_of_mass), self.inertia.matrix()
+        masses = np.array([part.mass for part in self.parts])
+        centres = np.array([part.centre_of_mass for part in self.parts])
+        centre = masses @ centres / masses.sum()
+        arms = centres - centre
+        steiner = np.einsum("p,pi,pi->", masses, arms, arms) * np.eye(3) - np.einsum("p,pi,pj->ij", masses, arms, arms)
+        own = np.sum([part.inertia.matrix() for part in self.parts], axis=0)
+        return float(masses.sum()), centre, own + steiner
+
+    @model_validator(mode="after")
+    def _one_way_and_physical(self) -> Self:
+        given = [key for key in ("mass", "centre_of_mass", "inertia") if getattr(self, key) is not None]
+        if self.parts is not None and given:
+            raise Faults(Problem(given[0], "either parts or mass, centre_of_mass and inertia", "both"))
+        if self.parts is None and not given:
+            raise Faults(Problem("", "mass, centre_of_mass and inertia, or parts", "neither"))
+        if self.parts is None and len(given) < 3:
+            what = {"mass": "a number > 0", "centre_of_mass": "a list of 3 numbers", "inertia": "Ixx, Iyy and Izz"}
+            raise Faults(*(Problem(key, what[key], "nothing") for key in what if key not in given))
+        where = "parts" if self.parts else "inertia"
+        with np.errstate(over="ignore", invalid="ignore"):
+            inertia = self.combined()[2]
+        if not np.isfinite(inertia).all():
+            raise Faults(Problem(where, "an inertia matrix of finite numbers", "numbers too large"))
+        low, mid, high = np.linalg.eigvalsh(inertia)
+        moments = f"principal moments {low:.4g}, {mid:.4g} and {high:.4g} kg m2"
+        if low <= 0.0:
+            raise Faults(Problem(where, "a positive definite inertia matrix", moments))
+        if high > 1.01 * (low + mid):
+            raise Faults(Problem(where, "principal moments of which none exceeds the sum of the other two", moments))
+        return self
+
+
+def _as_list(value: Any) -> Any:
+    return value if isinstance(value, list | tuple) else [value]
+
+
+def _sizes(value: Any) -> str:
+    if not isinstance(value, list | tuple):
+        return "one"
+    return "pairs" if value and isinstance(value[0], list | tuple) else "row"
+
+
+Pair = tuple[Positive, Positive]
+Sizes = Annotated[
+    Annotated[Positive, Tag("one")]
+    | Annotated[tuple[Positive, ...], Field(min_length=1), Tag("row")]
+    | Annotated[tuple[Pair, ...], Tag("pairs")],
+    Discriminator(_sizes),
+]
+_SHAPES = {"circular": "circ", "rectangular": "rect"}  # RAFT reads the first letter only
+Shape = Annotated[
+    Literal["circ", "rect"], BeforeValidator(lambda value: _SHAPES.get(value, value) if type(value) is str else value)
+]
+
+
+class Member(Consistent):
+    """A cylinder or box from rA to rB, m, in RAFT's words.
+
+    d is its diameter or [width, height], m, or one of these at each of `stations`; a station named twice is a step in size.
+    heading, deg, turns copies about z; gamma, deg, twists a box about its axis. There are `elements` load elements of `points`
+    Gauss points each. maccamy_fuchs None: as the member's position says."""
+
+    name: Text
+    group: Text = ""
+    shape: Shape
+    d: Sizes
+    stations: Annotated[tuple[Number, ...], Field(min_length=2)] | None = None
+    rA: Vector
+    rB: Vector
+    heading: Annotated[tuple[Number, ...], Field(min_length=1), BeforeValidator(_as_list)] = (0.0,)
+    gamma: Number = 0.0
+    elements: Count | None = None
+    points: Count = 2
+    maccamy_fuchs: Flag | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _group_is_name(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "group" not in data and isinstance(data.get("name"), str):
+            return {**data, "group": data["name"]}
+        return data
+
+    def _faults(self) -> Iterator[Problem]:
+        if self.rA == self.rB:
+            yield Problem("rB", "an end B that is not end A", shown(self.rB))
+        if self.shape == "rect" and self.maccamy_fuchs:
+            yield Problem("maccamy_fuchs", "false for a rectangular member", "true", "The law is for circular ones.")
+        if self.elements is None and "points" in self.model_fields_set:
+            yield Problem("points", "`elements` with it", "none", "Without, strips are chosen by length.")
+        if self.stations is not None:
+            apart = np.diff(self.stations)
+            steps = apart == 0
+            if (apart < 0).any() or steps[0] or steps[-1] or (steps[1:] & steps[:-1]).any():
+                hint = "A step in d is one station twice, between the ends." if steps.any() and not steps.all() else ""
+                yield Problem("stations", "numbers in ascending order", shown(self.stations), hint)
+        kind = _sizes(self.d)
+        constant = "one" if self.shape == "circ" else "row"
+        if kind == constant and (self.shape == "circ" or len(np.atleast_1d(self.d)) == 2):
+            return
+        one = "a diameter" if self.shape == "circ" else "[width, height]"
+        if kind != ("row" if self.shape == "circ" else "pairs"):
+            yield Problem("d", f"{one}, or a list of these with `stations`", shown(self.d))
+        elif self.stations is None:
+            yield Problem("d", f"{one}, or `stations` with this list", shown(self.d))
+        elif np.shape(self.d)[0] != len(self.stations):
+            yield Problem("d", f"{len(self.stations)} sizes, one for each station", f"{np.shape(self.d)[0]}")
+
+    def profile(self) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, "n 2"]]:
+        """Stations from 0 at end A to 1 at end B, and width and height there, m (a circle: its diameter twice)."""
+        sizes = np.array(self.d, dtype=float)
+        if self.shape == "circ":
+            sizes = np.stack([sizes, sizes], axis=-1)
+        if sizes.ndim == 1 or self.stations is None:
+            return np.array([0.0, 1.0]), np.stack([sizes, sizes])
+        stations = np.array(self.stations)
+        at = (stations - stations[0]) / (stations[-1] - stations[0])
+        steps = np.flatnonzero(np.diff(stations) == 0)
+        at[steps] -= 0.5 * STEP
+        at[steps + 1] += 0.5 * STEP
+        return at, sizes
+
+
+Share = Annotated[float, Field(strict=True, ge=0, le=1)]
+Coefficient = Annotated[
+    Annotated[NonNegative, Tag("number")] | Annotated[Text, Tag("group")],
+    Discriminator(lambda value: "group" if isinstance(value, str) else "number"),
+]
+
+
+class ConstantDrag(Schema):
+    """The same coefficient for all motion (`jaxhydro.loads.StripDrag`, `EndDrag`)."""
+
+    law: Literal["constant"] = "constant"
+
+
+class HighPass(Schema):
+    """Slow motion feels another coefficient, `low_share` times that of fast motion: cut-off in Hz, 0: none
+    (`jaxhydro.loads.HighPassDrag`)."""
+
+    law: Literal["high_pass"]
+    cutoff: Annotated[float, Field(strict=True, ge=0, le=FASTEST)]
+    low_share: Annotated[float, Field(strict=True, ge=0, le=LARGEST_SHARE)]
+
+
+class HighPassAtEnds(HighPass):
+    """The same for pontoons' vertical direction and columns' ends, there with a share of `SuctionSide`."""
+
+    suction: Share | None = None
+
+
+class KeuleganCarpenter(Schema):
+    """A power of the Keulegan-Carpenter number over `reference`, where the coefficient is as declared; `window`, s, of the
+    past that the amplitude is taken from (`jaxhydro.loads.KeuleganCarpenterDrag`)."""
+
+    law: Literal["keulegan_carpenter"]
+    exponent: Annotated[float, Field(strict=True, ge=-1, le=1)]
+    reference: Positive
+    window: Positive = 60.0
+
+
+class SuctionSide(Schema):
+    """At columns' ends where the flow leaves them, wholly or in part (`jaxhydro.loads.SuctionSideDrag`)."""
+
+    law: Literal["suction_side"]
+    suction: Share = 1.0
+
+
+COEFFICIENTS = ("Ca_t", "Ca_z", "Cd_t", "Cd_z")
+
+
+class Coefficients(Schema):
+    """Added mass and drag of a group of members: t transverse, z vertical of a pontoon or axial at a column's end.
+
+    A coefficient is a number, or the name of another group whose coefficient it is."""
+
+    Ca_t: Coefficient = 0.0
+    Ca_z: Coefficient = 0.0
+    Cd_t: Coefficient = 0.0
+    Cd_z: Coefficient = 0.0
+    drag_t: ConstantDrag | HighPass | KeuleganCarpenter = Field(
+        default=ConstantDrag(),
+        discriminator="law",
+        description="a mapping with `law`: constant, high_pass or keulegan_carpenter",
+    )
+    drag_z: ConstantDrag | HighPassAtEnds | KeuleganCarpenter | SuctionSide = Field(
+        default=ConstantDrag(),
+        discriminator="law",
+        description="a mapping with `law`: constant, high_pass, keulegan_carpenter or suction_side",
+    )
+
+    def numbers(self) -> dict[str, float]:
+        """The group's own coefficients by name."""
+        return {name: value for name in COEFFICIENTS if not isinstance(value := getattr(self, name), str)}
+
+    def shared(self) -> dict[str, str]:
+        """The groups whose coefficients it shares, by the coefficient's name."""
+        return {name: value for name in COEFFICIENTS if isinstance(value := getattr(self, name), str)}

@@ -1,0 +1,281 @@
+"""A platform file made into a model."""
+
+import math
+import warnings
+from dataclasses import replace
+from os import PathLike
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.dynamics.model import Model, RigidBody, strongly_typed
+from jaxhydro.environment import Environment
+from jaxhydro.errors import InputError, Problem, suggest
+from jaxhydro.hull.coefficient_labels import shared_hint, shares_of
+from jaxhydro.hull.hull import Hull
+from jaxhydro.hull.strips import COLUMN_SLOPE, Member
+from jaxhydro.loads import (
+    AbstractLoad,
+    AddedMass,
+    Buoyancy,
+    EndDrag,
+    EndInertia,
+    GuidedMasses,
+    LinearDamping,
+    MooringLines,
+    QuadraticDamping,
+    Stiffness,
+    StripDrag,
+    StripInertia,
+    Weight,
+)
+from jaxhydro.loads.hydrostatics import buoyancy
+from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
+from jaxhydro.platform import schema as schema
+from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
+from jaxhydro.platform.computed_loads import tables_of
+from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
+from jaxhydro.remarks import Remark, as_warnings
+from jaxhydro.scales import size_of
+from jaxhydro.start import need_float64
+from jaxhydro.waves.sea_state import SeaState
+
+
+def load_model(path_or_name: str | PathLike[str]) -> Model:
+    """The model of a platform file, or of a built-in platform by its name.
+
+    Warnings among the model's `remarks` are given as Python warnings, too. Raises InputError with all that is wrong in it.
+    """
+    model = build(schema.load_platform(path_or_name))
+    for remark in model.remarks:
+        if remark.warning:
+            warnings.warn(remark.text, stacklevel=2)
+    return model
+
+
+def build(platform: schema.Platform) -> Model:
+    """The model that a platform declares, with what is to be known of it as `remarks`.
+
+    Raises Float64Error, a RuntimeError, unless JAX computes in float64.
+    """
+    need_float64()
+    water = platform.water
+    environment = Environment(water.density, water.depth, water.gravity)
+    mass, centre, inertia = platform.rigid_body.combined()
+    body = RigidBody(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
+    members = members_of(platform)
+    _none_partly_wet(members, platform)
+    size = size_of(mass, water.density)
+    hull = Hull.of(members, size)
+    geometry = buoyancy(members, size)
+    platform, coupling, remarks = with_hydrostatics(platform, geometry)
+    declared = _declared_hydrostatics(geometry, platform, mass, float(centre[2]))
+    loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre, values={}), declared, *coupling]
+    loads += _mooring(platform)
+    for name, matrix, load in (
+        ("linear_damping", platform.linear_damping.matrix(), LinearDamping),
+        ("quadratic_damping", platform.quadratic_damping.matrix(), QuadraticDamping),
+        ("added_mass", platform.added_mass.matrix(), AddedMass),
+    ):
+        letter = "A" if name == "added_mass" else "B"
+        if values := _entries(f"{name}.{letter}", matrix):
+            loads.append(load(values))
+    loads += _guided(platform)
+    computed, said = tables_of(platform, declared)
+    loads += computed
+    if values := _entries("stiffness.C", platform.stiffness.matrix()):
+        loads.append(Stiffness(values, jnp.zeros(6), "stiffness"))
+    if members:
+        coefficients = {
+            f"{group}.{name}": jnp.asarray(value)
+            for group, row in platform.coefficients.items()
+            for name, value in row.numbers().items()
+        }
+        of_strips = {symbol: set(hull.elements.parameters(symbol)) for symbol in ("Ca", "Cd")}
+        of_ends = {symbol: set(hull.ends.parameters(symbol)) for symbol in ("Ca", "Cd")}
+
+        def pick(labels: set[str]) -> dict:
+            return {label: value for label, value in coefficients.items() if label in labels}
+
+        coupled = platform.drag_speed == "vector"
+        loads += [
+            StripInertia(pick(of_strips["Ca"])),
+            StripDrag(pick(of_strips["Cd"]), coupled),
+            EndInertia(pick(of_ends["Ca"])),
+            EndDrag(pick(of_ends["Cd"])),
+        ]
+    forms = (platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal)
+    model = Model(environment, body, hull, tuple(loads), *forms, remarks=(*_of_mooring(platform), *remarks, *said))
+    model = with_drag_laws(model, _chosen_drag(platform, model))
+    return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
+
+
+def model_of(platform: schema.Platform, diffraction: str | None = None, elements: int | None = None) -> Model:
+    """The model of a platform; `diffraction` and the load `elements` of every pontoon in place of those declared."""
+    if elements is not None:
+        members = []
+        for member in platform.members:
+            axis = np.subtract(member.rB, member.rA)
+            column = abs(axis[2]) > COLUMN_SLOPE * np.linalg.norm(axis)
+            members.append(member if column else member.model_copy(update={"elements": elements}))
+        platform = platform.model_copy(update={"members": tuple(members)})
+    model = build(platform)
+    return model if diffraction is None else replace(model, diffraction=str(diffraction))
+
+
+def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
+    """Raises InputError for pontoons that still water cuts, but for those whose waterplane is modelled: level
+    ones, and inclined ones that are cut through their sides (`waterplane`)."""
+    names = [member.name for member in platform.members for _ in member.heading]
+    where = {name: i for i, name in reversed(list(enumerate(member.name for member in platform.members)))}
+    problems = [
+        Problem(
+            f"members[{where[name]}]",
+            "a member flatter than 45 deg to be level, or clear of still water, or cut by it between its ends",
+            f"{name!r}, of whose height {member.submerged:.0%} is under it",
+            "Make what floats of level or upright members, side by side; let a brace end well above still water.",
+        )
+        for name, member in zip(names, members, strict=True)
+        if member.pierced and not (member.floats or member.fills)
+    ]
+    if problems:
+        raise InputError(platform.name, list(dict.fromkeys(problems)))
+
+
+def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:
+    """Loads with the laws that the platform declares for their coefficients."""
+    declared = platform.sea_state_laws
+    if declared is None:
+        return loads
+    known = [label for load in loads for label in load.values]
+    if unknown := [label for label in declared.exponents if label not in known]:
+        where = f"sea_state_laws.exponents.{unknown[0]}"
+        known = [label for label in known if not label.startswith(("mooring.", "stiffness."))]
+        shares = shares_of((group, row.shared()) for group, row in platform.coefficients.items())
+        expected, hint = f"a coefficient ({', '.join(known)})", shared_hint(unknown[0], shares) or suggest(unknown[0], known)
+        raise InputError(platform.name, [Problem(where, expected, repr(unknown[0]), hint)])
+    exponents = {
+        exponent_label(label, over): value
+        for label, row in declared.exponents.items()
+        for over, value in row.model_dump(exclude_none=True).items()
+    }
+    return with_exponents(loads, exponents, SeaState(**declared.reference.model_dump()))
+
+
+def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
+    """The laws that the platform declares for drag coefficients that its hull has, by label."""
+    problems = [
+        Problem(f"coefficients.{group}.drag_z", "no suction side, which the ends of columns have", "a group of pontoons")
+        for group, row in platform.coefficients.items()
+        if f"{group}.Cd_z" not in model.hull.ends.parameters("Cd") and getattr(row.drag_z, "suction", None) is not None
+    ]
+    if problems:
+        raise InputError(platform.name, problems)
+    rows = platform.coefficients.items()
+    laws = {f"{group}.Cd_{kind}": law for group, row in rows for kind, law in (("t", row.drag_t), ("z", row.drag_z))}
+    return {label: law for label, law in laws.items() if label in plain_drag(model)}
+
+
+def members_of(platform: schema.Platform) -> list[Member]:
+    """The platform's members, each copied to its headings."""
+    members = []
+    for member in platform.members:
+        stations, sizes = member.profile()
+        for copy, heading in enumerate(member.heading):
+            c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+            turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+            members.append(
+                Member(
+                    name=member.name if len(member.heading) == 1 else f"{member.name}_{copy + 1}",
+                    group=member.group,
+                    circular=member.shape == "circ",
+                    a=turn @ np.array(member.rA),
+                    b=turn @ np.array(member.rB),
+                    stations=stations,
+                    sizes=sizes,
+                    # the width of an upright box lies along its heading
+                    twist=math.radians(member.gamma) + (math.radians(heading) if member.rA[:2] == member.rB[:2] else 0.0),
+                    elements=member.elements,
+                    maccamy_fuchs=member.maccamy_fuchs,
+                    points=member.points,
+                    shared=platform.coefficients[member.group].shared(),
+                )
+            )
+    return members
+
+
+def _entries(prefix: str, matrix: np.ndarray) -> dict:
+    return {f"{prefix}{i + 1}{j + 1}": jnp.asarray(matrix[i, j]) for i in range(6) for j in range(6) if matrix[i, j] != 0.0}
+
+
+def _guided(platform: schema.Platform) -> list[AbstractLoad]:
+    if not (masses := platform.guided_masses):
+        return []
+    points, along = np.array([mass.point for mass in masses], float), tuple(mass.axes() for mass in masses)
+    return [GuidedMasses.of({mass.name: mass.mass for mass in masses}, points, along, tuple(mass.weight for mass in masses))]
+
+
+def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
+    """A warning of mooring lines that are slack."""
+    slack = platform.mooring.slackness() if isinstance(platform.mooring, schema.LinearSprings) else ""
+    return as_warnings([slack] if slack else [])
+
+
+def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
+    mooring = platform.mooring
+    if isinstance(mooring, schema.StiffnessMatrix):
+        return [Stiffness(_entries("mooring.C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
+    if not isinstance(mooring, schema.LinearSprings):
+        return []
+    values = {}
+    for i, line in enumerate(mooring.lines):
+        stiffness, unstretched = line.spring()
+        values[f"mooring.line{i + 1}.stiffness"] = jnp.asarray(stiffness)
+        values[f"mooring.line{i + 1}.unstretched_length"] = jnp.asarray(unstretched)
+    anchor = jnp.asarray(np.array([line.anchor for line in mooring.lines], float).T)
+    fairlead = jnp.asarray(np.array([line.fairlead for line in mooring.lines], float).T)
+    return [MooringLines(values, anchor, fairlead)]
+
+
+def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:
+    """Buoyancy with what the platform file declares in place of what the members give.
+
+    Without members the volume is that which balances the weight and the mooring's pull at the reference position.
+    """
+    declared, water = platform.hydrostatics, platform.water
+    weight_density = water.density * water.gravity
+    own = load.upright(weight_density)
+    volume = declared.displaced_volume
+    if volume is None:
+        pull = sum(float(m.preload[2]) if isinstance(m, Stiffness) else _line_pull(m) for m in _mooring(platform))
+        borne = mass + sum(guided.mass for guided in platform.guided_masses if guided.weight)
+        volume = own["displaced_volume"] if platform.members else borne / water.density - pull / weight_density
+    force = weight_density * (volume - own["displaced_volume"])
+    weight_share = mass * water.gravity * centre  # of C44 and C55, with the sign of -m g z_G
+    stiffness = []
+    for name, value, buoyant in (
+        ("C33", declared.C33, declared.C33),
+        ("C44", declared.C44, declared.C44_buoyancy),
+        ("C55", declared.C55, declared.C55_buoyancy),
+    ):
+        if name != "C33" and value is not None:
+            buoyant = value + weight_share
+        # volume that the members do not have is at the centre of buoyancy of those that they have
+        extra = 0.0 if name == "C33" else force * own["centre_of_buoyancy"]
+        stiffness.append(extra if buoyant is None else buoyant - own[name])
+    changed = (jnp.asarray(force), jnp.asarray(stiffness))
+    return eqx.tree_at(lambda b: (b.extra_force, b.extra_stiffness), load, changed)
+
+
+def _line_pull(load: AbstractLoad) -> float:
+    """Vertical force (N) of lines at the reference position."""
+    assert isinstance(load, MooringLines)
+    tension, towards = (np.asarray(x) for x in _pull(load))
+    return float((tension * towards[2]).sum())
+
+
+@eqx.filter_jit
+def _pull(load: MooringLines) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
+    return load.tension(jnp.zeros(6), jnp.eye(3))

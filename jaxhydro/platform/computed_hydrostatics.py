@@ -1,0 +1,141 @@
+"""Hydrostatics of other programs, read from the file that a platform file names."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.interop.capytaine_waves import read_capytaine_hydrostatics
+from jaxhydro.interop.wamit_hydrostatics import FileHydrostatics, read_hydrostatics
+from jaxhydro.loads import Buoyancy, HydrostaticCoupling
+from jaxhydro.platform import schema as schema
+from jaxhydro.remarks import Remark, as_warnings
+from jaxhydro.rotations import rotation
+
+COUPLED = ("C34", "C35", "C45")
+CLEARLY = 5.0  # times nearer, for a doubt about the weight
+ASIDE = 1e-3  # of C44 and C55, from which C46 and C56 are worth a note
+
+
+class StaticsOfFile(NamedTuple):
+    """Hydrostatics with what their file says, its stiffness (N/m, N, N m/rad; None: no file), and what is to be known."""
+
+    declared: schema.Hydrostatics
+    stiffness: np.ndarray | None
+    remarks: tuple[Remark, ...]
+
+
+def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> StaticsOfFile:
+    """Fill hydrostatics with what their file has and the platform file does not say itself. Raises InputError."""
+    if not declared.file:
+        return StaticsOfFile(declared, None, ())
+    notes: list[str] = []
+    if declared.kind == "wamit":
+        assert not isinstance(declared.body, str)
+        found = read_hydrostatics(
+            declared.file, water.density, water.gravity, length=declared.length or 1.0, body=declared.body
+        )
+    else:
+        assert not isinstance(declared.body, int)
+        found = read_capytaine_hydrostatics(
+            declared.file, body=declared.body, density=water.density, gravity=water.gravity, notes=notes
+        )
+    values, said = _values(declared, found, water)
+    if values.get("C33", 0.0) < 0:
+        raise InputError(declared.file, [Problem("C33", "a stiffness >= 0", f"{values['C33']:.4g} N/m")])
+    given = {key: value for key, value in values.items() if getattr(declared, key) is None}
+    off = np.abs(found.stiffness[[3, 4], 5]).max()
+    if off > ASIDE * np.abs(np.diag(found.stiffness)).max():
+        notes.append(f"{declared.file}: C46 and C56 are left out: they follow from mass and buoyancy off the centreline")
+    told = tuple(map(Remark, [*notes, *said]))
+    return StaticsOfFile(declared.model_copy(update=given), found.stiffness, told)
+
+
+def _values(
+    declared: schema.Hydrostatics, found: FileHydrostatics, water: schema.Water
+) -> tuple[dict[str, float], list[str]]:
+    """Keys of `hydrostatics` and their values by a file, and notes."""
+    values: dict[str, float] = {"C33": float(found.stiffness[2, 2])}
+    if found.volume is not None:
+        values["displaced_volume"] = found.volume
+    own = {key: float(found.stiffness[i, i]) for key, i in (("C44", 3), ("C55", 4))}
+    wanted = [key for key in own if getattr(declared, key) is None and getattr(declared, f"{key}_buoyancy") is None]
+    if not wanted:
+        return values, []
+    many = " and ".join(wanted)
+    if found.centre_of_mass is not None and found.volume is not None:
+        # the file's own weight, that of the displaced water, is taken out, and the platform's takes its place
+        weight = water.density * water.gravity * found.volume * found.centre_of_mass
+        return values | {f"{key}_buoyancy": own[key] + weight for key in wanted}, []
+    if declared.weight == "excluded":
+        return values | {f"{key}_buoyancy": own[key] for key in wanted}, []
+    said = (
+        f"{declared.file}: {many} are taken to include the weight, as WAMIT and Capytaine define them; in files made for "
+        "OpenFAST they may not: `weight: excluded`"
+    )
+    return values | {key: own[key] for key in wanted}, [] if declared.weight else [said]
+
+
+def with_hydrostatics(
+    platform: schema.Platform, members: Buoyancy
+) -> tuple[schema.Platform, tuple[HydrostaticCoupling, ...], tuple[Remark, ...]]:
+    """The platform with the hydrostatics of their file, couplings beyond those of its members, and what is to be known.
+
+    Raises:
+        InputError: Where the file is wrong.
+    """
+    water = platform.water
+    statics = hydrostatics_of(platform.hydrostatics, water)
+    if statics.stiffness is None:
+        return platform, (), ()
+    own = hydrostatic_stiffness(members, water.density * water.gravity)
+    mass, centre, _ = platform.rigid_body.combined()
+    doubts = weight_doubt(platform.hydrostatics, statics.stiffness, own, mass * water.gravity * float(centre[2]))
+    filled = platform.model_copy(update={"hydrostatics": statics.declared})
+    return filled, coupling_of(statics.stiffness, own), (*as_warnings(doubts), *statics.remarks)
+
+
+def hydrostatic_stiffness(load: Buoyancy, weight_density: float) -> np.ndarray:
+    """Stiffness (N/m, N, N m/rad) of buoyancy about the upright platform, without the weight's share."""
+    return -np.asarray(_slope(load, jnp.asarray(weight_density)))
+
+
+@eqx.filter_jit
+def _slope(load: Buoyancy, weight_density: Float[Array, ""]) -> Float[Array, "6 6"]:
+    return jax.jacfwd(lambda q: load.force(q, rotation(q[3:]), weight_density))(jnp.zeros(6))
+
+
+def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.ndarray, weight: float) -> list[str]:
+    """A warning where the members say that a .hst file has the weight, or has it not, against what was declared.
+
+    Args:
+        declared: As in the platform file.
+        stiffness: Of the file, N m/rad.
+        own: Of the members, without the weight.
+        weight: m g z of the centre of mass, N m.
+    """
+    if Path(declared.file).suffix.lower() == ".out" or declared.kind != "wamit" or not own[3, 3]:
+        return []
+    missed = {"included": abs(stiffness[3, 3] + weight - own[3, 3]), "excluded": abs(stiffness[3, 3] - own[3, 3])}
+    taken = declared.weight or "included"
+    other = "excluded" if taken == "included" else "included"
+    if missed[taken] < CLEARLY * missed[other] or missed[taken] < 0.05 * abs(own[3, 3]):
+        return []
+    return [f"{declared.file}: C44 {stiffness[3, 3]:.4g} N m/rad fits the members with the weight {other}, not {taken}: see "
+            "`hydrostatics.weight`"]  # fmt: skip
+
+
+def coupling_of(stiffness: np.ndarray, own: np.ndarray) -> tuple[HydrostaticCoupling, ...]:
+    """The couplings of a file's stiffness beyond those that members have (`own`); none where there are none."""
+    matrix = np.zeros((6, 6))
+    for name in COUPLED:
+        i, j = int(name[1]) - 1, int(name[2]) - 1
+        matrix[i, j] = matrix[j, i] = stiffness[i, j] - own[i, j]
+    size = np.sqrt(np.abs(np.diag(stiffness)))
+    matrix[np.abs(matrix) <= 1e-9 * np.outer(size, size)] = 0.0
+    return (HydrostaticCoupling(stiffness=jnp.asarray(matrix), values={}),) if matrix.any() else ()

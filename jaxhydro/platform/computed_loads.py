@@ -1,0 +1,150 @@
+"""Radiation, excitation and drift of other programs, read from the files that a platform file names and made into loads."""
+
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from jaxhydro.errors import InputError, Problem
+from jaxhydro.interop.capytaine_radiation import read_capytaine
+from jaxhydro.interop.capytaine_waves import read_capytaine_excitation
+from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
+from jaxhydro.interop.retardation import Realisation, realise
+from jaxhydro.interop.wamit_drift import read_transfer
+from jaxhydro.interop.wamit_excitation import read_excitation
+from jaxhydro.interop.wamit_radiation import read_wamit
+from jaxhydro.loads import AbstractLoad, Buoyancy, ComputedExcitation, ComputedRadiation, DriftTransfer
+from jaxhydro.platform import schema as schema
+from jaxhydro.platform.computed_hydrostatics import hydrostatic_stiffness
+from jaxhydro.platform.table_checks import (
+    Column,
+    LongWaves,
+    asymmetry,
+    drift_column,
+    excitation_column,
+    radiation_column,
+    same_columns,
+)
+from jaxhydro.remarks import Remark, as_warnings
+
+POOR = 0.25  # misfit from which on a state space is none of the coefficients
+
+
+class Realised(NamedTuple):
+    """A file's radiation: its coefficients, a state space for them, and what is to be known of it."""
+
+    coefficients: RadiationCoefficients
+    space: Realisation
+    remarks: tuple[Remark, ...]
+
+
+def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRadiation, Realised]:
+    """The radiation that a platform file declares, and what it was made from.
+
+    Raises:
+        InputError: Where the file is wrong, or no state space of the declared order comes near its coefficients.
+    """
+    file = Path(declared.file)
+    stamp = file.stat().st_mtime_ns if file.is_file() else 0
+    found = _realised(declared, stamp, density)
+    share, highest = float(declared.use == "load"), float(found.coefficients.omega[-1])
+    space = found.space
+    return ComputedRadiation.of(space.rates, space.drive, space.output, share, highest), found
+
+
+@lru_cache(maxsize=8)
+def _realised(declared: schema.Radiation, stamp: int, density: float) -> Realised:
+    source, notes = declared.file, list[str]()
+    if declared.kind == "wamit":
+        assert not isinstance(declared.body, str)
+        found = read_wamit(source, density, declared.length or 1.0, declared.by, declared.body)
+    else:
+        assert not isinstance(declared.body, int)
+        found = read_capytaine(source, body=declared.body, density=density, notes=notes)
+    try:
+        space = realise(found, declared.tolerance, declared.order)
+    except ValueError as error:
+        expected = "radiation damping that takes energy, and that a state space can follow"
+        raise InputError(source, [Problem("", expected, str(error), _column(declared))]) from None
+    doubts = radiation_column(found, space, declared.by if declared.kind == "wamit" else None, source)
+    if space.misfit > POOR:
+        wrong = f"a misfit of {100 * space.misfit:.0f} % with {space.order}"
+        hint = doubts[0].removeprefix(f"{source}: ") if doubts else _column(declared)
+        raise InputError(source, [Problem("radiation.order", "enough states to follow the coefficients", wrong, hint)])
+    doubts += asymmetry(found, source)
+    return Realised(found, space, (*as_warnings(doubts), *map(Remark, notes)))
+
+
+def _column(declared: schema.Radiation) -> str:
+    """A hint for a file that makes no sense: what its first column was taken to be."""
+    return f"Its first column is read by {declared.by}: see `by`." if declared.kind == "wamit" else ""
+
+
+def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[ComputedExcitation, tuple[Remark, ...]]:
+    """The excitation that a platform file declares, and what is to be known of it. Raises InputError."""
+    notes, doubts = list[str](), list[str]()
+    if declared.kind == "wamit":
+        assert not isinstance(declared.body, str)
+        table = read_excitation(
+            declared.file, water.density, water.gravity, length=declared.length or 1.0, heading=declared.heading,
+            by=declared.by, body=declared.body, warnings=doubts,
+        )  # fmt: skip
+        if declared.body is not None:
+            notes.append(f"{declared.file}: phases of body {declared.body} are those of waves at the file's own origin")
+    else:
+        assert not isinstance(declared.body, int)
+        table = read_capytaine_excitation(
+            declared.file, heading=declared.heading, body=declared.body, density=water.density, gravity=water.gravity,
+            depth=water.depth, notes=notes,
+        )  # fmt: skip
+    load = ComputedExcitation.of(table, share=float(declared.use == "load"))
+    return load, (*as_warnings(doubts), *map(Remark, notes))
+
+
+def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer, tuple[Remark, ...]]:
+    """The slow drift that a platform file declares, and what is to be known of it. Raises InputError."""
+    doubts: list[str] = []
+    transfer = read_transfer(
+        declared.file, water.density, water.gravity, length=declared.length, heading=declared.heading,
+        newman=declared.approximation == "newman", by=declared.by, body=declared.body, warnings=doubts,
+    )  # fmt: skip
+    return DriftTransfer.of(transfer, share=float(declared.use == "load")), as_warnings(doubts)
+
+
+def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[AbstractLoad], list[Remark]]:
+    """Loads of the radiation, excitation and drift that a platform file names, and what is to be known of them.
+
+    Args:
+        platform: The platform.
+        buoyancy: Its buoyancy, whose heave stiffness tells the force of long waves.
+
+    Raises:
+        InputError: Where a file is wrong.
+    """
+    water, loads, remarks = platform.water, list[AbstractLoad](), list[Remark]()
+    columns: list[Column] = []
+    if (radiates := platform.radiation) is not None:
+        radiation, realised = radiation_of(radiates, water.density)
+        loads.append(radiation)
+        remarks += realised.remarks
+        if radiates.kind == "wamit":
+            columns.append(Column(radiates.file, realised.coefficients.omega, radiates.by))
+    if (excites := platform.excitation) is not None:
+        excitation, said = excitation_of(excites, water)
+        loads.append(excitation)
+        remarks += said
+        if excites.kind == "wamit":
+            omega, force = (np.asarray(values) for values in (excitation.excitation.omega, excitation.excitation.force))
+            heave = hydrostatic_stiffness(buoyancy, water.density * water.gravity)[2, 2]
+            hull = LongWaves(float(heave), platform.rigid_body.combined()[0], water.depth, water.gravity)
+            remarks += as_warnings(excitation_column(omega, force, excites.by, excites.file, hull))
+            columns.append(Column(excites.file, omega, excites.by))
+    if (drifts := platform.drift) is not None:
+        drift, said = drift_of(drifts, water)
+        loads.append(drift)
+        table = drift.transfer
+        of_regular_waves = np.einsum("im,imk->ik", np.asarray(table.eigenvalue), np.abs(np.asarray(table.filters)) ** 2)
+        remarks += [*said, *as_warnings(drift_column(np.hypot(*of_regular_waves[:2]), drifts.by, drifts.file))]
+        columns.append(Column(drifts.file, np.asarray(table.omega), drifts.by))
+    return loads, [*remarks, *as_warnings(same_columns(columns))]

@@ -1,0 +1,43 @@
+"""Masses in a platform file that move with the hull in some directions only, checked. SI."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from jaxhydro.errors import Consistent, Flag, Positive, Problem, Text, Vector, shown
+
+
+def _as_list(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+class GuidedMass(Consistent):
+    """A mass, kg, that follows a `point` of the hull, m from the reference point, in the directions that it `moves` in.
+
+    These are the earth's axes x, y, z. Guides or rails hold it in the others and carry its weight. With `weight: true` the
+    platform carries that (`jaxhydro.loads.GuidedMasses`)."""
+
+    name: Text
+    mass: Positive
+    point: Vector
+    moves: Annotated[tuple[Literal["x", "y", "z"], ...], Field(min_length=1), BeforeValidator(_as_list)]
+    weight: Flag = False
+
+    def _faults(self) -> Iterator[Problem]:
+        if len(set(self.moves)) < len(self.moves):
+            yield Problem("moves", "each direction once", shown(list(self.moves)))
+        if self.weight and "z" not in self.moves:
+            yield Problem("weight", "false for a mass that does not move along z", "true", "Its guides carry the weight.")
+
+    def axes(self) -> tuple[int, ...]:
+        """Numbers from 0 of the directions that it moves in."""
+        return tuple("xyz".index(axis) for axis in self.moves)
+
+
+def twice_named(masses: tuple[GuidedMass, ...]) -> Iterator[Problem]:
+    """Masses of a name that one before them has."""
+    names = [mass.name for mass in masses]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            yield Problem(f"guided_masses[{i}].name", "a name of its own", f"{shown(name)} again")

@@ -1,0 +1,408 @@
+"""The platform file: what `platform.yaml` may hold, checked, and as plain values. SI; headings in degrees."""
+
+from collections.abc import Iterator
+from importlib import resources
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, ClassVar, Generic, Literal, Self, TypeVar
+
+import numpy as np
+from jaxtyping import Float
+from pydantic import AfterValidator, Discriminator, Field, RootModel, Tag, model_validator
+
+from jaxhydro.environment import STANDARD_GRAVITY
+from jaxhydro.errors import (
+    Consistent,
+    Count,
+    Faults,
+    InputError,
+    NonNegative,
+    Number,
+    Positive,
+    Problem,
+    Schema,
+    Text,
+    Vector,
+    read_yaml,
+    shown,
+    suggest,
+    validate,
+)
+from jaxhydro.interop.wamit_tables import By, same_heading
+from jaxhydro.platform.body import Coefficients, Inertia, Member, Part, RigidBody
+from jaxhydro.platform.guided_mass_schema import GuidedMass, twice_named
+from jaxhydro.platform.shared_coefficients import owners, sharing_faults
+
+__all__ = ["Coefficients", "Inertia", "Member", "Part", "Platform", "RigidBody", "builtin_platforms", "load_platform"]
+
+Matrix6 = Float[np.ndarray, "6 6"]
+Exponent = Annotated[float, Field(strict=True, ge=-3, le=3)]
+
+
+class Water(Schema):
+    """Density, kg/m3; depth, m; gravity, m/s2."""
+
+    density: Positive
+    depth: Positive
+    gravity: Positive = STANDARD_GRAVITY
+
+
+def _key(letter: str, diagonal: bool = False) -> AfterValidator:
+    known = [f"{letter}{i}{j}" for i in range(1, 7) for j in range(1, 7) if i == j or not diagonal]
+
+    def check(key: str) -> str:
+        if key not in known:
+            kind = "diagonal entries" if diagonal else "entries"
+            raise Faults(Problem("", f"a key among the {kind} {known[0]} to {known[-1]}", shown(key)))
+        return key
+
+    return AfterValidator(check)
+
+
+Key = TypeVar("Key", bound=str)
+
+
+class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
+    """Entries of a 6 by 6 matrix by name, B15 in row 1 and column 5; those left out are zero."""
+
+    root: dict[Key, Number] = {}
+    dissipative: ClassVar[bool] = False
+
+    @model_validator(mode="after")
+    def _takes_energy(self) -> Self:
+        negative = [key for key, value in self.root.items() if self.dissipative and key[1] == key[2] and value < 0.0]
+        if negative:
+            raise Faults(*(Problem(key, "a number >= 0", shown(self.root[key])) for key in negative))
+        return self
+
+    def matrix(self) -> Matrix6:
+        """The matrix; where only one of ij and ji is given, the other is its mirror."""
+        matrix = np.zeros((6, 6))
+        named = {(int(key[1]) - 1, int(key[2]) - 1): value for key, value in self.root.items()}
+        for (i, j), value in named.items():
+            matrix[i, j] = value
+            matrix[j, i] = named.get((j, i), value)
+        return matrix
+
+
+class Damping(Entries[Key], Generic[Key], frozen=True):
+    """Entries of a damping matrix: none on the diagonal is negative."""
+
+    dissipative: ClassVar[bool] = True
+
+
+LinearDamping = Damping[Annotated[str, _key("B")]]  # N s/m, N s, N m s/rad
+QuadraticDamping = Damping[Annotated[str, _key("B", diagonal=True)]]  # N s2/m2, N m s2/rad2
+AddedMass = Entries[Annotated[str, _key("A")]]  # kg, kg m, kg m2
+Stiffness = Entries[Annotated[str, _key("C")]]  # N/m, N/rad, N m/rad
+
+
+class NoMooring(Schema):
+    """Nothing holds the platform."""
+
+    kind: Literal["none"] = "none"
+
+
+class Line(Schema):
+    """A straight massless spring from anchor to fairlead, m: stiffness, N/m, and the pretension, N, it has at the
+    reference position; or axial stiffness EA, N, and unstretched length, m."""
+
+    anchor: Vector
+    fairlead: Vector
+    stiffness: Positive | None = None
+    pretension: NonNegative | None = None
+    axial_stiffness: Positive | None = None
+    unstretched_length: Positive | None = None
+
+    def spring(self, length_at_rest: float | None = None) -> tuple[float, float]:
+        """Stiffness, N/m, and unstretched length, m. The pretension holds at `length_at_rest`, m: anchor to fairlead
+        at the reference position if left out."""
+        if self.axial_stiffness is not None and self.unstretched_length is not None:
+            return self.axial_stiffness / self.unstretched_length, self.unstretched_length
+        assert self.stiffness is not None and self.pretension is not None
+        if length_at_rest is None:
+            length_at_rest = float(np.linalg.norm(np.subtract(self.anchor, self.fairlead)))
+        return self.stiffness, length_at_rest - self.pretension / self.stiffness
+
+    def slack(self) -> tuple[float, float] | None:
+        """Distance from anchor to fairlead at the reference position and unstretched length, m, if the line is slack there."""
+        distance, unstretched = float(np.linalg.norm(np.subtract(self.anchor, self.fairlead))), self.spring()[1]
+        return (distance, unstretched) if unstretched > distance * (1 + 1e-9) else None
+
+    @model_validator(mode="after")
+    def _one_spring(self) -> Self:
+        if self.anchor == self.fairlead:
+            raise Faults(Problem("fairlead", "a point that is not the anchor", shown(self.fairlead)))
+        pairs = (("stiffness", "pretension"), ("axial_stiffness", "unstretched_length"))
+        given = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
+        either = "either stiffness and pretension, or axial_stiffness and unstretched_length"
+        if all(given):
+            raise Faults(Problem("", either, ", ".join(given[0] + given[1])))
+        if not any(given):
+            raise Faults(Problem("", either, "neither"))
+        for pair, got in zip(pairs, given):
+            if len(got) == 1:
+                lacking = pair[1 - pair.index(got[0])]
+                raise Faults(Problem(lacking, f"a number, since {got[0]} is given", "nothing"))
+        return self
+
+
+class LinearSprings(Schema):
+    """Straight lines with their geometric law."""
+
+    kind: Literal["linear_springs"]
+    lines: Annotated[tuple[Line, ...], Field(min_length=1)]
+
+    def slackness(self) -> str:
+        """What is to be said of lines that are slack at the reference position; nothing where none is."""
+        slack = [(i, *found) for i, line in enumerate(self.lines, 1) if (found := line.slack()) is not None]
+        if not slack:
+            return ""
+        shown = [f"line {i}: {distance:.4g} m to its anchor, {length:.4g} m unstretched" for i, distance, length in slack[:6]]
+        shown += [f"and {len(slack) - 6} more"] if len(slack) > 6 else []
+        every = len(slack) == len(self.lines)
+        some = f"{len(slack)} of {len(self.lines)} lines are" if len(slack) > 1 else "one line is"
+        which = "every line is" if every else some
+        return (
+            f"mooring.lines: {which} slack at the reference position ({'; '.join(shown)})"
+            + (", so nothing holds the platform there. " if every else ", and pulls nothing there. ")
+            + "Lines here are straight, weightless springs: for a catenary take kind: stiffness_matrix, with its stiffness and "
+            "preload (its pull) at the reference position."
+        )
+
+
+Row = tuple[Number, Number, Number, Number, Number, Number]
+Square = Annotated[
+    Annotated[Stiffness, Tag("entries")] | Annotated[tuple[Row, Row, Row, Row, Row, Row], Tag("rows")],
+    Discriminator(lambda value: "entries" if isinstance(value, dict | Entries) else "rows"),
+]
+
+
+class StiffnessMatrix(Schema):
+    """A mooring about the reference position: force on the platform = preload - stiffness @ motion."""
+
+    kind: Literal["stiffness_matrix"]
+    stiffness: Square = Field(description="6 rows of 6 numbers, or entries C11 to C66")
+    preload: Row = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def matrix(self) -> Matrix6:
+        """The stiffness, N/m, N/rad, N m/rad."""
+        return self.stiffness.matrix() if isinstance(self.stiffness, Entries) else np.array(self.stiffness)
+
+
+Body = Annotated[Count | Text, Field(description="a body's name, or in WAMIT's files its number from 1")]
+
+
+class OfFile(Schema):
+    """What another program computed, in a `file` beside the platform file: WAMIT's or Capytaine's `format`, and which `body`
+    of several it is. WAMIT's files are of ULEN `length` (m), and `by` says what their first column is."""
+
+    endings: ClassVar[dict[str, str]]  # of files, and the format that each means
+    wamit_only: ClassVar[tuple[str, ...]] = ("length", "by")
+
+    file: Text
+    format: Literal["wamit", "capytaine"] | None = None
+    length: Positive | None = None
+    body: Body | None = None
+
+    @property
+    def kind(self) -> str | None:
+        """The format, or that of the file's ending."""
+        return self.format or self.endings.get(Path(self.file).suffix.lower())
+
+    @model_validator(mode="after")
+    def _of_a_kind(self) -> Self:
+        if not self.file:
+            return self
+        if self.kind is None:
+            endings = list(self.endings)
+            said = f"neither {endings[0]} nor {endings[1]}" if len(endings) == 2 else f"none of {', '.join(endings)}"
+            raise Faults(Problem("format", f"wamit or capytaine, as the file's ending is {said}", "nothing"))
+        if self.kind == "capytaine":
+            for key in self.wamit_only:
+                if key in self.model_fields_set and (value := getattr(self, key)) is not None:
+                    what = "coefficients have dimensions" if key == "length" else "files say it"
+                    raise Faults(Problem(key, f"no {key}, as Capytaine's {what}", shown(value)))
+        if self.body is not None and isinstance(self.body, int) != (self.kind == "wamit"):
+            expected = "a number, as WAMIT's files have no names" if self.kind == "wamit" else "a body's name in quotes"
+            raise Faults(Problem("body", expected, shown(self.body)))
+        return self
+
+
+class Hydrostatics(OfFile):
+    """What replaces the values worked out from members and mass: m3, N/m, N m/rad (`_buoyancy`: without the weight). What is
+    not given is taken from the `file`, where there is one. `weight`: whether a .hst file's C44 and C55 include it."""
+
+    endings = {".hst": "wamit", ".out": "wamit", ".nc": "capytaine"}
+    wamit_only = ("length", "weight")
+
+    file: Literal[""] | Text = ""
+    displaced_volume: Positive | None = None
+    C33: NonNegative | None = None
+    C44: Number | None = None
+    C55: Number | None = None
+    C44_buoyancy: Number | None = None
+    C55_buoyancy: Number | None = None
+    weight: Literal["included", "excluded"] | None = None
+
+    @model_validator(mode="after")
+    def _said_once(self) -> Self:
+        twice = [key for key in ("C44", "C55") if None not in (getattr(self, key), getattr(self, f"{key}_buoyancy"))]
+        if twice:
+            raise Faults(*(Problem(key, f"either {key} or {key}_buoyancy", "both") for key in twice))
+        alone = [key for key in ("format", "length", "body", "weight") if getattr(self, key) is not None and not self.file]
+        if alone:
+            raise Faults(*(Problem(key, "a `file` with it", "none") for key in alone))
+        if self.weight is not None and Path(self.file).suffix.lower() == ".out":
+            raise Faults(Problem("weight", "no weight, as an .out file says where its centre of mass is", shown(self.weight)))
+        return self
+
+
+class Radiation(OfFile):
+    """Radiation damping computed by another program: WAMIT's `.1` or Capytaine's `.nc`, followed to `tolerance` by a state
+    space of at most `order` states. `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+
+    endings = {".1": "wamit", ".nc": "capytaine"}
+
+    by: By = "period"
+    tolerance: Annotated[float, Field(strict=True, gt=0, lt=1)] = 0.01
+    order: Annotated[int, Field(strict=True, ge=2, le=200)] = 40
+    use: Literal["load", "candidate"] = "load"
+
+
+class Drift(Schema):
+    """Difference-frequency second-order forces computed by another program: `file`, beside the platform file, as WAMIT's
+    `.12d` of ULEN `length` (m), for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation.
+    `by` says what its first two columns are. `use`: part of the model, or a candidate that `diagnose` may find to be
+    missing."""
+
+    file: Text
+    length: Positive = 1.0
+    by: By = "period"
+    body: Count | None = None
+    heading: Number = 0.0
+    approximation: Literal["full", "newman"] = "full"
+    use: Literal["load", "candidate"] = "load"
+
+
+class Excitation(OfFile):
+    """First-order wave forces computed by another program, in place of the strips': WAMIT's `.3` or Capytaine's `.nc`, for
+    waves of a `heading` (deg). `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+
+    endings = {".3": "wamit", ".nc": "capytaine"}
+
+    by: By = "period"
+    heading: Number = 0.0
+    use: Literal["load", "candidate"] = "load"
+
+
+BESIDE = ("hydrostatics", "radiation", "excitation", "drift")  # keys that may name a file
+OF_WAVES = ("excitation", "drift")  # ... that is of waves of one heading
+
+
+class ReferenceSea(Schema):
+    """The sea state in which coefficients are as declared: m, s."""
+
+    significant_height: Positive
+    peak_period: Positive
+
+
+class Exponents(Schema):
+    """Powers of significant height and peak period, each over the reference's, that multiply a coefficient."""
+
+    significant_height: Exponent | None = None
+    peak_period: Exponent | None = None
+
+
+class SeaStateLaws(Schema):
+    """Coefficients by label, such as column.Cd_t, that depend on the sea state (`jaxhydro.loads.SeaStateLaw`)."""
+
+    reference: ReferenceSea
+    exponents: dict[Text, Exponents]
+
+
+class Platform(Consistent):
+    """A platform file. `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at` and `centripetal` choose
+    between forms of the strip loads (see the loads and `Model`)."""
+
+    name: Text
+    water: Water
+    rigid_body: RigidBody
+    guided_masses: tuple[GuidedMass, ...] = ()
+    members: tuple[Member, ...] = ()
+    coefficients: dict[Text, Coefficients] = {}
+    linear_damping: LinearDamping = LinearDamping()
+    quadratic_damping: QuadraticDamping = QuadraticDamping()
+    added_mass: AddedMass = AddedMass()
+    stiffness: Stiffness = Stiffness()
+    mooring: NoMooring | LinearSprings | StiffnessMatrix = Field(
+        default=NoMooring(),
+        discriminator="kind",
+        description="a mapping with `kind`: none, linear_springs or stiffness_matrix",
+    )
+    hydrostatics: Hydrostatics = Hydrostatics()
+    radiation: Radiation | None = None
+    excitation: Excitation | None = None
+    drift: Drift | None = None
+    wetting: Literal["mean", "instantaneous"] = "instantaneous"
+    diffraction: Literal["maccamy_fuchs", "ramp", "none"] = "maccamy_fuchs"
+    directions: Literal["body", "earth"] = "body"
+    waves_at: Literal["displaced", "mean"] = "displaced"
+    centripetal: bool = True
+    drag_speed: Literal["vector", "component"] = "vector"
+    sea_state_laws: SeaStateLaws | None = None
+
+    def files(self) -> dict[str, str]:
+        """Files that the platform file names, by their key."""
+        return {key: one.file for key in BESIDE if (one := getattr(self, key)) is not None and one.file}
+
+    def of_other_waves(self, heading: float) -> tuple[str, float] | None:
+        """Key and heading (deg) of forces that were computed for waves of another heading than this."""
+        tables = {f"{key}.heading": one.heading for key in OF_WAVES if (one := getattr(self, key)) is not None}
+        return next(((key, own) for key, own in tables.items() if not same_heading(own, heading)), None)
+
+    def _faults(self) -> Iterator[Problem]:
+        bed = -self.water.depth
+        for i, member in enumerate(self.members):
+            for end in ("rA", "rB"):
+                if (z := getattr(member, end)[2]) < bed:
+                    yield Problem(f"members[{i}].{end}", f"a point above the sea bed, z = {bed:g} m", f"z = {z:g} m")
+        yield from twice_named(self.guided_masses)
+        groups = {member.group for member in self.members}
+        yield from sharing_faults(self.coefficients, groups)
+        missing = sorted(groups - set(self.coefficients))
+        unused = [g for g in self.coefficients if g not in groups | owners(self.coefficients)]
+        for group in missing:
+            i = next(i for i, member in enumerate(self.members) if member.group == group)
+            known, hint = ", ".join(self.coefficients) or "none", suggest(group, self.coefficients)
+            yield Problem(f"members[{i}].group", f"a group of `coefficients` ({known})", shown(group), hint)
+        for group in unused:
+            if suggest(group, missing) or len(missing) == len(unused) == 1:
+                continue  # one group under two names has been told above
+            known, hint = ", ".join(sorted(groups)) or "none", suggest(group, groups)
+            yield Problem(f"coefficients.{group}", f"a group that members belong to ({known})", shown(group), hint)
+
+
+def builtin_platforms() -> tuple[str, ...]:
+    """Names of the platforms that come with the package."""
+    folder = resources.files("jaxhydro") / "platforms"
+    return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
+
+
+def load_platform(path_or_name: str | PathLike[str]) -> Platform:
+    """The platform in a YAML file, or the built-in one of that name; `InputError` with all that is wrong in it."""
+    name, known = str(path_or_name), builtin_platforms()
+    is_path = not isinstance(path_or_name, str) or "/" in name or name.endswith((".yaml", ".yml"))
+    if not is_path and name.lower() in known:
+        with resources.as_file(resources.files("jaxhydro") / "platforms" / f"{name.lower()}.yaml") as path:
+            return validate(Platform, read_yaml(path, "platform"), f"{name} (built in)")
+    if not is_path and not Path(name).exists():
+        expected = f"a YAML file or a built-in platform ({', '.join(known)})"
+        raise InputError(name, [Problem("", expected, shown(name), suggest(name, known))])
+    platform = validate(Platform, read_yaml(path_or_name, "platform"), name)
+    folder = Path(path_or_name).absolute().parent
+    beside = {
+        key: getattr(platform, key).model_copy(update={"file": str(folder / getattr(platform, key).file)})
+        for key in platform.files()
+    }  # fmt: skip
+    return platform.model_copy(update=beside) if beside else platform

@@ -1,0 +1,102 @@
+"""The figures of a motion in an irregular sea: the whole record, a window of it, spectra."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from jaxhydro.analysis.sea_statistics import bands_of
+from jaxhydro.analysis.spectral import SEGMENT, power_spectrum
+from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, header, stack
+from jaxhydro.units import unit_of
+
+WINDOW = 200.0  # s, of which the waves can be told apart at half a page
+SHORTEST = 400.0  # s, of the segments of a spectrum
+TALL = 1.01  # inches of a panel
+DECADES = 4.5  # of a spectrum, under its largest value
+LOW_BAND, WAVE_BAND = "#e9d9bd", "#d5e6ea"
+Figure = Any
+
+
+def moving(channels: Mapping[str, np.ndarray]) -> list[str]:
+    """Names of what is not next to still; the first one at least."""
+    size = {name: float(np.ptp(values)) for name, values in channels.items()}
+    largest = {unit: max((size[n] for n in size if unit_of(n) == unit), default=0.0) for unit in ("m", "deg")}
+    return [name for name in channels if size[name] > max(1e-6, 1e-3 * largest[unit_of(name)])] or list(channels)[:1]
+
+
+def record_figure(time: np.ndarray, channels: Mapping[str, np.ndarray], start: float, title: str) -> Figure:
+    """All of the record; what statistics leave out, until `start` (s), is grey."""
+    names = moving(channels)
+    figure, axes = stack([TALL] * len(names))
+    artists = {}
+    for ax, name in zip(axes, names, strict=True):
+        ax.plot(time, channels[name], color=_colour(name), lw=0.35)
+        ax.set_ylabel(f"{name.capitalize()} ({unit_of(name)})")
+        if start > time[0]:
+            artists["left out of statistics"] = ax.axvspan(time[0], start, color="#dfe2e7", lw=0, zorder=0.5)
+    axes[-1].set_xlabel("Time (s)")
+    header(figure, title, artists)
+    return figure
+
+
+def window_figure(
+    time: np.ndarray, channels: Mapping[str, np.ndarray], first_order: np.ndarray | None, start: float, title: str
+) -> Figure:
+    """The `WINDOW` about the highest crest after `start` (s), with the wave's second order where its first is given (m)."""
+    names = moving(channels)
+    later = time >= start
+    crest = float(time[later][np.argmax(channels["wave"][later])])
+    width = min(WINDOW, time[-1] - start)
+    begin = min(max(crest - 0.5 * width, start), time[-1] - width)
+    seen = (time >= begin) & (time <= begin + width)
+    figure, axes = stack([TALL] * len(names))
+    artists = {}
+    for ax, name in zip(axes, names, strict=True):
+        (line,) = ax.plot(time[seen], channels[name][seen], color=_colour(name), lw=0.9)
+        ax.set_ylabel(f"{name.capitalize()} ({unit_of(name)})")
+        if name == "wave" and first_order is not None:
+            (second,) = ax.plot(time[seen], (channels[name] - first_order)[seen], color=MEASURED, lw=0.8)
+            artists = {"wave": line, "its second order": second}
+    axes[-1].set_xlabel("Time (s)")
+    header(figure, f"{title}, about the highest crest", artists)
+    return figure
+
+
+def spectra_figure(
+    time: np.ndarray,
+    channels: Mapping[str, np.ndarray],
+    peak_period: float | None,
+    highest: float,
+    target: Callable[[np.ndarray], np.ndarray] | None,
+    title: str,
+) -> Figure:
+    """Densities over frequency up to `highest` (Hz), bands shaded; `target` (Hz -> m2/Hz) is the spectrum asked for."""
+    names = moving(channels)
+    figure, axes = stack([0.95] * len(names))
+    artists: dict[str, Any] = {}
+    for ax, name in zip(axes, names, strict=True):
+        spectrum = power_spectrum(time, channels[name], min(SEGMENT, max(0.5 * (time[-1] - time[0]), SHORTEST)))
+        seen = (spectrum.frequency <= highest) & (spectrum.frequency > 0)
+        f, density = spectrum.frequency[seen], spectrum.density[seen]
+        for band, (low, high) in bands_of(name, peak_period).items():
+            label, colour = ("low frequency", LOW_BAND) if band == "low_frequency" else ("wave frequency", WAVE_BAND)
+            artists[label] = ax.axvspan(low, high, color=colour, lw=0, zorder=0.5)
+        if name == "wave" and target is not None:
+            (artists["spectrum asked for"],) = ax.plot(f, np.maximum(target(f), 1e-300), color=GREY, lw=0.9, ls=(0, (3, 1.2)))
+        ax.plot(f, density, color=_colour(name), lw=0.7)
+        ax.set_yscale("log")
+        top = max(float(density.max()), 1e-30)
+        ax.set_ylim(top * 10**-DECADES, top * 2.5)
+        ax.set_yticks([10.0**n for n in range(-12, 9) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
+        ax.minorticks_off()
+        ax.set_ylabel(f"{name.capitalize()}\n({unit_of(name)}²/Hz)")
+        ax.set_xlim(0, highest)
+    axes[-1].set_xlabel("Frequency (Hz)")
+    order = ("low frequency", "wave frequency", "spectrum asked for")
+    header(figure, title, {name: artists[name] for name in order if name in artists}, columns=2)
+    return figure
+
+
+def _colour(name: str) -> str:
+    return WAVE if name == "wave" else SIMULATED

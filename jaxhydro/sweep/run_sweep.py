@@ -1,0 +1,201 @@
+"""A sweep from its file to its results: made or resumed, run by run, with what failed recorded."""
+
+import json
+import time as clock
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from hashlib import sha256
+from importlib import resources
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from jaxhydro.cli.calibrated_model import calibration_file
+from jaxhydro.dynamics.statics import stable_modes
+from jaxhydro.errors import InputError, Problem, read_yaml
+from jaxhydro.files import check_folder
+from jaxhydro.platform.schema import builtin_platforms, load_platform
+from jaxhydro.remarks import Remark
+from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of
+from jaxhydro.sweep.cases import named, plan_of
+from jaxhydro.sweep.local import simulated
+from jaxhydro.sweep.resources import Chosen, chosen, supports_of
+from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, alone, check_same, create, discard, open_results
+from jaxhydro.sweep.sweep_file import load_sweep
+from jaxhydro.sweep.sweep_remarks import impossible, notes, outside, shares_in_band
+from jaxhydro.sweep.sweep_schema import Sweep
+from jaxhydro.sweep.worker import Found
+from jaxhydro.sweep.write_sweep import summary_of, write_outputs
+
+
+class Prepared(NamedTuple):
+    """A sweep that can be stored and run: its file, the platform and the calibration as they were asked for, the share of every
+    case's spectrum in the band, what is to be known of the sweep (`notes`) and of its tables (`remarks`)."""
+
+    inputs: Inputs
+    setup: Setup
+    source: str
+    platform: str
+    calibration: str | None
+    shares: Float[np.ndarray, " c"]
+    notes: list[str]
+    remarks: tuple[Remark, ...] = ()
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What sweep.json says first."""
+        about: dict[str, Any] = {"sweep": self.source, "platform": Path(self.platform).stem}
+        notes = [one.text for one in sorted(self.remarks, key=lambda one: not one.warning)] + self.notes
+        if (used := self.setup.calibrated) is None:
+            return about | {"notes": notes}
+        reference = {} if used.reference is None else {"sea_state_reference": used.reference._asdict()}
+        strips = {} if used.strips is None else {"strips": used.strips.model_dump()}
+        about["calibration"] = {"file": self.calibration, "values": used.values} | reference | strips
+        return about | {"notes": notes + used.warnings}
+
+
+class Progress(NamedTuple):
+    """Runs done, failed, and to be done in all; simulated seconds per second of this session."""
+
+    done: int
+    failed: int
+    total: int
+    speed: float
+
+
+class Ran(NamedTuple):
+    """What a session did: runs simulated, of them failed, seconds it took, seconds simulated."""
+
+    runs: int
+    failed: int
+    seconds: float
+    simulated: float
+
+
+def prepared(sweep: Sweep, source: str) -> Prepared:
+    """Read what the sweep names, and build the model: all mistakes but those of single seas show here. `source` names it in
+    errors.
+
+    Raises InputError, EquilibriumError.
+    """
+    try:
+        pace = pace_of_platform(sweep.platform)
+    except InputError as error:
+        raise InputError(f"{source}: platform: {error.source}", error.problems) from None
+    plan, known = plan_of(sweep, source, pace)
+    calibration = None if sweep.calibration is None else calibration_file(sweep.calibration)
+    try:
+        setup = setup_of(plan, sweep.platform, calibration)
+    except InputError as error:
+        key = "calibration" if error.source == str(calibration) else "platform"
+        raise InputError(f"{source}: {key}: {error.source}", error.problems) from None
+    stable_modes(setup.model)
+    # as chosen for this platform: workers need not choose again
+    setup = setup._replace(plan=(plan := replace(plan, step=setup.limit)))
+    failing = impossible(setup)
+    if all(case.state in failing for case in plan.cases):
+        state, reason = next(iter(failing.items()))
+        raise InputError(source, [Problem("scatter", "a sea state that can be", f"none: {named(state)}: {reason}")])
+    supports_of(setup, source)
+    shares = shares_in_band(plan)
+    known += notes(plan, setup.model, shares, failing)
+    remarks = (*setup.model.remarks, *outside(plan, setup.model, failing))
+    text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
+    inputs = Inputs(plan, _platform_text(sweep.platform), text)
+    return Prepared(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)
+
+
+def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
+    """Make the folder's store where there is none, or anew; whether there are runs of it already.
+
+    Raises InputError for a store of other inputs.
+    """
+    if restart:
+        discard(folder)
+    if (folder / RESULTS).is_dir():
+        check_same(folder, made.inputs)
+        return True
+    create(folder, made.inputs, made.setup, made.shares)
+    return False
+
+
+def to_do(folder: Path, retry_failed: bool = False) -> list[int]:
+    """Numbers of the runs to be done, in order."""
+    wanted = (TO_DO, FAILED) if retry_failed else (TO_DO,)
+    return [number for number, status in enumerate(Store(folder).status()) if status in wanted]
+
+
+def run_all(
+    folder: Path, made: Prepared, numbers: list[int], how: Chosen, scheduler: str | None = None,
+    progress: Callable[[Progress], None] = lambda now: None,
+) -> Ran:  # fmt: skip
+    """Simulate runs, each written as it is done."""
+    if how.devices:  # what is simulated at once has one heading
+        numbers = sorted(numbers, key=lambda number: made.inputs.plan.run(number).case.heading)
+    batches = [numbers[i : i + how.batch] for i in range(0, len(numbers), how.batch)]
+    before = Store(folder).status()
+    total, earlier = len(before), int((before == DONE).sum())
+    done = failed = 0
+    since = clock.perf_counter()
+    for found in _answers(folder, batches, how, scheduler):
+        done += sum(good for _, good in found)
+        failed += sum(not good for _, good in found)
+        speed = (done + failed) * made.inputs.plan.duration / (clock.perf_counter() - since)
+        progress(Progress(earlier + done, failed, total, speed))
+    return Ran(done + failed, failed, clock.perf_counter() - since, (done + failed) * made.inputs.plan.duration)
+
+
+def _answers(folder: Path, batches: list[list[int]], how: Chosen, scheduler: str | None) -> Iterator[Found]:
+    if scheduler is None:
+        return simulated(folder, batches, how.workers, how.devices)
+    from jaxhydro.sweep.cluster import simulated_there
+
+    return simulated_there(folder, batches, scheduler)
+
+
+def run_sweep(
+    sweep: Sweep | str | PathLike[str],
+    out: str | PathLike[str],
+    *,
+    workers: int | None = None,
+    batch: int | None = None,
+    restart: bool = False,
+    retry_failed: bool = False,
+    scheduler: str | None = None,
+    progress: Callable[[Progress], None] = lambda now: None,
+) -> xr.Dataset:
+    """Run a sweep, or what is left of it, and open its results, in the folder `out`, with all files of the command: see
+    docs/guide/sweeps.md.
+
+    `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart`
+    forgets the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a
+    dask.distributed one. Raises InputError for a sweep that cannot be, or a folder with runs of another one; EquilibriumError.
+    """
+    source = "sweep" if isinstance(sweep, Sweep) else str(sweep)
+    made = prepared(sweep if isinstance(sweep, Sweep) else load_sweep(source), source)
+    folder = check_folder(out, "out")
+    with alone(folder):
+        opened(folder, made, restart)
+        if numbers := to_do(folder, retry_failed):
+            run_all(folder, made, numbers, chosen(made.setup, len(numbers), workers, batch), scheduler, progress)
+        data = open_results(folder)
+        write_outputs(folder, data, summary_of(data), made.about)
+    return data
+
+
+def _platform_text(asked: str) -> str:
+    name = asked.lower()
+    if name in builtin_platforms() and not Path(asked).is_file():
+        return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
+    platform, data = load_platform(asked), read_yaml(asked)
+    # a store is elsewhere, and has to find the files; JSON is YAML
+    beside = {key: data[key] | {"file": file} for key, file in platform.files().items()}
+    if not beside:
+        return Path(asked).read_text(encoding="utf-8-sig")
+    # a comment for each file, so that another file of the same name is another platform
+    contents = [f"# {one['file']}: sha256 {sha256(Path(one['file']).read_bytes()).hexdigest()}" for one in beside.values()]
+    return "\n".join([json.dumps(data | beside, indent=1), *contents, ""])

@@ -1,0 +1,115 @@
+"""A sweep read from its files: the YAML, and a scatter table in a CSV file, one sea state in a row."""
+
+import codecs
+import csv
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+from jaxhydro.errors import InputError, Problem, read_yaml, shown, suggest, validate
+from jaxhydro.sweep.sweep_schema import COLUMNS, SeaState, Sweep
+
+UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # of "Unicode text" of spreadsheets
+UNITS = {"hs": "m", "tp": "s"}  # that a header may state; probability may be in any
+LIMITS = {"hs": (0.0, "a number > 0"), "tp": (0.0, "a number > 0"), "probability": (-1e-300, "a number >= 0")}
+
+
+def load_sweep(path: str | Path) -> Sweep:
+    """The sweep in a YAML file, its paths and its scatter table resolved: those in it are relative to the file.
+
+    Raises InputError with all that is wrong in it, or with the first row of a scatter table that is.
+    """
+    path = Path(path)
+    sweep = validate(Sweep, read_yaml(path, "sweep"), str(path))
+    changed: dict[str, Any] = {}
+    if isinstance(sweep.scatter, str):
+        changed["scatter"] = read_scatter(path.parent / sweep.scatter, f"{path}: scatter")
+        if sweep.spectrum != "jonswap" and any(state.gamma is not None for state in changed["scatter"]):
+            raise InputError(str(path), [Problem("spectrum", "jonswap, for a table with gamma", sweep.spectrum)])
+    if (near := path.parent / sweep.platform).is_file():
+        changed["platform"] = str(near)
+    if sweep.calibration is not None:
+        changed["calibration"] = str(path.parent / sweep.calibration)
+    return sweep.model_copy(update=changed)
+
+
+def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
+    """Sea states in the order of the rows. `asked` names the key that names the file.
+
+    Raises InputError for a file that is not there, columns that are not known or lacking, and rows with what is no number.
+    """
+    try:
+        content = path.read_bytes()
+        text = content.decode("utf-16" if content.startswith(UTF_16) else "utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, and there is none")]) from None
+    except UnicodeDecodeError:
+        raise InputError(asked, [Problem("", "a CSV file in UTF-8", f"{str(path)!r}, which is in another encoding")]) from None
+    except (OSError, ValueError) as error:
+        said = str(getattr(error, "strerror", None) or error)
+        raise InputError(asked, [Problem("", "a CSV file", f"{str(path)!r}, which cannot be read ({said})")]) from None
+    # as blank lines, so that lines keep their numbers: comments, and what spreadsheets say of the delimiter
+    lines = ["" if re.match(r"\s*#|\ufeff?sep=.\s*$", line, re.IGNORECASE) else line for line in text.splitlines()]
+    head = next(filter(str.strip, lines), "")
+    delimiter = next((mark for mark in ";\t" if mark in head), ",")
+    read = enumerate(csv.reader(lines, delimiter=delimiter), 1)
+    rows = [(number, row) for number, row in read if any(cell.strip() for cell in row)]
+    commas = delimiter != "," and any("," in cell for _, row in rows[1:] for cell in row)  # decimal ones
+    if not rows:
+        raise InputError(str(path), [Problem("", f"a header {','.join(COLUMNS[:3])} and rows", "an empty file")])
+    while not any(row[-1].strip() for _, row in rows) and len({len(row) for _, row in rows}) == 1:
+        rows = [(number, row[:-1]) for number, row in rows]  # what a delimiter at the end of all lines makes
+    where, heads = f"line {rows[0][0]}", [cell.strip() for cell in rows[0][1]]
+    names = [_column(head) for head in heads]
+    problems = []
+    for head, name in zip(heads, names):
+        if name not in COLUMNS or names.count(name) > 1:
+            found = shown(head) if name not in COLUMNS else f"{name} twice"
+            units = "Hs in m, Tp in s" if re.match(r"(hs|tp)\b", name) else ""
+            hint = units or suggest(name, COLUMNS)
+            problems.append(Problem(where, f"columns among {', '.join(COLUMNS)}", found, hint))
+    missing = [name for name in COLUMNS[:3] if name not in names]
+    if missing and not problems:
+        problems.append(Problem(where, f"a column {missing[0]}", ", ".join(heads)))
+    if problems:
+        raise InputError(str(path), dict.fromkeys(problems))
+    states = []
+    for number, row in rows[1:]:
+        if len(row) != len(names):
+            problems.append(Problem(f"line {number}", f"{len(names)} cells", str(len(row))))
+            continue
+        values = {}
+        for head, name, cell in zip(heads, names, row):
+            if name == "gamma" and not cell.strip():
+                continue
+            if commas and "." in cell:  # of thousands, perhaps
+                expected = "a number with a decimal comma, as others in the file, and no point"
+                problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))
+                continue
+            value = _number(cell.replace(",", ".") if commas else cell)
+            above, expected = LIMITS.get(name, (-math.inf, "a number from 1 to 7"))
+            if not value > above or (name == "gamma" and not 1 <= value <= 7):
+                problems.append(Problem(f"line {number}, column {head}", expected, shown(cell.strip())))
+            values[name] = value
+        if not problems:
+            states.append(SeaState(**values))
+    if problems:
+        raise InputError(str(path), problems)
+    if not states:
+        raise InputError(str(path), [Problem("", "one row or more under the header", "none")])
+    return tuple(states)
+
+
+def _column(head: str) -> str:
+    """A header without its case and its unit, `Hs (m)` or `Tp [s]`, where that is the right one."""
+    name, unit = re.fullmatch(r"(.*?)\s*(?:[(\[](.*?)[)\]])?", head.lower(), re.DOTALL).groups()  # type: ignore[union-attr]
+    return name if unit is None or unit.strip() == UNITS.get(name, unit.strip()) else head.lower()
+
+
+def _number(cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        return math.nan
+    return value if math.isfinite(value) else math.nan

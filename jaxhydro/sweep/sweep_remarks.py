@@ -1,0 +1,117 @@
+"""What is to be known of a sweep before it runs: what `jaxhydro simulate` notes of one sea, of all of them."""
+
+from collections.abc import Iterator
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.requested_sea import CUT, usual_cutoff
+from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
+from jaxhydro.interrupts import stop_if_asked
+from jaxhydro.remarks import Remark
+from jaxhydro.sweep.batch import Setup, reason_of, sea_of
+from jaxhydro.sweep.cases import Plan, Run, State, named
+from jaxhydro.waves.irregular import harmonics, repeat_period
+from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
+
+AT_ONCE = 256  # sea states whose spectra are in memory
+
+
+def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
+    """Of every case: share of its spectrum's variance, Hs^2/16, from `low` to `cutoff`, on the frequencies of its seas."""
+    step = 2 * np.pi / repeat_period(plan.duration)
+    found = {state: float(density.sum()) * step / (state[0] ** 2 / 16) for state, _, density in _spectra(plan)}
+    return np.array([found[case.state] for case in plan.cases])
+
+
+def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float[np.ndarray, " w"]]]:
+    """Every sea state, the frequencies (rad/s) of its seeds in the band and its spectrum there (m2 s/rad)."""
+    period = repeat_period(plan.duration)
+    first, last = harmonics(plan.low, plan.cutoff, period)
+    omega = jnp.asarray(2 * np.pi / period * np.arange(first, last + 1))
+    states = list(dict.fromkeys(case.state for case in plan.cases))
+    for i in range(0, len(states), AT_ONCE):
+        some = states[i : i + AT_ONCE]
+        hs, tp = (jnp.array([state[k] for state in some])[:, None] for k in (0, 1))
+        if plan.spectrum == "jonswap":
+            asked = jnp.array([[np.nan if state[2] is None else state[2]] for state in some])
+            density = jonswap(omega, hs, tp, jnp.where(jnp.isnan(asked), peak_enhancement(hs, tp), asked))
+        else:
+            density = pierson_moskowitz(omega, hs, tp)
+        yield from zip(some, [np.asarray(omega)] * len(some), np.asarray(density))
+
+
+def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Remark]:
+    """What is to be said of waves outside the model's tables, of the sea state in which most of the energy is."""
+    ranges = table_ranges(model)
+    if not ranges:
+        return
+    shares: dict[TableRange, dict[State, float]] = {one: {} for one in ranges}
+    for state, omega, density in _spectra(plan):
+        if state not in failing:
+            for one in ranges:
+                shares[one][state] = one.share_outside(omega, density)
+    for one, found in shares.items():
+        said = {state: remark for state, share in found.items() if (remark := one.remark(share, named(state))) is not None}
+        if said:
+            state = max(said, key=found.__getitem__)
+            others = f" (so or less {_in(len(said), len(found))})" if len(found) > 1 else ""
+            yield said[state]._replace(text=said[state].text + others)
+
+
+def impossible(setup: Setup) -> dict[State, str]:
+    """Why the runs of a sea state will fail, of those that cannot be: its waves break, or hardly any are in the band."""
+    found: dict[State, str] = {}
+    for state, case in {case.state: case for case in setup.plan.cases}.items():
+        stop_if_asked()
+        try:
+            sea_of(setup, Run(0, 0, 0, case, setup.plan.seeds[0]))
+        except Exception as error:  # whatever it is, it is this sea state's
+            found[state] = reason_of(error)
+    return found
+
+
+def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: dict[State, str]) -> Iterator[str]:
+    """One sentence each, of a plan with the `shares_in_band` of its cases and its `impossible` sea states."""
+    seas = {case.state: float(share) for case, share in zip(plan.cases, shares)}
+    if failing:
+        state, reason = next(iter(failing.items()))
+        life = sum(case.probability for case in plan.cases if case.state in failing)
+        more = f" and {len(failing) - 1} more" if len(failing) > 1 else ""
+        yield (
+            f"{len(failing)} of {len(seas)} sea states, {life:.2%} of the life, cannot be, and the runs fail: "
+            f"{named(state)} ({reason}){more}"
+        )
+    run = {state: share for state, share in seas.items() if state not in failing}
+    yield from _of_band(run, len(seas), plan)
+    yield from _of_height(run, len(seas), plan, model)
+    if model.cylinders is None and model.diffraction != "none":
+        yield "no member of this platform diffracts waves: 1 + Ca everywhere"
+
+
+def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
+    if cut := {state: share for state, share in seas.items() if share < CUT}:
+        state = min(cut, key=cut.__getitem__)
+        yield (
+            f"{_in(len(cut), total)} less than {CUT:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, and "
+            f"the rest is left out; least in {named(state)}, {cut[state]:.1%} or Hs {state[0] * cut[state] ** 0.5:.3g} m: see "
+            "low and cutoff"
+        )
+
+
+def _of_height(seas: dict[State, float], total: int, plan: Plan, model: Model) -> Iterator[str]:
+    gravity = float(model.environment.gravity)
+    usual = {state: usual_cutoff(state[0] * share**0.5, gravity) for state, share in seas.items()}
+    if plan.order == 2 and (high := {state: one for state, one in usual.items() if one < plan.cutoff}):
+        state = min(high, key=high.__getitem__)
+        yield (
+            f"second order is usually cut off at sqrt(2 g / Hs) (Stansberg): {_in(len(high), total)} below "
+            f"{plan.cutoff:g} Hz, at {high[state]:.2g} Hz in {named(state)}. Beyond, short waves bind more than they have: see "
+            "cutoff"
+        )
+
+
+def _in(some: int, total: int) -> str:
+    return "in the only sea state" if total == 1 else f"in {some} of {total} sea states"

@@ -1,0 +1,160 @@
+"""The sweep file: which seas, how often, for how long. Checked, and as plain values; s, Hz, m, degrees."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, Self, TypeAlias
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from jaxhydro.dynamics.requested_sea import LEAST, usual_transient
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
+from jaxhydro.waves.sea import Stretching
+
+Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
+Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
+Exponent = Annotated[float, Field(strict=True, ge=1, le=20)]
+Dof: TypeAlias = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
+LONGEST = 5_000_000  # samples of a run
+COLUMNS = ("hs", "tp", "probability", "gamma")  # of a scatter table
+
+
+class SeaState(Schema):
+    """Significant height, m, peak period, s, its share of the time in any unit, and JONSWAP's gamma (left out: IEC's)."""
+
+    hs: Positive
+    tp: Positive
+    probability: NonNegative = 1.0
+    gamma: Gamma | None = None
+
+
+class Grid(Schema):
+    """Every height, m, with every period, s; a row of shares for each height."""
+
+    hs: Annotated[tuple[Positive, ...], Field(min_length=1)]
+    tp: Annotated[tuple[Positive, ...], Field(min_length=1)]
+    probability: tuple[tuple[NonNegative, ...], ...] | None = None
+
+    @model_validator(mode="after")
+    def _is_full(self) -> Self:
+        if self.probability is not None:
+            if len(self.probability) != len(self.hs):
+                raise Faults(Problem("probability", f"{len(self.hs)} rows, one for each hs", f"{len(self.probability)}"))
+            for i, row in enumerate(self.probability):
+                if len(row) != len(self.tp):
+                    raise Faults(Problem(f"probability[{i}]", f"{len(self.tp)} numbers, one for each tp", f"{len(row)}"))
+        return self
+
+    def states(self) -> tuple[SeaState, ...]:
+        """Row by row."""
+        shares = self.probability or ((1.0,) * len(self.tp),) * len(self.hs)
+        return tuple(
+            SeaState(hs=hs, tp=tp, probability=share) for hs, row in zip(self.hs, shares) for tp, share in zip(self.tp, row)
+        )
+
+
+class Heading(Schema):
+    """Where waves run to, deg from x towards y, and its share of the time in any unit."""
+
+    heading: Number
+    probability: NonNegative = 1.0
+
+
+class Fatigue(Schema):
+    """Slopes m of S-N curves, and the frequency, Hz, of the even ranges that do the same damage."""
+
+    exponents: Annotated[tuple[Exponent, ...], Field(min_length=1)] = (3.0, 4.0, 5.0)
+    equivalent_frequency: Positive = 1.0
+
+
+def _form(value: Any) -> str:
+    return "file" if isinstance(value, str) else "grid" if isinstance(value, dict | Grid) else "rows"
+
+
+def _number_or(value: Any) -> str:
+    return "one" if isinstance(value, int | float) else "more"
+
+
+Rows: TypeAlias = Annotated[tuple[SeaState, ...], Field(min_length=1)]
+Scatter = Annotated[
+    Annotated[Text, Tag("file")] | Annotated[Rows, Tag("rows")] | Annotated[Grid, Tag("grid")], Discriminator(_form)
+]
+OneHeading = Annotated[Annotated[Number, Tag("one")] | Annotated[Heading, Tag("more")], Discriminator(_number_or)]
+Many: TypeAlias = Annotated[tuple[Seed, ...], Field(min_length=1)]
+MOST_SEEDS = 100_000
+Number1 = Annotated[int, Field(strict=True, ge=1, le=MOST_SEEDS)]
+Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")], Discriminator(_number_or)]
+
+
+def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
+    """Those of a list of sea states or headings that have no probability, where others have one."""
+    given = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows]
+    if any(given):
+        for i, there in enumerate(given):
+            if not there:
+                yield Problem(f"{key}[{i}]", "a probability, as others in the list have", "none")
+
+
+class Sweep(Consistent):
+    """A sweep file: every sea state with every heading and every seed. What is left out is as in `jaxhydro simulate`."""
+
+    platform: Text
+    calibration: Text | None = None
+    scatter: Scatter = Field(description="a CSV file, a list of sea states (hs, tp, probability), or a grid (hs, tp)")
+    spectrum: Literal["jonswap", "pierson_moskowitz"] = "jonswap"
+    amplitudes: Literal["deterministic", "rayleigh"] = "deterministic"
+    headings: Annotated[tuple[OneHeading, ...], Field(min_length=1)] = (0.0,)
+    seeds: Seeds = Field(default=1, description=f"a number of seeds, 1 to {MOST_SEEDS}, or a list of whole numbers >= 0")
+    duration: Positive = 3600.0
+    transient: NonNegative | None = None
+    time_step: Positive = 0.5
+    step: Positive | None = None
+    order: Literal[1, 2] = 2
+    stretching: Stretching = "vertical"
+    diffraction: Literal["maccamy_fuchs", "ramp", "none"] | None = None
+    low: NonNegative | None = None
+    cutoff: Positive | None = None
+    motions: Annotated[tuple[Dof, ...], Field(min_length=1)] = DOFS  # type: ignore[assignment]
+    time_series: Flag = False
+    fatigue: Fatigue = Fatigue()
+
+    def _faults(self) -> Iterator[Problem]:
+        if self.low is not None and self.cutoff is not None and self.cutoff <= self.low:
+            yield Problem("cutoff", f"a number above low, {self.low:g} Hz", f"{self.cutoff:g}")
+        if self.transient is not None and self.transient >= self.duration:
+            yield Problem("transient", f"less than the duration, {self.duration:g} s", f"{self.transient:g}")
+            return
+        for key in ("time_step", "step"):
+            value = getattr(self, key)
+            if value is not None and not 1 <= self.duration / value <= LONGEST:
+                limits = f"a number from {self.duration / LONGEST:g} to {self.duration:g} s"
+                yield Problem(key, f"{limits}, for a duration of {self.duration:g} s", f"{value:g}")
+                return
+        left = (self.duration - self.start) / self.time_step
+        if left < LEAST:
+            expected = f"{LEAST} samples or more after the transient of {self.start:g} s"
+            yield Problem("duration", expected, f"{left:.0f} of them {self.time_step:g} s apart")
+        if self.spectrum != "jonswap" and not isinstance(self.scatter, str | Grid):
+            for i, state in enumerate(self.scatter):
+                if state.gamma is not None:
+                    yield Problem(f"scatter[{i}].gamma", "a JONSWAP spectrum with it", self.spectrum)
+        turns = [one.heading % 360 for one in self.towards]
+        if twice := [one for i, one in enumerate(turns) if one in turns[:i]]:
+            yield Problem("headings", "each one once", f"{twice[0]:g} deg twice")
+        for key in ("scatter", "headings"):
+            if isinstance(rows := getattr(self, key), tuple):
+                yield from _some_without_share(key, rows)
+        lists: dict[str, Any] = {"motions": self.motions, "seeds": self.seeds, "fatigue.exponents": self.fatigue.exponents}
+        for key, values in lists.items():
+            if isinstance(values, tuple) and len(set(values)) < len(values):
+                twice = next(value for i, value in enumerate(values) if value in values[:i])
+                yield Problem(key, "each one once", f"{twice!r} twice")
+
+    @property
+    def towards(self) -> tuple[Heading, ...]:
+        """The headings, each with its share."""
+        return tuple(one if isinstance(one, Heading) else Heading(heading=float(one)) for one in self.headings)
+
+    @property
+    def start(self) -> float:
+        """Time (s) from which on statistics are taken."""
+        return usual_transient(self.duration) if self.transient is None else self.transient
