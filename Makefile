@@ -35,6 +35,7 @@ bench: $(READY)    ## speed as ratios in one run: benchmarks/results.md
 lint: $(READY)
 	$(BIN)/ruff check jaxhydro calibration tests benchmarks
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache
 
 lock:              ## remake requirements.lock from pyproject.toml (needs uv)
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev pyproject.toml \

@@ -117,7 +117,7 @@ def release(name: str, index: int, release_seed: int):
 def clean_motion(name: str, index: int, release_seed: int):
     """Time (n,) in s, and noise-free surge, heave, pitch (n, 3) in m, m, deg from the equilibrium; read only.
 
-    At this tolerance the error is below 1e-5 m and deg (see tests/test_reference_model.py), far below the noise.
+    At this tolerance the error is below 1e-5 m and deg (see tests/benchmarks/test_reference_model.py), far below the noise.
     """
     model = true_model()
     t, q = model.decay(*release(name, index, release_seed), DURATIONS[name], SAMPLING, tolerance=1e-8)

@@ -11,7 +11,8 @@ import pytest
 MAPS = 20_000
 
 # so that `benchmarks` and the tests' own helpers are found however pytest is started
-for folder in (Path(__file__).resolve().parents[1], Path(__file__).resolve().parent):
+TESTS = Path(__file__).resolve().parent
+for folder in (TESTS.parent, *(TESTS / name for name in ("fixtures", "jaxhydro", "calibration", "systems", "benchmarks"))):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 

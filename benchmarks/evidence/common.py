@@ -17,10 +17,9 @@ CACHE = Path(os.environ.get("JAXHYDRO_VALIDATE_CACHE", ROOT / ".venv" / "validat
 DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 # the edge of the packages, and sweeps, which only that edge knows: no number depends on them
 EDGE = {
-    "__main__", "cli", "command", "console", "export", "files", "formatting", "interrupts", "outputs", "plot", "report",
-    "saved", "tables", "sea_command", "sweep_page",
-}  # fmt: skip
-SWEEPS = ROOT / "jaxhydro" / "sweep"
+    *(ROOT / "jaxhydro" / name for name in ("__main__.py", "cli", "sweep", "plots", "files.py", "interrupts.py")),
+    *(ROOT / "calibration" / name for name in ("plots", "report", "commands", "formatting.py", "vocabulary.py")),
+}
 TRUE = {
     "column.Ca_t": 1.50, "column.Ca_z": 0.12, "column.Cd_t": 2.09, "column.Cd_z": 2.23,
     "pontoon.Ca_t": 0.11, "pontoon.Ca_z": 1.87, "pontoon.Cd_t": 1.84, "pontoon.Cd_z": 4.96,
@@ -42,9 +41,9 @@ class Absent(Exception):
 
 
 def fingerprint(*inputs: Path | str) -> str:
-    """Hash of the packages' sources, `EDGE` and `SWEEPS` left out, and of files, folders and words."""
+    """Hash of the packages' sources, `EDGE` left out, and of files, folders and words."""
     every = [path for name in ("jaxhydro", "calibration") for path in (ROOT / name).rglob("*.py")]
-    sources = sorted(path for path in every if path.stem not in EDGE and SWEEPS not in path.parents)
+    sources = sorted(path for path in every if not EDGE & {path, *path.parents})
     digest = hashlib.sha256()
     for item in [*sources, *inputs]:
         if isinstance(item, Path):

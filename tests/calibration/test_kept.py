@@ -1,0 +1,361 @@
+"""What a diagnosis keeps on disk: plain data that does nothing, of the same inputs and program alone, as good as one run."""
+
+import dataclasses
+import json
+import os
+import pickle
+import warnings
+import zipfile
+from types import SimpleNamespace
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from test_discovery import campaign_of
+
+from calibration.campaign.load_campaign import load_campaign
+from calibration.discovery import checkpoint as kept
+from calibration.discovery.checkpoint import keep, resumed
+from calibration.discovery.diagnose import diagnose
+from calibration.discovery.greedy_search import Search
+from calibration.discovery.set_up import pose
+from calibration.residuals.measured_seas import Options
+from calibration.results.write_diagnosis import write_diagnosis
+from jaxhydro import fingerprint as fingerprints
+from jaxhydro.errors import CheckpointWarning
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+
+
+class Killed(Exception):
+    """In place of a process that is killed."""
+
+
+def searched(campaign):
+    """A search with the declared model fitted, as the states that were kept."""
+    search = Search(campaign, pose(campaign, Options()), lambda *_: None)
+    return search, search.declared()
+
+
+def fresh(campaign):
+    return Search(campaign, pose(campaign, Options()), lambda *_: None)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """A campaign, a search of it, and the file that has what was reached."""
+    folder = tmp_path_factory.mktemp("campaign")
+    campaign = campaign_of(folder, lambda x, v: -500.0 * x**3)
+    search, state = searched(campaign)
+    keep(folder / "kept", search, [state], 12.0)
+    return SimpleNamespace(folder=folder, campaign=campaign, search=search, state=state, path=folder / "kept")
+
+
+def reasons(path, campaign):
+    """States that are gone on from, and what is told."""
+    told = []
+    return resumed(path, fresh(campaign), told.append), told
+
+
+def same(one, other):
+    """Whether two values of plain data are the same to the last bit."""
+    if dataclasses.is_dataclass(one):
+        names = [field.name for field in dataclasses.fields(one)]
+        return type(one) is type(other) and all(same(getattr(one, name), getattr(other, name)) for name in names)
+    if isinstance(one, np.ndarray):
+        return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+    if isinstance(one, tuple):
+        return type(one) is type(other) and len(one) == len(other) and all(map(same, one, other))
+    return one is other or one == other
+
+
+def test_what_was_reached_is_read_back_to_the_last_bit(written):
+    again, told = fresh(written.campaign), []
+    (state,) = resumed(written.path, again, told.append)
+    assert not told and same(dataclasses.replace(state, chosen=()), dataclasses.replace(written.state, chosen=()))
+    assert again.earlier == 12.0 and again.notes == written.search.notes and same(again.begun, written.search.begun)
+
+
+def test_nothing_is_told_where_nothing_was_kept(written, tmp_path):
+    assert reasons(tmp_path / "none", written.campaign) == ([], [])
+
+
+class Malicious:
+    """A pickle of it makes a file wherever it is read."""
+
+    def __init__(self, victim):
+        self.victim = victim
+
+    def __reduce__(self):
+        return os.mkdir, (str(self.victim),)
+
+
+def pickled(path, victim):
+    path.write_bytes(pickle.dumps(Malicious(victim)))
+
+
+def pickled_array(path, victim):
+    with path.open("wb") as file:
+        np.save(file, np.array([Malicious(victim)], dtype=object), allow_pickle=True)
+
+
+def pickled_about(path, victim):
+    with path.open("wb") as file:
+        np.savez(file, allow_pickle=True, about=np.array([Malicious(victim)], dtype=object))
+
+
+def pickled_inside(path, victim):
+    """Everything as it should be, but for one array."""
+    with np.load(path, allow_pickle=False) as known:
+        arrays = {name: known[name] for name in known.files}
+    with path.open("wb") as file:
+        np.savez(file, allow_pickle=True, **arrays | {"0": np.array([Malicious(victim)], dtype=object)})
+
+
+@pytest.mark.parametrize("attack", [pickled, pickled_array, pickled_about, pickled_inside])
+def test_a_folder_from_somebody_else_executes_nothing(written, tmp_path, attack):
+    path, victim = tmp_path / "kept", tmp_path / "victim"
+    path.write_bytes(written.path.read_bytes())
+    attack(path, victim)
+    found, told = reasons(path, written.campaign)
+    assert not victim.exists() and found == []
+    assert len(told) == 1 and "cannot be read" in told[0] and "\n" not in told[0]
+
+
+def changed(path, **how):
+    """The file with something else in its document or its arrays."""
+    with np.load(path, allow_pickle=False) as known:
+        arrays = {name: known[name] for name in known.files}
+    about = json.loads(arrays.pop("about").tobytes())
+    about["reached"] |= how.pop("reached", {})
+    about |= how.pop("about", {})
+    arrays |= how.pop("arrays", {})
+    for name in how.pop("without", ()):
+        del arrays[name]
+    with path.open("wb") as file:
+        np.savez(file, about=np.frombuffer(json.dumps(about).encode(), np.uint8), **arrays)
+
+
+DAMAGE = {
+    "cut off": lambda path: path.write_bytes(path.read_bytes()[:1000]),
+    "nothing": lambda path: path.write_bytes(b""),
+    "text": lambda path: path.write_text("not this"),
+    "a byte": lambda path: path.write_bytes((known := path.read_bytes())[:2000] + bytes([known[2000] ^ 1]) + known[2001:]),
+    "another zip": lambda path: zipfile.ZipFile(path, "w").writestr("a", "b"),
+    "no document": lambda path: np.savez(path.open("wb"), a=np.zeros(3)),
+    "an array less": lambda path: changed(path, without=["0"]),
+    "another shape": lambda path: changed(path, arrays={"0": np.zeros(1)}),
+    "another type": lambda path: changed(path, arrays={"0": np.zeros(3, int)}),
+    "a word for a number": lambda path: changed(path, reached={"seconds": "long"}),
+    "seas that there are none of": lambda path: changed(path, reached={"order": "third"}),
+    "a key less": lambda path: changed(path, about={"reached": {}}),
+    "no states": lambda path: changed(path, reached={"states": []}),
+    "a list for a document": lambda path: changed(path, about={"reached": []}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", DAMAGE)
+def test_a_damaged_file_is_left_alone(written, tmp_path, how):
+    path = tmp_path / "kept"
+    path.write_bytes(written.path.read_bytes())
+    DAMAGE[how](path)
+    found, told = reasons(path, written.campaign)
+    assert found == [] and len(told) == 1 and "cannot be read" in told[0] and "starts anew" in told[0]
+
+
+def test_an_effect_that_there_is_none_of_is_left_alone(written, tmp_path):
+    path = tmp_path / "kept"
+    path.write_bytes(written.path.read_bytes())
+    with np.load(path, allow_pickle=False) as known:
+        (state,) = json.loads(known["about"].tobytes())["reached"]["states"]
+    changed(path, reached={"states": [state | {"chosen": ["nothing (surge)"]}]})
+    assert reasons(path, written.campaign)[0] == []
+
+
+def test_another_program_starts_anew(written, monkeypatch):
+    """Any source file of either package, any version, Python, and the precision."""
+    monkeypatch.setattr(fingerprints, "sources", lambda: "of a load that was changed")
+    found, told = reasons(written.path, written.campaign)
+    assert found == [] and "an earlier run was of other source code; the diagnosis starts anew" in told[0]
+
+
+@pytest.mark.parametrize("name", ["jax", "numpy", "scipy", "optimistix", "diffrax", "equinox"])
+def test_another_version_starts_anew(written, monkeypatch, name):
+    known = fingerprints.version
+    monkeypatch.setattr(fingerprints, "version", lambda one: "99.0" if one == name else known(one))
+    found, told = reasons(written.path, written.campaign)
+    assert found == [] and f"of other {name} ({known(name)}, now 99.0)" in told[0]
+
+
+def copied(written, tmp_path, name="", change=lambda text: text):
+    for one in ("campaign.yaml", "platform.yaml", *(f"roll-{i}.csv" for i in range(3))):
+        text = (written.folder / one).read_text()
+        (tmp_path / one).write_text(change(text) if one == name else text)
+    return load_campaign(tmp_path)
+
+
+CHANGES = {
+    "nothing": ("", lambda text: text),
+    "a sample": ("roll-2.csv", lambda text: text.replace("\n", "\n", 1)[:-9] + "0.000001\n"),
+    "an inertia": ("platform.yaml", lambda text: text.replace("115.7", "115.8")),
+    "what is not free": ("platform.yaml", lambda text: text.replace("994.0", "994.5")),
+    "noise": ("campaign.yaml", lambda text: text.replace("0.0002", "0.0003")),
+    "a use": ("campaign.yaml", lambda text: text.replace("holdout", "fit")),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", CHANGES)
+def test_other_inputs_start_anew(written, tmp_path, how):
+    """The same files in another place go on."""
+    campaign = copied(written, tmp_path, *CHANGES[how])
+    found, told = reasons(written.path, campaign)
+    assert (len(found) == 1, told) == (True, []) if how == "nothing" else (found == [] and "of other inputs" in told[0])
+
+
+def test_other_options_and_another_model_start_anew(written):
+    """A model of one's own, too: its numbers are not in any file."""
+    search = Search(written.campaign, pose(written.campaign, Options(stretching="none")), lambda *_: None)
+    assert resumed(written.path, search) == []
+    model = written.campaign.model
+    for label in ("linear_damping.B44", "hydrostatics.C44"):
+        if label in model.values:
+            own = written.campaign.with_model(model.with_values({label: 1.01 * model.values[label]}))
+            assert resumed(written.path, fresh(own)) == []
+
+
+class Sine(AbstractLoad):
+    """A torque of one's own."""
+
+    values: dict
+    steepness: float = 10.0
+
+    def about(self, label):
+        return Parameter("N m", "strength of a torque that repeats", -np.inf, np.inf, 0.0)
+
+    def act(self, now, memory):
+        torque = -self.values["repeating.strength"] * jnp.sin(self.steepness * now.position[3])
+        return Action(force=jnp.zeros(6).at[3].set(torque))
+
+
+def test_the_fingerprint_knows_loads_of_ones_own(tmp_path, monkeypatch):
+    """Their numbers and fields, and their source: it is in none of the packages."""
+    one = Sine({"repeating.strength": jnp.zeros(())})
+    known = fingerprints.fingerprint(one)
+    assert fingerprints.fingerprint(Sine({"repeating.strength": jnp.zeros(())})) == known
+    assert fingerprints.fingerprint(Sine({"repeating.strength": jnp.ones(())})) != known
+    assert fingerprints.fingerprint(Sine({"repeating.strength": jnp.zeros(())}, 11.0)) != known
+    assert fingerprints.fingerprint(Sine({"repeating.force": jnp.zeros(())})) != known
+    monkeypatch.syspath_prepend(tmp_path)
+    text = "import equinox as eqx\nclass Own(eqx.Module):\n    def force(self, x):\n        return 2 * x\n"
+    found = []
+    for number, source in enumerate((text, text.replace("2 * x", "3 * x"), text)):
+        (tmp_path / f"own_load_{number}.py").write_text(source)
+        module = __import__(f"own_load_{number}")
+        found.append(_of(module.Own(), tmp_path))
+    assert found[0] != found[1] and found[0] == found[2]
+
+
+def _of(value, folder):
+    """Content of the files that its classes are written in."""
+    own = {}
+    list(fingerprints._content(value, own, ()))
+    assert all(str(folder) in file for file in own) and len(own) == 1
+    return [open(file).read() for file in own]
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [(1, 1.0), (1, True), ("1", 1), (None, "None"), ([1, [2]], [[1], 2]), ({"a": 1}, {"a": 2}), ({"a": 1}, {"b": 1}),
+     (np.zeros(3), np.zeros((3, 1))), (np.zeros(3), np.zeros(3, np.float32)), (0.0, -0.0), (("ab", "c"), ("a", "bc")),
+     (lambda x: 2 * x, lambda x: 3 * x), (np.nan, 0.0), ([], ()), (jnp.zeros(2), jnp.ones(2))],
+)  # fmt: skip
+def test_what_differs_has_another_fingerprint(one, other):
+    assert fingerprints.fingerprint(one) != fingerprints.fingerprint(other)
+    assert fingerprints.fingerprint(one) == fingerprints.fingerprint(one)
+
+
+def test_the_fingerprint_is_of_files_not_of_where_they_are(tmp_path):
+    for name, text in (("a", "1"), ("b", "1"), ("c", "2")):
+        (tmp_path / name).write_text(text)
+    one, same, other, none = (fingerprints.fingerprint(tmp_path / name) for name in "abcd")
+    assert one == same and len({one, other, none}) == 3
+
+
+def test_sources_are_all_files_of_both_packages(tmp_path, monkeypatch):
+    """A load's, too, not only the diagnosis's."""
+    for package in ("jaxhydro/loads", "calibration/fitting"):
+        (tmp_path / package).mkdir(parents=True)
+    (tmp_path / "jaxhydro/loads/drag.py").write_text("1")
+    (tmp_path / "calibration/fitting/decay_fit.py").write_text("1")
+
+    def spec(name):
+        return SimpleNamespace(submodule_search_locations=[str(tmp_path / name)])
+
+    monkeypatch.setattr(fingerprints, "find_spec", spec)
+    seen = {fingerprints.sources.__wrapped__()}
+    for name in ("jaxhydro/loads/drag.py", "calibration/fitting/decay_fit.py"):
+        (tmp_path / name).write_text("2")
+        seen.add(fingerprints.sources.__wrapped__())
+    (tmp_path / "calibration/another.py").write_text("")
+    assert len(seen | {fingerprints.sources.__wrapped__()}) == 4
+
+
+def told_in(campaign, path, stop_at="", **how):
+    """A diagnosis, the stages that it went through, and what it warned of; killed at a stage."""
+    seen = []
+
+    def progress(now):
+        seen.append(now.stage)
+        if stop_at and now.stage.startswith(stop_at):
+            raise Killed
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            found = diagnose(campaign.model, campaign, progress=progress, kept=path, **how)
+        except Killed:
+            found = None
+    return found, seen, [str(one.message) for one in caught if issubclass(one.category, CheckpointWarning)]
+
+
+def test_a_diagnosis_that_was_killed_ends_as_one_run_does(tmp_path):
+    """All files that it writes are the same, the time that it took aside."""
+    campaign = campaign_of(tmp_path, lambda x, v: -500.0 * x**3)
+    whole, _, told = told_in(campaign, None)
+    path = tmp_path / "kept"
+    assert not told and told_in(campaign, path, "round 2")[0] is None
+    found, seen, told = told_in(campaign, path)
+    assert not told and not any(stage.startswith(("calibrating", "round 1")) for stage in seen)
+    written = []
+    for name, one in (("whole", whole), ("resumed", found)):
+        write_diagnosis(dataclasses.replace(one, seconds=0.0), tmp_path / name, figures=False)
+        written.append({path.name: path.read_bytes() for path in sorted((tmp_path / name).iterdir())})
+    assert written[0].keys() == written[1].keys()
+    for name in written[0]:
+        if name.endswith((".json", ".csv", ".yaml")):
+            assert written[0][name] == written[1][name], name
+
+
+def test_a_diagnosis_says_in_one_line_that_it_starts_anew(tmp_path, monkeypatch):
+    campaign, path = campaign_of(tmp_path, lambda x, v: 0.0), tmp_path / "kept"
+    assert told_in(campaign, path, "round 1")[0] is None and path.exists()
+    monkeypatch.setattr(fingerprints, "sources", lambda: "of a load that was changed")
+    _, seen, told = told_in(campaign, path, "round 1")
+    assert any(stage.startswith("calibrating") for stage in seen)
+    assert len(told) == 1 and "other source code; the diagnosis starts anew" in told[0] and "\n" not in told[0]
+    assert told_in(campaign, path, "round 1")[2] == []  # which was kept anew
+
+
+WORDS = ("import pickle", "from pickle", "cloudpickle", "joblib", "shelve", "marshal", "dill", "read_pickle",
+         "allow_pickle=True")  # fmt: skip
+
+
+def test_the_packages_read_and_write_no_pickles():
+    """Neither in their own words nor by NumPy's: `allow_pickle` is False wherever it is."""
+    for package in ("jaxhydro", "calibration"):
+        root = kept.Path(__import__(package).__file__).parent
+        for file in root.rglob("*.py"):
+            text = file.read_text(encoding="utf-8")
+            for word in WORDS:
+                assert word not in text, f"{file}: {word}"
+            for line in text.splitlines():
+                assert "np.load(" not in line or "allow_pickle=False" in line, f"{file}: {line}"

@@ -1,0 +1,262 @@
+"""Computed excitation: against sums over components, strips' own force, WAMIT's file format, and OpenFAST's own force."""
+
+import math
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.testing import assert_allclose
+from test_loads import COLUMN, PONTOON, RHO, G, build, model_of, only
+from test_water_effects import HULL, WATER, acts, irregular, with_values
+from typer.testing import CliRunner
+
+import jaxhydro as jh
+from calibration.campaign.load_campaign import load_campaign
+from calibration.discovery.effects.candidates import sought
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.listed import Scales
+from jaxhydro.cli import app as cli
+from jaxhydro.errors import InputError
+from jaxhydro.interop.wamit_excitation import read_excitation
+from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia, WaveGaugePosition
+from jaxhydro.sweep import load_sweep
+from jaxhydro.sweep.run_sweep import _platform_text, prepared
+from jaxhydro.waves import Clock
+from jaxhydro.waves.excitation import Excitation
+
+GRID = np.linspace(0.2, 2.2, 9)  # rad/s
+SHARED = Path(__file__).resolve().parents[3] / "shared" / "reference"
+WAMIT = SHARED / "iea15-umaine" / "HydroData" / "IEA-15-240-RWT-UMaineSemi.3"
+RUN = SHARED / "openfast" / "ss1_nwt"
+REST = np.zeros(6)
+AWAY = np.array([7.0, -3.0, 1.0, 0.02, -0.03, 0.4])
+
+
+def forces(seed: int = 5) -> np.ndarray:
+    """X of six motions (N/m, N m/m)."""
+    rng = np.random.default_rng(seed)
+    return rng.normal(0, 2e6, (6, 9)) + 1j * rng.normal(0, 1e6, (6, 9))
+
+
+def by_sum(sea: jh.IrregularSea, time: float, table: np.ndarray, place=(0.0, 0.0)) -> np.ndarray:
+    """The sum over components, X by NumPy's straight lines."""
+    waves = sea.components
+    omega, vector = np.asarray(waves.omega), np.asarray(waves.vector())
+    one = np.asarray(waves.complex_amplitude()) * np.exp(1j * (omega * time - np.asarray(place) @ vector))
+    at = [np.interp(omega, GRID, x.real, 0, 0) + 1j * np.interp(omega, GRID, x.imag, 0, 0) for x in table]
+    return (np.array(at) @ one).real
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("heading", [0.0, 0.7])
+def test_the_force_is_the_sum_over_components(order: int, heading: float) -> None:
+    """Direct, and prepared on a clock that starts late, where the platform is; bound waves add nothing to it."""
+    sea, table = irregular(order, heading), forces()
+    model = model_of(build(COLUMN), ComputedExcitation.of(Excitation.of(GRID, table), share=0.7))
+    prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
+    for position in (REST, AWAY * [1, 1, 1, 0, 0, 0]):
+        for time in (10.0, 36.5, 107.25):
+            exact = 0.7 * by_sum(sea, time, table, position[:2])
+            for met, error in ((prepared, 2e-5), (sea, 1e-9), (sea.direct(), 1e-9)):
+                found, _ = acts(model, position, REST, (None,), met, time)
+                assert_allclose(found, exact, atol=error * np.abs(exact).max())
+
+
+def test_it_takes_the_place_of_the_strips_own() -> None:
+    """Share s: s of the table's, 1 - s of what acceleration and pressure do to strips and ends; added mass is as it was."""
+    strips = only(build(COLUMN, PONTOON), StripInertia, EndInertia)
+    table = ComputedExcitation.of(Excitation.of(GRID, forces()), 0.0)
+    sea, none = irregular(2).direct(), (None,) * 3
+    model = strips.with_load(table)
+    own, _ = acts(strips, AWAY, REST, none[:2], sea, 20.0)
+    rotation = np.asarray(jh.rotations.rotation(jnp.asarray(AWAY[3:])))
+    earth = by_sum(irregular(), 20.0, forces(), AWAY[:2])
+    theirs = np.concatenate([rotation.T @ earth[:3], rotation.T @ earth[3:]])
+    for share in (0.0, 0.4, 1.0):
+        found, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, none, sea, 20.0)
+        assert_allclose(found, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
+    still = [np.asarray(one.rate(jnp.zeros(()), one.rest(), jh.StillWater()).velocity) for one in (
+        build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_load(ComputedExcitation.of(table.excitation)))]  # fmt: skip
+    assert_allclose(still[1], still[0], rtol=1e-12, atol=1e-12)
+
+
+def test_what_strips_do_in_small_waves_is_their_excitation() -> None:
+    """X taken from the strips' own force in small regular waves: in a small irregular sea the table's force is theirs."""
+    strips = only(build(COLUMN, PONTOON, wetting="mean"), StripInertia, EndInertia)
+    omega, none = np.linspace(0.3, 1.3, 201), (None,) * 2
+    table = np.zeros((6, omega.size), complex)
+    for k, w in enumerate(omega):
+        for phase in (0.0, -0.5 * math.pi):  # Re X, and Re (-i X)
+            sea = jh.regular_wave(0.02, 2 * math.pi / w, WATER, phase=phase)
+            found, _ = acts(strips, REST, REST, none, sea, 0.0)
+            table[:, k] += found / 0.01 * (1.0 if phase == 0 else 1j)
+    sea = irregular()
+    own = [acts(strips, REST, REST, none, sea.direct(), t)[0] for t in (5.0, 41.3)]
+    load = ComputedExcitation.of(Excitation.of(omega, table))
+    found = [acts(model_of(strips, load), REST, REST, (None,), sea.direct(), t)[0] for t in (5.0, 41.3)]
+    assert_allclose(found, own, atol=2e-3 * np.abs(own).max())
+
+
+def test_it_moves_with_the_waves() -> None:
+    """Where the gauge stood 4 m further along, so does the force: every component by its own wavenumber."""
+    sea, table = irregular(), forces()
+    gauge = with_values(WaveGaugePosition.null(), distance=4.0)
+    model = model_of(build(COLUMN), gauge, ComputedExcitation.of(Excitation.of(GRID, table)))
+    prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
+    exact = by_sum(sea, 36.5, table, (-4.0, 0.0))
+    for met, error in ((prepared, 2e-5), (sea, 1e-9)):
+        found, _ = acts(model, REST, REST, (None,) * 2, met, 36.5)
+        assert_allclose(found, exact, atol=error * np.abs(exact).max())
+
+
+def test_a_sea_without_it_is_refused() -> None:
+    model = model_of(build(COLUMN), ComputedExcitation.of(Excitation.of(GRID, forces())))
+    bare = irregular().prepared(HULL, None, Clock(10.0, 0.25, 40, (0.0,)))
+    with pytest.raises(ValueError, match=r"prepare it with `Model\.excitation`"):
+        acts(model, REST, REST, (None,), bare, 12.0)
+    with pytest.raises(ValueError, match="two loads"):
+        assert model.with_load(ComputedExcitation.of(Excitation.of(GRID, forces()))).excitation is None
+    with pytest.raises(ValueError, match="two ascending frequencies or more"):
+        Excitation.of(GRID[::-1], forces())
+
+
+def test_a_simulation_follows_it() -> None:
+    """Share 1 of a table that is zero leaves drag alone, and without that nothing; at share 0 nothing changes."""
+    model = jh.load_model("volturnus-s-focal")
+    model = model.with_values({label: 0.0 for label in model.values if ".Cd_" in label})
+    waves = jh.spectrum_components(lambda w: jh.jonswap(w, 3.0, 9.0), 300.0, model.environment, low=0.06, cutoff=0.18, seed=1)
+    sea, times = jh.IrregularSea(waves, model.environment), np.arange(0.0, 300.0, 1.0)
+    silent = ComputedExcitation.of(Excitation.of(GRID, 0 * forces()))
+    heave = [
+        np.asarray(jh.simulate(one, times, sea)["heave"])
+        for one in (model, model.with_load(silent), model.with_load(ComputedExcitation.of(silent.excitation, 0.0)))
+    ]
+    assert heave[1].std() < 1e-6 * heave[0].std()
+    assert_allclose(heave[2], heave[0], rtol=1e-9, atol=1e-12)
+
+
+# files
+
+
+def rows_of(table: np.ndarray, heading: float = 0.0, modes=range(6)) -> list[list[float]]:
+    """As WAMIT writes them."""
+    return [
+        [2 * math.pi / w, heading, i + 1, abs(x := table[i, k]), np.degrees(np.angle(x)), x.real, x.imag]
+        for k, w in enumerate(GRID)
+        for i in modes
+    ]
+
+
+def written(folder: Path, rows: list[list[float]], name: str = "a.3") -> Path:
+    path = folder / name
+    np.savetxt(path, np.array(rows), fmt="%.9e")
+    return path
+
+
+def test_a_file_is_read_with_its_units(tmp_path: Path) -> None:
+    """rho g L^2 for forces, rho g L^3 for moments; one heading of two, and modes that are left out are none."""
+    path = written(tmp_path, rows_of(forces(1)) + rows_of(forces(2), 30.0, (0, 2, 4)))
+    unit = RHO * G * np.array([4.0, 4, 4, 8, 8, 8])[:, None]
+    found = read_excitation(path, RHO, G, length=2.0)
+    assert_allclose(found.omega, GRID, rtol=1e-8)
+    assert_allclose(found.force, unit * forces(1), atol=1e-7 * np.abs(unit * forces(1)).max())
+    few = np.asarray(read_excitation(path, RHO, G, length=2.0, heading=390.0).force)
+    assert_allclose(few[4], (unit * forces(2))[4], atol=1e-7 * np.abs(unit * forces(2)).max())
+    assert not few[[1, 3, 5]].any()
+    between = found.at(jnp.asarray([0.5 * (GRID[3] + GRID[4]), 0.1, 2.3]))
+    assert_allclose(between[:, 0], 0.5 * (found.force[:, 3] + found.force[:, 4]), rtol=1e-9)
+    assert not np.asarray(between[:, 1:]).any()
+
+
+def test_broken_files_are_told(tmp_path: Path) -> None:
+    rows = rows_of(forces())
+    for path, words in (
+        (tmp_path / "none.3", "expected a .3 file, found no such file"),
+        (written(tmp_path, [row[:6] for row in rows], "b"), "expected rows of 7 numbers PER BETA I MOD PHASE RE IM, found 6"),
+        (written(tmp_path, [[-1.0, *rows[0][1:]], *rows[1:]], "c"), "row 1: expected periods above 0"),
+        (written(tmp_path, [*rows, [*rows[0][:2], 7, *rows[0][3:]]], "d"), "row 55: expected a mode from 1 to 6"),
+        (written(tmp_path, rows[1:], "e"), "surge: expected each period once, found 0 times 31.416 s"),
+        (written(tmp_path, [*rows, rows[8]], "f"), "heave: expected each period once, found 2 times 13.963 s"),
+        (written(tmp_path, rows[:6], "g"), "PER: expected two periods or more, found 1"),
+    ):
+        with pytest.raises(InputError) as caught:
+            read_excitation(path, RHO, G)
+        assert words in str(caught.value) and str(caught.value).startswith(str(path))
+    with pytest.raises(InputError, match="BETA: expected waves of heading 45 deg, found 0 deg"):
+        read_excitation(written(tmp_path, rows), RHO, G, heading=45.0)
+
+
+def test_a_platform_file_names_one(tmp_path: Path) -> None:
+    """A load of all of it, found beside the platform file, by a sweep's copy too; as a candidate at its null, and scored."""
+    written(tmp_path, rows_of(forces()), "hull.3")
+    text = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "a.yaml"
+    path.write_text(text + "\nexcitation: {file: hull.3}\n", encoding="utf-8")
+    model = jh.load_model(path)
+    assert float(model.values["computed_excitation.share"]) == 1.0 and model.excitation.force.shape == (6, 9)
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "platform.yaml").write_text(_platform_text(str(path)), encoding="utf-8")
+    assert jh.load_model(tmp_path / "b" / "platform.yaml").excitation is not None
+    written(tmp_path, rows_of(0.9 * forces()), "hull.3")  # another file of that name makes another sweep
+    assert _platform_text(str(path)) != (tmp_path / "b" / "platform.yaml").read_text(encoding="utf-8")
+    path.write_text(text + "\nexcitation: {file: hull.3, use: candidate}\n", encoding="utf-8")
+    model = jh.load_model(path)
+    assert sought(model) == {"computed_excitation.share"}
+    scales = {"surge": Scales(5.0, 0.1, 1e5, 2e7)}
+    known = {waves: [one.effect for one in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
+    assert "computed_excitation" in known[True] and "computed_excitation" not in known[False]
+    (alone,) = [one for one in catalogue(model, scales, True, 1.0)[0] if one.effect == "computed_excitation"]
+    assert alone.begin == {"computed_excitation.share": 1.0}
+    np.savetxt(tmp_path / "hull.12d", [[p, q, 0, 0, 1, 1.0, 0, 1.0, 0] for p in (8.0, 12.0) for q in (8.0, 12.0) if p <= q])
+    both = "\nexcitation: {file: hull.3, use: candidate}\ndrift: {file: hull.12d, use: candidate}\n"
+    path.write_text(text + both, encoding="utf-8")
+    some = {one.effect: one for one in catalogue(jh.load_model(path), scales, True, 1.0)[0]}
+    assert some["potential_flow"].begin == {"computed_excitation.share": 1.0, "drift_transfer.share": 1.0}
+    assert some["potential_flow"].amplitudes == (*some["computed_excitation"].amplitudes, *some["drift_transfer"].amplitudes)
+    assert not some["computed_excitation"].begin
+    path.write_text(text + "\nexcitation: {file: none.3}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"none\.3: expected a \.3 file, found no such file"):
+        jh.load_model(path)
+
+
+def test_seas_of_another_heading_are_refused(tmp_path: Path) -> None:
+    """By simulations, sweeps and campaigns; a whole turn is no other heading."""
+    written(tmp_path, rows_of(forces()), "hull.3")
+    text = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")
+    (path := tmp_path / "a.yaml").write_text(text + "\nexcitation: {file: hull.3, heading: 360}\n", encoding="utf-8")
+    platform = jh.load_platform(path)
+    assert [platform.of_other_waves(heading) for heading in (0.0, -360.0, 30.0)] == [None, None, ("excitation.heading", 360.0)]
+    for waves in (("--hs", "2", "--tp", "9"), ("--wave-height", "2", "--wave-period", "9")):
+        words = ["simulate", str(path), *waves, "--heading", "30", "--out", str(tmp_path / "out")]
+        result = CliRunner().invoke(cli.app, words)
+        assert result.exit_code == 2 and "360, the excitation.heading of the" in result.output, result.output
+    file = tmp_path / "sweep.yaml"
+    file.write_text("platform: a.yaml\nscatter: [{hs: 2.0, tp: 9.0}]\nheadings: [0, 30]\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"excitation.heading: expected 30 deg, as in the sweep's headings, found 360 deg"):
+        prepared(load_sweep(file), str(file))
+    np.savetxt(tmp_path / "sea.csv", np.zeros((100, 3)), delimiter=",", header="t,x,w", comments="")
+    tests = "".join(f"  - {{id: sea-{i}, kind: irregular, file: sea.csv, sea: {{heading: {i}}}}}\n" for i in (0, 30))
+    (tmp_path / "campaign.yaml").write_text(
+        "name: c\nplatform: a.yaml\nchannels: {time: {column: t, unit: s}, surge: {column: x, unit: m}}\n"
+        f"wave_channel: {{column: w, unit: m}}\ntests:\n{tests}", encoding="utf-8")  # fmt: skip
+    words = r"tests\[1\]\.sea\.heading: expected 360 deg, the excitation\.heading of a\.yaml, found 30 deg"
+    with pytest.raises(InputError, match=words) as error:
+        load_campaign(tmp_path)
+    assert len(error.value.problems) == 1
+
+
+@pytest.mark.skipif(not WAMIT.exists() or not RUN.exists(), reason="../shared/reference has no iea15-umaine or no openfast")
+def test_openfast_has_the_same_force() -> None:
+    """Its first-order excitation of the IEA 15 MW's .3 file, in a sea of 1038 components, at the mean position."""
+    excitation = read_excitation(WAMIT, 1025.0, 9.81)
+    waves = pd.read_csv(RUN / "components.csv.gz", comment="#")
+    record = pd.read_csv(RUN / "out.csv.gz", skiprows=[1])
+    omega, time = waves.omega_rad_s.to_numpy(), record.Time.to_numpy(float)[::16]
+    amplitude = waves.amp_m.to_numpy() * np.exp(1j * waves.phase_rad.to_numpy())
+    x = np.asarray(excitation.at(jnp.asarray(omega)))
+    for i, channel in ((0, "B1WvsF1xi"), (2, "B1WvsF1zi"), (4, "B1WvsM1yi")):
+        ours = (np.exp(1j * np.outer(time, omega)) @ (x[i] * amplitude)).real
+        theirs = record[channel].to_numpy(float)[::16]
+        assert np.std(ours - theirs) < 5e-4 * np.std(theirs)
