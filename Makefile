@@ -34,6 +34,7 @@ bench: $(READY)    ## speed as ratios in one run: benchmarks/results.md
 
 lint: $(READY)
 	$(BIN)/ruff check jaxhydro calibration tests benchmarks
+	$(BIN)/ruff format --check jaxhydro calibration tests benchmarks
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
 

@@ -78,10 +78,12 @@ def seas_of(model: Model, duration: float, count: int, order: int) -> list[Irreg
     return [
         IrregularSea(
             spectrum_components(spectrum, duration, model.environment, low=LOW, cutoff=CUTOFF, seed=seed),
-            model.environment, 2 if order == 2 else 1, "vertical",
+            model.environment,
+            2 if order == 2 else 1,
+            "vertical",
         )
         for seed in range(count)
-    ]  # fmt: skip
+    ]
 
 
 def prepared(model: Model, sea: IrregularSea, duration: float):
@@ -186,7 +188,7 @@ def measure(quick: bool, figure: Path | None = None) -> Iterator[tuple[list[Row]
         f"Seas at once: {duration:g} s of second order, {min(DISTINCT, max(sizes))} seeds again and again, made ready in "
         f"float64 beforehand, by one vectorised program on {name}{'' if cpu else ', wall time'}. In float32 are loads and "
         f"motion, {'a minute' if quick else 'an hour'} for its error; phases of waves are made in float64 in either case.",
-    ]  # fmt: skip
+    ]
     if figure is not None:
         draw(found, name, figure)
     yield rows, notes

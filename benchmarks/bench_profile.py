@@ -84,11 +84,14 @@ def floor(hour: Hour, sea: Any, step: float, path: State, rounds: int) -> tuple[
     few, exponential = jnp.linspace(-1.0, 0.0, 32768), jax.jit(jnp.exp)
     many = np.ones(LARGE)
     target = np.empty_like(many)
-    turns = contest({
-        "product": lambda: matrix @ matrix,
-        "exponentials": lambda: [exponential(few) for _ in range(50)][-1].block_until_ready(),
-        "copy": lambda: np.copyto(target, many),
-    }, rounds)  # fmt: skip
+    turns = contest(
+        {
+            "product": lambda: matrix @ matrix,
+            "exponentials": lambda: [exponential(few) for _ in range(50)][-1].block_until_ready(),
+            "copy": lambda: np.copyto(target, many),
+        },
+        rounds,
+    )
     speed = 2 * SQUARE**3 / turns["product"].median
     each = turns["exponentials"].median / (50 * few.size)
     bandwidth = 2 * many.nbytes / turns["copy"].median

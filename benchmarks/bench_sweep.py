@@ -39,9 +39,11 @@ def cores(count: int, duration: float) -> tuple[list[Row], list[str]]:
             for workers in (1, 2):
                 ends: list[tuple[int, float]] = []
                 run_sweep(
-                    Sweep.model_validate(platform), Path(folder) / str(workers), workers=workers,
+                    Sweep.model_validate(platform),
+                    Path(folder) / str(workers),
+                    workers=workers,
                     progress=lambda now, ends=ends: ends.append((now.done, time.perf_counter())),
-                )  # fmt: skip
+                )
                 first, last = ends[workers - 1], ends[-1]  # every process has compiled by then
                 took[workers] = (last[1] - first[1]) / (last[0] - first[0])
     finally:
@@ -60,7 +62,7 @@ def cores(count: int, duration: float) -> tuple[list[Row], list[str]]:
         "wall time from the first run's end to the last's: another process on the machine slows it.",
         f"OpenFAST v5.0.0 ran an hour of second order at {OPENFAST[0]} to {OPENFAST[1]} times real time on a core of a machine "
         "of this kind, not in this run, its set-up of a minute or more left out.",
-    ]  # fmt: skip
+    ]
     return rows, notes
 
 

@@ -9,7 +9,7 @@ half a unit in the last place of a number of size one.
 
 import mpmath as mp
 
-SWITCH = 8                  # the series in x^2 below, in (8/x)^2 above
+SWITCH = 8  # the series in x^2 below, in (8/x)^2 above
 POINTS = 48
 SMALL = mp.mpf(2) ** -56
 mp.mp.dps = 40

@@ -22,17 +22,19 @@ from benchmarks.reference_model import ReferenceModel
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
-SAMPLING = 0.2                                                       # s
-RELEASE_SEED = 0                                                     # of the campaign that is shipped
+SAMPLING = 0.2  # s
+RELEASE_SEED = 0  # of the campaign that is shipped
 CHANNELS = ("surge", "heave", "pitch")
 IN_PLANE = [0, 2, 4]
-AMPLITUDES = {"surge": (3.0, 6.0, 10.0), "heave": (1.0, 2.0, 3.5), "pitch": (2.0, 4.0, 6.5)}          # m, m, deg
-DURATIONS = {"surge": 800.0, "heave": 240.0, "pitch": 330.0}         # s
-PERIODS = {"surge": 134.0, "heave": 20.0, "pitch": 27.0}             # s, only to size the releases' velocities
-NOISE = {"surge": 0.01, "heave": 0.005, "pitch": 0.01}               # m, m, deg
+AMPLITUDES = {"surge": (3.0, 6.0, 10.0), "heave": (1.0, 2.0, 3.5), "pitch": (2.0, 4.0, 6.5)}  # m, m, deg
+DURATIONS = {"surge": 800.0, "heave": 240.0, "pitch": 330.0}  # s
+PERIODS = {"surge": 134.0, "heave": 20.0, "pitch": 27.0}  # s, only to size the releases' velocities
+NOISE = {"surge": 0.01, "heave": 0.005, "pitch": 0.01}  # m, m, deg
 
-TRUE_COEFFICIENTS = {"column": {"Ca_t": 1.50, "Ca_z": 0.12, "Cd_t": 2.09, "Cd_z": 2.23},
-                     "pontoon": {"Ca_t": 0.11, "Ca_z": 1.87, "Cd_t": 1.84, "Cd_z": 4.96}}
+TRUE_COEFFICIENTS = {
+    "column": {"Ca_t": 1.50, "Ca_z": 0.12, "Cd_t": 2.09, "Cd_z": 2.23},
+    "pontoon": {"Ca_t": 0.11, "Ca_z": 1.87, "Cd_t": 1.84, "Cd_z": 4.96},
+}
 TRUE_DAMPING = {"B11": 4.4e4, "B33": 1.6e5, "B55": 3.63e8}
 
 # columns 20 m deep and 40.5 m of three pontoons; the hull floats upright by its weight alone
@@ -94,7 +96,7 @@ def true_model() -> ReferenceModel:
     """The platform with the coefficients that the data are made with."""
     platform = YAML(typ="safe").load(PLATFORM)
     true = platform | {"coefficients": TRUE_COEFFICIENTS, "linear_damping": TRUE_DAMPING}
-    return ReferenceModel(true, strip=0.25, pontoon_strip=0.5)           # errors well below what the records resolve
+    return ReferenceModel(true, strip=0.25, pontoon_strip=0.5)  # errors well below what the records resolve
 
 
 def release(name: str, index: int, release_seed: int):
@@ -122,7 +124,7 @@ def clean_motion(name: str, index: int, release_seed: int):
     model = true_model()
     t, q = model.decay(*release(name, index, release_seed), DURATIONS[name], SAMPLING, tolerance=1e-8)
     motion = (q - model.equilibrium())[:, IN_PLANE] * [1.0, 1.0, 180 / np.pi]
-    motion.setflags(write=False)                                         # all callers share it
+    motion.setflags(write=False)  # all callers share it
     return t, motion
 
 
@@ -137,8 +139,14 @@ def make_campaign(folder, seed: int = 1, release_seed: int = RELEASE_SEED) -> li
             t, motion = clean_motion(name, index, release_seed)
             measured = motion + random.standard_normal(motion.shape) * [NOISE[channel] for channel in CHANNELS]
             path = folder / f"{name}-{index + 1}.csv"
-            np.savetxt(path, np.column_stack([t, measured]), fmt="%.5f", delimiter=",", comments="",
-                       header="time_s,surge_m,heave_m,pitch_deg")
+            np.savetxt(
+                path,
+                np.column_stack([t, measured]),
+                fmt="%.5f",
+                delimiter=",",
+                comments="",
+                header="time_s,surge_m,heave_m,pitch_deg",
+            )
             manifest += f"  - {{id: {path.stem}, kind: decay, degree_of_freedom: {name}, file: {path.name}, "
             manifest += "use: fit}\n"
             written.append(path)
@@ -151,9 +159,9 @@ def make_campaign(folder, seed: int = 1, release_seed: int = RELEASE_SEED) -> li
 def cycles(t, x):
     """Amplitude at each cycle's start, and period (s) and damping ratio from crest to crest, of a clean decay."""
     peaks = np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:]) & (x[1:-1] > 0.005 * x[0])) + 1
-    before, at, after = x[peaks - 1], x[peaks], x[peaks + 1]             # a parabola through three samples
+    before, at, after = x[peaks - 1], x[peaks], x[peaks + 1]  # a parabola through three samples
     times = t[peaks] + 0.5 * (t[1] - t[0]) * (before - after) / (before - 2 * at + after)
-    if x[1] < x[0]:                                                      # released with no outward velocity: a crest
+    if x[1] < x[0]:  # released with no outward velocity: a crest
         times, at = np.append(t[0], times), np.append(x[0], at)
     logarithmic = np.log(at[:-1] / at[1:])
     return at[:-1], np.diff(times), logarithmic / np.hypot(2 * np.pi, logarithmic)
@@ -166,8 +174,10 @@ def main():
     arguments = parser.parse_args()
     start = perf_counter()
     written = make_campaign(arguments.out, arguments.seed)
-    print(f"{arguments.out}: {len(written)} files, {sum(path.stat().st_size for path in written) / 1e3:.0f} kB, "
-          f"in {perf_counter() - start:.1f} s")
+    print(
+        f"{arguments.out}: {len(written)} files, {sum(path.stat().st_size for path in written) / 1e3:.0f} kB, "
+        f"in {perf_counter() - start:.1f} s"
+    )
     print("record    first cycle: amplitude, period s, damping ratio      last counted cycle")
     for column, name in enumerate(CHANNELS):
         for index in range(3):

@@ -23,10 +23,10 @@ import numpy as np
 from capytaine.bem.airy_waves import froude_krylov_force
 
 TABLE = Path(__file__).resolve().parents[1] / "tests" / "data" / "maccamy_fuchs_capytaine.csv"
-RADIUS, DEPTH = 6.25, 30.0                                           # m
-DENSITY, GRAVITY = 1025.0, 9.81                                      # kg/m3, m/s2
+RADIUS, DEPTH = 6.25, 30.0  # m
+DENSITY, GRAVITY = 1025.0, 9.81  # kg/m3, m/s2
 KA = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5)
-MESHES = ((32, 48), (48, 72), (72, 108))                             # panels around, panels down
+MESHES = ((32, 48), (48, 72), (72, 108))  # panels around, panels down
 
 
 def cylinder(around: int, down: int) -> cpt.FloatingBody:

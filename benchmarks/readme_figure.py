@@ -23,8 +23,11 @@ def low_frequency_errors(text: str) -> dict[str, tuple[float, float]]:
 
 def draw(errors: dict[str, tuple[float, float]], path: Path) -> None:
     """Bars by motion: the published model, the fitted one, and the one with what was found."""
-    looks = (("best published case, tuned to decays (Sarker et al. 2025)", GREY), ("strips fitted to two lower seas", BEFORE),
-             ("the same with what jaxhydro found missing", SIMULATED))  # fmt: skip
+    looks = (
+        ("best published case, tuned to decays (Sarker et al. 2025)", GREY),
+        ("strips fitted to two lower seas", BEFORE),
+        ("the same with what jaxhydro found missing", SIMULATED),
+    )
     published = dict(zip(MOTIONS, (100 * error for error in PAPER["low_frequency"]), strict=True))
     with style():
         figure = Figure(figsize=(6.0, 2.7), layout="constrained")

@@ -59,21 +59,33 @@ class ReferenceModel:
             area = w * h * (np.pi / 4 if member["circular"] else 1.0)
             column = axis[2] >= np.sqrt(0.5)
             c = platform["coefficients"][member["group"]]
-            second = "t" if column else "z"                              # a pontoon's second direction is the vertical
+            second = "t" if column else "z"  # a pontoon's second direction is the vertical
             length = np.linalg.norm(b - a)
             n = int(np.ceil(length / (strip if column else pontoon_strip) - 1e-9))
             dl = length / n
             rho, volume = self.density, area * dl
-            common = [*axis, *e1, *e2, dl, volume, rho * c["Ca_t"] * volume, rho * c["Ca_" + second] * volume,
-                      0.5 * rho * c["Cd_t"] * h * dl, 0.5 * rho * c["Cd_" + second] * w * dl, number]
+            common = [
+                *axis,
+                *e1,
+                *e2,
+                dl,
+                volume,
+                rho * c["Ca_t"] * volume,
+                rho * c["Ca_" + second] * volume,
+                0.5 * rho * c["Cd_t"] * h * dl,
+                0.5 * rho * c["Cd_" + second] * w * dl,
+                number,
+            ]
             strips.append(np.hstack([a + (np.arange(n)[:, None] + 0.5) * dl * axis, np.tile(common, (n, 1))]))
             if column:
                 second_moments = [np.pi / 64 * w**4] * 2 if member["circular"] else [h * w**3 / 12, w * h**3 / 12]
                 columns.append([[*a, *b, *e1, *e2, *axis, area, *second_moments]])
-                loads = [rho * c["Ca_z"] * 2 / 3 * np.pi * (area / np.pi)**1.5, 0.5 * rho * c["Cd_z"] * area]
-                ends += [[[*end, *axis, *loads, push, number]]           # free: joined to no other member's end
-                         for end, push in ((a, area), (b, -area))        # push: force along the axis per unit pressure
-                         if (np.linalg.norm(every_end - end, axis=1) < 1e-6).sum() == 1]
+                loads = [rho * c["Ca_z"] * 2 / 3 * np.pi * (area / np.pi) ** 1.5, 0.5 * rho * c["Cd_z"] * area]
+                ends += [
+                    [[*end, *axis, *loads, push, number]]  # free: joined to no other member's end
+                    for end, push in ((a, area), (b, -area))  # push: force along the axis per unit pressure
+                    if (np.linalg.norm(every_end - end, axis=1) < 1e-6).sum() == 1
+                ]
 
         table, end_table, column_table = (np.vstack(rows).T.copy() for rows in (strips, ends, columns))
         self.members, self.strip_member, self.end_member = members, table[18].astype(int), end_table[9].astype(int)
@@ -83,7 +95,7 @@ class ReferenceModel:
         self.directions = np.hstack([table[6:9], table[9:12], end_table[3:6]])
         self.direction_mass = np.concatenate([table[14], table[15], end_table[6]])
         self.direction_drag = np.concatenate([table[16], table[17], end_table[7]])
-        self.column_vectors = column_table[:15].reshape(5, 3, -1)                                  # a, b, e1, e2, axis
+        self.column_vectors = column_table[:15].reshape(5, 3, -1)  # a, b, e1, e2, axis
         self.column_area, self.column_i1, self.column_i2 = column_table[15:]
         self.strips_count = self.length.size
 
@@ -93,14 +105,24 @@ class ReferenceModel:
         if mooring["kind"] == "stiffness_matrix":
             self.spring_matrix = np.array(mooring["stiffness"], float)
             self.preload = np.array(mooring.get("preload", np.zeros(6)), float)
-        self.anchor, self.fairlead = (np.array([line[key] for line in lines], float).reshape(-1, 3).T
-                                      for key in ("anchor", "fairlead"))
+        self.anchor, self.fairlead = (
+            np.array([line[key] for line in lines], float).reshape(-1, 3).T for key in ("anchor", "fairlead")
+        )
         spans = np.linalg.norm(self.anchor - self.fairlead, axis=0)
-        self.spring = np.array([line["stiffness"] if "stiffness" in line
-                                else line["axial_stiffness"] / line["unstretched_length"] for line in lines], float)
-        self.slack_length = np.array([line["unstretched_length"] if "unstretched_length" in line
-                                      else span - line["pretension"] / line["stiffness"]
-                                      for line, span in zip(lines, spans)], float)
+        self.spring = np.array(
+            [
+                line["stiffness"] if "stiffness" in line else line["axial_stiffness"] / line["unstretched_length"]
+                for line in lines
+            ],
+            float,
+        )
+        self.slack_length = np.array(
+            [
+                line["unstretched_length"] if "unstretched_length" in line else span - line["pretension"] / line["stiffness"]
+                for line, span in zip(lines, spans)
+            ],
+            float,
+        )
 
     def _read_hydrostatics(self, declared):
         """What a declared volume or stiffness has more than the geometry: linear terms about the upright position."""
@@ -140,9 +162,16 @@ class ReferenceModel:
         unit = self.density * self.gravity
         c44, c55 = (unit * (second[k].sum() + volume * centre[2]) for k in (1, 0))
         weight = self.mass * self.gravity * self.centre_of_mass[2]
-        return {"displaced_volume": volume, "centre_of_buoyancy": centre, "waterplane_area": plane.sum(),
-                "C33": unit * plane.sum(), "C44_buoyancy": c44, "C55_buoyancy": c55,
-                "C44": c44 - weight, "C55": c55 - weight}
+        return {
+            "displaced_volume": volume,
+            "centre_of_buoyancy": centre,
+            "waterplane_area": plane.sum(),
+            "C33": unit * plane.sum(),
+            "C44_buoyancy": c44,
+            "C55_buoyancy": c55,
+            "C44": c44 - weight,
+            "C55": c55 - weight,
+        }
 
     def first_moment(self, heave, turn, offset, share):
         """Wet volume times its centre's offset (3,) from the reference point: strips cut square, and the wedges at
@@ -150,7 +179,7 @@ class ReferenceModel:
         a, b, e1, e2, axis = turn @ self.column_vectors
         cut = (heave + a[2] < 0) & (heave + b[2] >= 0)
         wedge = -(self.column_i1 * e1[2] * e1 + self.column_i2 * e2[2] * e2) / axis[2]
-        wedge += 0.5 * axis * (self.column_i1 * e1[2]**2 + self.column_i2 * e2[2]**2) / axis[2]**2
+        wedge += 0.5 * axis * (self.column_i1 * e1[2] ** 2 + self.column_i2 * e2[2] ** 2) / axis[2] ** 2
         return offset @ (self.volume * share) + wedge @ cut
 
     def static_load(self, position, turn, offset, share):
@@ -160,8 +189,16 @@ class ReferenceModel:
         weight, extra = self.mass * self.gravity, unit * self.extra_volume
         first = unit * self.first_moment(position[2], turn, offset, share) - weight * lever[:, 0] + extra * lever[:, 1]
         tilt = turn[:2, 2]
-        load = np.array([0.0, 0.0, unit * (self.volume @ share) - weight + extra - self.extra_c33 * position[2],
-                         first[1] + self.extra_tilt[0] * tilt[1], -first[0] - self.extra_tilt[1] * tilt[0], 0.0])
+        load = np.array(
+            [
+                0.0,
+                0.0,
+                unit * (self.volume @ share) - weight + extra - self.extra_c33 * position[2],
+                first[1] + self.extra_tilt[0] * tilt[1],
+                -first[0] - self.extra_tilt[1] * tilt[0],
+                0.0,
+            ]
+        )
         if self.spring.size:
             arm = turn @ self.fairlead
             line = self.anchor - position[:, None] - arm
@@ -187,14 +224,14 @@ class ReferenceModel:
         turn = matrix_of(y[3:7])
         offset, share = self.wetted(position, turn)
         at, along, wet, flow, push = self.fluid(t, position, turn, offset, share)
-        reach = np.vstack([along, cross(at, along)])                     # (6, k): unit generalised forces
+        reach = np.vstack([along, cross(at, along)])  # (6, k): unit generalised forces
         centripetal = (spin @ along) * (spin @ at) - (spin @ spin) * (along * at).sum(axis=0)
-        through = speed @ reach - flow                                   # velocity along each direction, relative
+        through = speed @ reach - flow  # velocity along each direction, relative
         n = self.strips_count
         total = np.abs(through)
-        total[:n] = total[n:2 * n] = np.sqrt(through[:n]**2 + through[n:2 * n]**2)
+        total[:n] = total[n : 2 * n] = np.sqrt(through[:n] ** 2 + through[n : 2 * n] ** 2)
         added = self.direction_mass * wet
-        damped = self.damping @ np.concatenate([speed[:3] @ turn, spin @ turn])          # along body axes
+        damped = self.damping @ np.concatenate([speed[:3] @ turn, spin @ turn])  # along body axes
         load = self.static_load(position, turn, offset, share)
         load -= np.concatenate([turn @ damped[:3], turn @ damped[3:]])
         load -= reach @ (added * centripetal + self.direction_drag * wet * total * through - push)
@@ -246,8 +283,15 @@ class ReferenceModel:
             t, q = rk4(self, q0, velocity, step, duration)
             return t[::every], q[::every]
         t = np.arange(round(duration / dt) + 1) * dt
-        done = solve_ivp(self.rate, (0.0, t[-1]), state_of(q0, velocity), method="DOP853", t_eval=t,
-                         rtol=tolerance, atol=tolerance * np.array([1.0] * 3 + [0.01] * 4 + [0.1] * 3 + [0.001] * 3))
+        done = solve_ivp(
+            self.rate,
+            (0.0, t[-1]),
+            state_of(q0, velocity),
+            method="DOP853",
+            t_eval=t,
+            rtol=tolerance,
+            atol=tolerance * np.array([1.0] * 3 + [0.01] * 4 + [0.1] * 3 + [0.001] * 3),
+        )
         if not done.success:
             raise RuntimeError(done.message)
         return t, motions_of(done.y.T)
@@ -284,9 +328,13 @@ def motions_of(states):
 def matrix_of(quaternion):
     """Rotation matrix of a quaternion x y z w of any length."""
     x, y, z, w = (quaternion / np.sqrt(quaternion @ quaternion)).tolist()
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
 
 
 def skew(a):
@@ -317,8 +365,13 @@ def headings(member):
     for heading in np.atleast_1d(member.get("heading", 0.0)):
         turn = Rotation.from_euler("z", heading, degrees=True).as_matrix()
         axis = turn @ (b - a) / np.linalg.norm(b - a)
-        level = np.cross([0.0, 0.0, 1.0], axis)                          # vertical: width along the heading
+        level = np.cross([0.0, 0.0, 1.0], axis)  # vertical: width along the heading
         e1 = level / np.linalg.norm(level) if np.linalg.norm(level) > 1e-6 else turn @ np.array([1.0, 0.0, 0.0])
-        yield {"group": member["group"], "circular": circular, "sides": sides, "ends": [turn @ a, turn @ b],
-               "vectors": (turn @ a, turn @ b, e1, np.cross(axis, e1), axis),
-               "maccamy_fuchs": member.get("maccamy_fuchs", True)}
+        yield {
+            "group": member["group"],
+            "circular": circular,
+            "sides": sides,
+            "ends": [turn @ a, turn @ b],
+            "vectors": (turn @ a, turn @ b, e1, np.cross(axis, e1), axis),
+            "maccamy_fuchs": member.get("maccamy_fuchs", True),
+        }

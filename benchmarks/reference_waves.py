@@ -21,8 +21,8 @@ from scipy.special import jvp, yvp
 from benchmarks.reference_model import ReferenceModel, matrix_of, motions_of, rk4, rk4_step, state_of
 
 STRETCHING = (None, "vertical", "wheeler", "extrapolation")
-CHUNK = 16_000                                                           # components times points at once, to stay in cache
-UPRIGHT = np.cos(np.deg2rad(10.0))                                       # diffraction: columns less oblique than that
+CHUNK = 16_000  # components times points at once, to stay in cache
+UPRIGHT = np.cos(np.deg2rad(10.0))  # diffraction: columns less oblique than that
 
 
 class Waves:
@@ -32,8 +32,21 @@ class Waves:
     `set_down` each component's own difference, a constant elevation, is left out (as OpenFAST does).
     """
 
-    def __init__(self, amplitude, omega, heading=0.0, phase=0.0, depth=200.0, gravity=9.80665, *, order=1, set_down=True,
-                 sum_band=(0.0, np.inf), difference_band=(0.0, np.inf), stretching=None):
+    def __init__(
+        self,
+        amplitude,
+        omega,
+        heading=0.0,
+        phase=0.0,
+        depth=200.0,
+        gravity=9.80665,
+        *,
+        order=1,
+        set_down=True,
+        sum_band=(0.0, np.inf),
+        difference_band=(0.0, np.inf),
+        stretching=None,
+    ):
         if stretching not in STRETCHING or order not in (1, 2):
             raise ValueError(f"stretching {stretching!r}, order {order!r}: have {STRETCHING}, 1 or 2")
         amplitude, omega, heading, phase = np.broadcast_arrays(*np.atleast_1d(amplitude, omega, heading, phase))
@@ -43,8 +56,10 @@ class Waves:
         table = [free]
         if order == 2:
             sums, differences = bound(*free[:5], self.depth, self.gravity, set_down)
-            table += [part[:, (low <= part[0]) & (part[0] <= high)] for part, (low, high)
-                      in ((sums, sum_band), (differences, difference_band))]
+            table += [
+                part[:, (low <= part[0]) & (part[0] <= high)]
+                for part, (low, high) in ((sums, sum_band), (differences, difference_band))
+            ]
         self.omega, self.kx, self.ky, self.phase, self.elevation, self.potential = np.hstack(table).copy()
         self.k = np.hypot(self.kx, self.ky)
         self.bound = np.arange(self.k.size) >= omega.size
@@ -114,7 +129,7 @@ class Waves:
 
 def wavenumber(omega, depth, gravity):
     """Positive k (1/m) of omega^2 = g k tanh(k h), by Newton's method from Eckart's guess."""
-    y = np.asarray(omega, float)**2 * depth / gravity
+    y = np.asarray(omega, float) ** 2 * depth / gravity
     x = y / np.sqrt(np.tanh(y))
     for _ in range(20):
         tanh = np.tanh(x)
@@ -178,10 +193,21 @@ class WaveModel(ReferenceModel):
       where the water is sampled follow the platform (OpenFAST: "xy", with stretching "xyz").
     """
 
-    def __init__(self, platform: dict, waves: Waves, strip: float = 0.5, pontoon_strip: float = 2.0, *,
-                 maccamy_fuchs: bool = False, diffraction_phase: bool = True, diffraction_bound: bool = True,
-                 pontoon_ends: bool = False, wetting: str = "displaced", fixed_directions: bool = False,
-                 displaced: str = "xyz"):
+    def __init__(
+        self,
+        platform: dict,
+        waves: Waves,
+        strip: float = 0.5,
+        pontoon_strip: float = 2.0,
+        *,
+        maccamy_fuchs: bool = False,
+        diffraction_phase: bool = True,
+        diffraction_bound: bool = True,
+        pontoon_ends: bool = False,
+        wetting: str = "displaced",
+        fixed_directions: bool = False,
+        displaced: str = "xyz",
+    ):
         super().__init__(platform, strip, pontoon_strip)
         if wetting not in ("displaced", "mean") or (wetting == "mean" and waves.stretching):
             raise ValueError(f"wetting {wetting!r} with stretching {waves.stretching!r}")
@@ -194,7 +220,7 @@ class WaveModel(ReferenceModel):
             self._close([number for number, member in enumerate(self.members) if member["vectors"][4][2] < np.sqrt(0.5)])
         self._columns(maccamy_fuchs, diffraction_phase, diffraction_bound)
         n = np.arange(self.strips_count)
-        self.place = np.concatenate([n, n, n.size + np.arange(self.end_push.size)])      # of each direction
+        self.place = np.concatenate([n, n, n.size + np.arange(self.end_push.size)])  # of each direction
         self.force_mass = self.direction_mass + np.concatenate([self.density * self.volume] * 2 + [0.0 * self.end_push])
         taken = np.isin(self.place, np.concatenate([np.zeros(0, int), *(where for _, where in self.factors)]))
         self.force_mass[taken] -= self.direction_mass[taken]
@@ -220,8 +246,9 @@ class WaveModel(ReferenceModel):
             self.end_node = np.hstack([self.end_node, a[:, None], b[:, None]])
             self.directions = np.hstack([self.directions, axis[:, None], axis[:, None]])
             self.end_push, self.end_member = np.append(self.end_push, [area, -area]), np.append(self.end_member, [number] * 2)
-            self.direction_mass, self.direction_drag = (np.append(x, [0.0, 0.0]) for x in
-                                                        (self.direction_mass, self.direction_drag))
+            self.direction_mass, self.direction_drag = (
+                np.append(x, [0.0, 0.0]) for x in (self.direction_mass, self.direction_drag)
+            )
 
     def levels(self, t, position, turn):
         """Surface (members,): a column's where its axis meets still water, within its length; else still water."""
@@ -248,7 +275,7 @@ class WaveModel(ReferenceModel):
         if self.stays:
             points[self.stays] = (turn.T @ at)[self.stays]
         wet = np.concatenate([share, end_wet])
-        live = np.flatnonzero(wet)                                       # water is asked for at wet places only
+        live = np.flatnonzero(wet)  # water is asked for at wet places only
         rank = np.cumsum(wet > 0) - 1
         factors = [(factor, rank[where[wet[where] > 0]]) for factor, where in self.factors]
         velocity, acceleration, pressure = np.zeros_like(at), np.zeros_like(at), np.zeros(wet.size)
@@ -256,7 +283,7 @@ class WaveModel(ReferenceModel):
         along = self.directions if self.fixed_directions else turn @ self.directions
         flow = (along * velocity[:, self.place]).sum(axis=0)
         push = self.force_mass * (along * acceleration[:, self.place]).sum(axis=0)
-        push[2 * self.strips_count:] += self.density * self.end_push * pressure[self.strips_count:]
+        push[2 * self.strips_count :] += self.density * self.end_push * pressure[self.strips_count :]
         return at[:, self.place], along, wet[self.place], flow, push * wet[self.place]
 
     def wave_load(self, t, q=np.zeros(6)):

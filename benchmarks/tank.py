@@ -65,27 +65,29 @@ mooring:
   - {anchor: [150.0, -259.808, -14.0], fairlead: [29.0, -50.229, -14.0], stiffness: 45000.0, pretension: 1500000.0}
 """
 
-STEP = 0.2                                                               # s, of the records and of the integration
+STEP = 0.2  # s, of the records and of the integration
 CHANNELS = ("surge", "heave", "pitch")
-AMPLITUDES = {"surge": (4.0, 8.0, 12.0), "heave": (1.5, 3.0, 4.5), "pitch": (2.0, 4.0, 6.0)}          # m, m, deg
-DURATIONS = {"surge": 700.0, "heave": 260.0, "pitch": 320.0, "sea": 1600.0}                           # s
-PERIODS = {"surge": 135.0, "heave": 20.0, "pitch": 27.0}                 # s, only to size the releases' rates
-SEAS = {"sea-1": (3.1, 8.96), "sea-2": (5.5, 11.0)}                      # Hs m, Tp s
+AMPLITUDES = {"surge": (4.0, 8.0, 12.0), "heave": (1.5, 3.0, 4.5), "pitch": (2.0, 4.0, 6.0)}  # m, m, deg
+DURATIONS = {"surge": 700.0, "heave": 260.0, "pitch": 320.0, "sea": 1600.0}  # s
+PERIODS = {"surge": 135.0, "heave": 20.0, "pitch": 27.0}  # s, only to size the releases' rates
+SEAS = {"sea-1": (3.1, 8.96), "sea-2": (5.5, 11.0)}  # Hs m, Tp s
 TRANSIENT = 400.0
-NOISE = {"surge": 0.01, "heave": 0.005, "pitch": 0.01, "wave": 0.01}     # m, m, deg, m
+NOISE = {"surge": 0.01, "heave": 0.005, "pitch": 0.01, "wave": 0.01}  # m, m, deg, m
 UNITS = np.array([1.0, 1.0, 1 / DEG])
-RANGES = {"column": {"Ca_t": (1.0, 1.6), "Ca_z": (0.1, 0.5), "Cd_t": (1.5, 2.5), "Cd_z": (1.5, 3.0)},
-          "pontoon": {"Ca_t": (0.1, 0.6), "Ca_z": (1.4, 2.0), "Cd_t": (1.5, 2.2), "Cd_z": (4.0, 5.2)}}
+RANGES = {
+    "column": {"Ca_t": (1.0, 1.6), "Ca_z": (0.1, 0.5), "Cd_t": (1.5, 2.5), "Cd_z": (1.5, 3.0)},
+    "pontoon": {"Ca_t": (0.1, 0.6), "Ca_z": (1.4, 2.0), "Cd_t": (1.5, 2.2), "Cd_z": (4.0, 5.2)},
+}
 DAMPING = {"B11": (4e4, 7e4), "B33": (1.5e5, 2.2e5), "B55": (3.3e8, 5e8)}
-ERRORS = {"mass": 0.002, "inertia": 0.005, "line_stiffness": 0.01, "pretension": 0.01}   # one standard deviation, of one
-PEAKEDNESS = 2.0                                                         # of JONSWAP
-LOW, CUTOFF = 0.03, 0.3                                                  # Hz, of the free waves
-CYCLE = 1638.4                                                           # s, after which a sea repeats itself
-REACH = 20.0                                                             # m, excursion of the hull that the grid covers
-SPACING, LEVELS, DEEPEST, STRETCH = 3.0, 10, 28.0, 2.5                   # m, -, m, -
-CHUNK = 160                                                              # steps whose water is worked out at once
-BATCH = 12                                                               # campaigns at once
-TRUTH, RELEASE, WAVES, SENSORS = range(4)                                # streams of random numbers
+ERRORS = {"mass": 0.002, "inertia": 0.005, "line_stiffness": 0.01, "pretension": 0.01}  # one standard deviation, of one
+PEAKEDNESS = 2.0  # of JONSWAP
+LOW, CUTOFF = 0.03, 0.3  # Hz, of the free waves
+CYCLE = 1638.4  # s, after which a sea repeats itself
+REACH = 20.0  # m, excursion of the hull that the grid covers
+SPACING, LEVELS, DEEPEST, STRETCH = 3.0, 10, 28.0, 2.5  # m, -, m, -
+CHUNK = 160  # steps whose water is worked out at once
+BATCH = 12  # campaigns at once
+TRUTH, RELEASE, WAVES, SENSORS = range(4)  # streams of random numbers
 
 
 @dataclass
@@ -96,8 +98,8 @@ class Spec:
     effect: str | Sequence[str] | None = None
     strength: int = 2
     seed: int = 0
-    coefficients: dict = field(default_factory=dict)                     # group or "damping" or "errors" -> values instead
-    scale: float = 1.0                                                   # of the effect's sizes, for studies
+    coefficients: dict = field(default_factory=dict)  # group or "damping" or "errors" -> values instead
+    scale: float = 1.0  # of the effect's sizes, for studies
 
     @property
     def effects(self) -> list[str]:
@@ -124,9 +126,19 @@ class Setup:
             raise ValueError(f"strength {spec.strength!r}: 1, 2 or 3")
         self.platform = YAML(typ="safe").load(PLATFORM)
         body, errors = self.platform["rigid_body"], self.truth["errors"]
-        self.values = {"mass": body["mass"] * errors["mass"], "inertia": body["inertia"]["Iyy"] * errors["inertia"],
-                       "centre": body["centre_of_mass"][2], "lumps": [], "sliding": (0.0, 0.0), "current": 0.0,
-                       "tracked": (0.0, 0.0), "lag": 0.0, "gauge": 0.0, "reflection": (0.0, 0.0), "seen": 0.0}
+        self.values = {
+            "mass": body["mass"] * errors["mass"],
+            "inertia": body["inertia"]["Iyy"] * errors["inertia"],
+            "centre": body["centre_of_mass"][2],
+            "lumps": [],
+            "sliding": (0.0, 0.0),
+            "current": 0.0,
+            "tracked": (0.0, 0.0),
+            "lag": 0.0,
+            "gauge": 0.0,
+            "reflection": (0.0, 0.0),
+            "seen": 0.0,
+        }
         self.effects = []
         for effect in spec.effects:
             law, variant = find(effect)
@@ -141,10 +153,14 @@ class Setup:
 
     def record(self) -> dict:
         """The truth, as written to JSON."""
-        return {"seed": self.spec.seed, "strength": self.spec.strength,
-                "effects": [{"effect": name, "variant": variant, "parameters": p} for name, variant, p in self.effects],
-                "coefficients": {group: self.truth[group] for group in RANGES}, "linear_damping": self.truth["damping"],
-                "factors_on_declared": self.truth["errors"]}
+        return {
+            "seed": self.spec.seed,
+            "strength": self.spec.strength,
+            "effects": [{"effect": name, "variant": variant, "parameters": p} for name, variant, p in self.effects],
+            "coefficients": {group: self.truth[group] for group in RANGES},
+            "linear_damping": self.truth["damping"],
+            "factors_on_declared": self.truth["errors"],
+        }
 
 
 class Sea:
@@ -163,14 +179,14 @@ class Sea:
             found = np.hstack(bound(self.first_omega, self.k, 0.0 * self.k, phase, amplitude, depth, gravity, False))
             number = np.rint(found[0] * CYCLE / (2 * np.pi)).astype(int)
             kept = np.argsort(number, kind="stable")
-            self.bound = number[kept], *found[[1, 3, 4, 5]][:, kept]               # k, phase, elevation, potential
+            self.bound = number[kept], *found[[1, 3, 4, 5]][:, kept]  # k, phase, elevation, potential
 
     @classmethod
     def jonswap(cls, hs, tp, random, **more):
         bins = np.arange(round(LOW * CYCLE), round(CUTOFF * CYCLE) + 1)
         ratio = bins / CYCLE * tp
         width = np.where(ratio <= 1, 0.07, 0.09)
-        shape = ratio**-5.0 * np.exp(-1.25 * ratio**-4.0) * PEAKEDNESS**np.exp(-0.5 * ((ratio - 1) / width)**2)
+        shape = ratio**-5.0 * np.exp(-1.25 * ratio**-4.0) * PEAKEDNESS ** np.exp(-0.5 * ((ratio - 1) / width) ** 2)
         amplitude = hs / 4 * np.sqrt(2 * shape / shape.sum())
         return cls(bins, amplitude * np.exp(2j * np.pi * random.random(bins.size)), **more)
 
@@ -184,7 +200,7 @@ class Sea:
         n = round(CYCLE / HALF)
         spectrum = np.zeros(n, complex)
         spectrum[self.bins] = coefficients
-        return (np.fft.ifft(spectrum) * n)[:t.size]
+        return (np.fft.ifft(spectrum) * n)[: t.size]
 
     def elevation(self, x, reflected=True):
         """Coefficients (size, x) of the surface, to second order."""
@@ -240,8 +256,9 @@ class Sea:
             for number, part, wave in self.pairs(x):
                 u, w, p, *diffracted = (wave.T @ weight[part] for weight in weights)
                 omega = 2 * np.pi / CYCLE * number
-                for q, value in enumerate((u, w, *(1j * omega * part for part in (u, w)), omega * p,
-                                           *(1j * omega * part for part in diffracted))):
+                for q, value in enumerate(
+                    (u, w, *(1j * omega * part for part in (u, w)), omega * p, *(1j * omega * part for part in diffracted))
+                ):
                     found[number, ..., q] += value
         return found[1:]
 
@@ -266,7 +283,7 @@ class Water:
         self.table = np.zeros((len(seas), 2 * size, self.nx * (1 + LEVELS * self.q)), np.float32)
         for table, sea in zip(self.table, seas):
             both = np.concatenate([sea.elevation(x), sea.fields(x, z, radii).reshape(sea.size, -1)], axis=1)
-            table[:sea.size], table[size:size + sea.size] = both.real, -both.imag
+            table[: sea.size], table[size : size + sea.size] = both.real, -both.imag
         self.begin = self.end = 0
         self.four = np.arange(4)
         self.corner = (self.four[:, None] * LEVELS + self.four).ravel()
@@ -284,7 +301,7 @@ class Water:
             wave = np.concatenate([np.cos(angle), np.sin(angle)], axis=1).astype(np.float32)
             self.values = np.stack([wave @ table for table in self.table], axis=1)
         now = self.values[n - self.begin]
-        return now[:, :self.nx], np.ascontiguousarray(now[:, self.nx:]).reshape(-1, self.q)
+        return now[:, : self.nx], np.ascontiguousarray(now[:, self.nx :]).reshape(-1, self.q)
 
     def across(self, x):
         """First of four grid points and their weights (..., 4)."""
@@ -350,13 +367,13 @@ class Tank:
         self.column_count = len(columns)
         ends = np.array([[*m["vectors"][0][[0, 2]], m["vectors"][1][2] - m["vectors"][0][2]] for m, _ in columns])
         self.column_x, self.column_z, self.column_length = ends.T
-        self.column_area = np.array([w * np.pi / 4 * m["sides"][0]**2 for m, w in columns])
-        self.column_second = np.array([w * np.pi / 64 * m["sides"][0]**4 for m, w in columns])
+        self.column_area = np.array([w * np.pi / 4 * m["sides"][0] ** 2 for m, w in columns])
+        self.column_second = np.array([w * np.pi / 64 * m["sides"][0] ** 4 for m, w in columns])
         radius = [m["sides"][0] / 2 for m, _ in columns]
         self.radii = sorted(set(radius))
         self.radius_of = np.repeat([self.radii.index(r) for r in radius], n)
         bx, bz = list(np.repeat(self.column_x, n)), [0.0] * (n * len(columns))
-        rows = []                                                        # place, ex, ez, added volume, push volume, area, ...
+        rows = []  # place, ex, ez, added volume, push volume, area, ...
         for c, (m, w) in enumerate(columns):
             d, length = m["sides"][0], self.column_length[c]
             full = w * np.pi / 4 * d * d * length / n
@@ -381,14 +398,26 @@ class Tank:
                     flat.append((*level, len(upright)))
                 upright.append((len(bx) - 1, 0.0, 1.0, volume, volume, w * width * dl, 0.0, m["group"], "z", -1))
             sides += [(end, axis, s * w * width * height, m["group"]) for end, s in ((a, 1.0), (b, -1.0))]
-        start = len(rows) + len(flat)                                    # of the pontoons' vertical directions
+        start = len(rows) + len(flat)  # of the pontoons' vertical directions
         rows += [(*row[:9], start + row[9]) for row in flat] + upright
         for c, (m, w) in enumerate(columns):
             r = m["sides"][0] / 2
             bx.append(self.column_x[c])
             bz.append(self.column_z[c])
-            rows.append((len(bx) - 1, 0.0, 1.0, w * 2 / 3 * np.pi * r**3, None, w * np.pi * r * r, w * np.pi * r * r,
-                         m["group"], "z", -1))
+            rows.append(
+                (
+                    len(bx) - 1,
+                    0.0,
+                    1.0,
+                    w * 2 / 3 * np.pi * r**3,
+                    None,
+                    w * np.pi * r * r,
+                    w * np.pi * r * r,
+                    m["group"],
+                    "z",
+                    -1,
+                )
+            )
         for end, axis, area, group in sides:
             bx.append(end[0])
             bz.append(end[2])
@@ -408,18 +437,20 @@ class Tank:
         self.drag = 0.5 * self.density * np.array(area) * of("Cd")
         body = self.density * np.array([volume or 0.0 for volume in pushed])
         self.forced = self.added + body
-        self.forced[:, :self.first_column] = body[:self.first_column]    # diffraction stands for 1 + Ca
+        self.forced[:, : self.first_column] = body[: self.first_column]  # diffraction stands for 1 + Ca
         self.face = self.density * np.array(face)
 
     def _body(self, platform):
         """Rigid body, damping and mooring, (r, ...)."""
-        value = {key: np.array([s.values[key] for s in self.setups])[self.campaign] for key in ("mass", "inertia", "centre",
-                                                                                               "current", "tracked", "sliding")}
+        value = {
+            key: np.array([s.values[key] for s in self.setups])[self.campaign]
+            for key in ("mass", "inertia", "centre", "current", "tracked", "sliding")
+        }
         self.current, self.tracked, (self.sliding, self.sliding_z) = value["current"], value["tracked"], value["sliding"].T
         self.mass, self.first = value["mass"], np.stack([0 * value["mass"], value["mass"] * value["centre"]])
-        self.about = value["inertia"] + value["mass"] * value["centre"]**2
+        self.about = value["inertia"] + value["mass"] * value["centre"] ** 2
         volume = (-self.column_area * self.column_z).sum() + self.pontoon_volume
-        self.afloat = (volume - self.mass / self.density) / self.column_area.sum()       # heave before it is moored
+        self.afloat = (volume - self.mass / self.density) / self.column_area.sum()  # heave before it is moored
         for r, c in enumerate(self.campaign):
             for m, x, z in self.setups[c].values["lumps"]:
                 self.mass[r] += m
@@ -430,8 +461,10 @@ class Tank:
         lines = platform["mooring"]["lines"]
         self.anchor, self.fairlead = (np.array([line[key] for line in lines], float).T for key in ("anchor", "fairlead"))
         errors = [s.truth["errors"] for s in self.setups]
-        stiffness, pull = ([[line[key] * e[name] for line in lines] for e in errors]
-                           for key, name in (("stiffness", "line_stiffness"), ("pretension", "pretension")))
+        stiffness, pull = (
+            [[line[key] * e[name] for line in lines] for e in errors]
+            for key, name in (("stiffness", "line_stiffness"), ("pretension", "pretension"))
+        )
         self.spring = np.array(stiffness)[self.campaign]
         self.slack = np.linalg.norm(self.anchor - self.fairlead, axis=0) - np.array(pull)[self.campaign] / self.spring
 
@@ -446,9 +479,14 @@ class Tank:
                 continue
             every = {key for p in of if p for key in p}
             p = {key: np.array([of[self.campaign[r]].get(key, 0.0) for r in index]) for key in every}
-            about = {"decay": [runs[r][1] for r in index], "sea": [runs[r][2] for r in index], "step": self.step,
-                     "hs": np.array([runs[r][3] for r in index]), "tp": np.array([runs[r][4] for r in index]),
-                     "equilibrium": np.zeros((index.size, 3))}
+            about = {
+                "decay": [runs[r][1] for r in index],
+                "sea": [runs[r][2] for r in index],
+                "step": self.step,
+                "hs": np.array([runs[r][3] for r in index]),
+                "tp": np.array([runs[r][4] for r in index]),
+                "equilibrium": np.zeros((index.size, 3)),
+            }
             one = law(p, about)
             one.index, one.columns = index, slice(self.states, self.states + law.states)
             self.states += law.states
@@ -458,7 +496,7 @@ class Tank:
         """Size of the transverse velocity for every direction, from velocities (r, k) along them."""
         size = np.abs(u)
         if self.pairs.size:
-            both = np.sqrt(u[:, self.pairs]**2 + u[:, self.mates]**2)
+            both = np.sqrt(u[:, self.pairs] ** 2 + u[:, self.mates] ** 2)
             size[:, self.pairs] = size[:, self.mates] = both
         return size
 
@@ -467,9 +505,9 @@ class Tank:
         q, v, n, cols = y[:, :3], y[:, 3:6], self.column_strips, self.first_column
         c, s = np.cos(q[:, 2:3]), np.sin(q[:, 2:3])
         waves = self.water is not None and not still
-        foot = q[:, 1:2] - s * self.column_x + c * self.column_z         # of columns
+        foot = q[:, 1:2] - s * self.column_x + c * self.column_z  # of columns
         rise = self.column_length * c
-        wet0 = np.clip(-foot / rise, 0.0, 1.0)                           # up to still water
+        wet0 = np.clip(-foot / rise, 0.0, 1.0)  # up to still water
         wet = wet0
         if waves:
             surface, flow = self.water.at(t)
@@ -494,18 +532,27 @@ class Tank:
             for i in range(len(self.radii)):
                 these = self.radius_of == i
                 accx[:, :cols][:, these] = water[:, :cols][:, these, 5 + i]
-            accz[:, :cols] *= 2.0                                        # of diffraction too, but for its phase
+            accz[:, :cols] *= 2.0  # of diffraction too, but for its phase
             u -= water[:, self.place, 0] * ex + water[:, self.place, 1] * ez
             push = self.forced * wetness * (accx[:, self.place] * ex + accz[:, self.place] * ez)
             ends = self.first_end
             push[:, ends:] += self.face[ends:] * water[:, self.place[ends:], 4]
-        spin = v[:, 2:3]**2
+        spin = v[:, 2:3] ** 2
         product = self.size_of(u) * u
         laws = []
         for law in self.laws:
             i = law.index
-            now = SimpleNamespace(t=t, half=round(t / HALF), q=q[i], v=v[i], s=y[i, 6:][:, law.columns], first=first,
-                                  still=still, size_of=self.size_of, vertical=self.vertical)
+            now = SimpleNamespace(
+                t=t,
+                half=round(t / HALF),
+                q=q[i],
+                v=v[i],
+                s=y[i, 6:][:, law.columns],
+                first=first,
+                still=still,
+                size_of=self.size_of,
+                vertical=self.vertical,
+            )
             laws.append((law, i, now))
             if law.acts("drag"):
                 product[i] = law.drag(now, u[i], self.size_of(u[i]))
@@ -519,7 +566,7 @@ class Tank:
         load -= np.stack([c * b[:, 0] + s * b[:, 1], c * b[:, 1] - s * b[:, 0], b[:, 2]], axis=1)
         gx, gz = c * self.first[0] + s * self.first[1], c * self.first[1] - s * self.first[0]
         height = c * self.sliding_z
-        load[:, 0] += w * w * (gx - self.sliding * s * self.sliding_z)   # the sliding mass is not along in x
+        load[:, 0] += w * w * (gx - self.sliding * s * self.sliding_z)  # the sliding mass is not along in x
         load[:, 1] += w * w * gz
         load[:, 2] -= height * self.sliding * w * w * s * self.sliding_z
         out = np.zeros_like(y)
@@ -528,7 +575,7 @@ class Tank:
             if law.acts("force"):
                 load[i] += law.force(now)
             if law.states:
-                out[i, 6 + law.columns.start:6 + law.columns.stop] = law.rate(now)
+                out[i, 6 + law.columns.start : 6 + law.columns.stop] = law.rate(now)
         matrix = np.empty((len(y), 3, 3))
         matrix[:, 0, 0] = self.mass - self.sliding + (added * ex * ex).sum(axis=1)
         matrix[:, 1, 1] = self.mass + (added * ez * ez).sum(axis=1)
@@ -549,12 +596,19 @@ class Tank:
         unit = self.density * self.gravity
         first = (volume * (c1 * self.column_x + s1 * middle) + wedge).sum(axis=1) + c * self.pontoon_x + s * self.pontoon_z
         weight = self.gravity * (c * self.first[0] + s * self.first[1])
-        load = np.stack([np.zeros_like(c), unit * (volume.sum(axis=1) + self.pontoon_volume) - self.gravity * self.mass,
-                         weight - unit * first], axis=1)
+        load = np.stack(
+            [
+                np.zeros_like(c),
+                unit * (volume.sum(axis=1) + self.pontoon_volume) - self.gravity * self.mass,
+                weight - unit * first,
+            ],
+            axis=1,
+        )
         fx, fy, fz = self.fairlead
         ax, az = c1 * fx + s1 * fz, c1 * fz - s1 * fx
-        line = np.stack([self.anchor[0] - q[:, :1] - ax, np.broadcast_to(self.anchor[1] - fy, ax.shape),
-                         self.anchor[2] - q[:, 1:2] - az])
+        line = np.stack(
+            [self.anchor[0] - q[:, :1] - ax, np.broadcast_to(self.anchor[1] - fy, ax.shape), self.anchor[2] - q[:, 1:2] - az]
+        )
         span = np.sqrt((line * line).sum(axis=0))
         pull = line * (self.spring * np.maximum(span - self.slack, 0.0) / span)
         load[:, 0] += pull[0].sum(axis=1)
@@ -589,7 +643,7 @@ class Tank:
         y = np.zeros((len(q), 6 + self.states))
         y[:, :3] = q
         for law in self.laws:
-            y[law.index, 6 + law.columns.start:6 + law.columns.stop] = law.rest(q[law.index])
+            y[law.index, 6 + law.columns.start : 6 + law.columns.stop] = law.rest(q[law.index])
         return y
 
     def march(self, y, duration):
@@ -609,7 +663,7 @@ class Tank:
             else:
                 y = y + h / 24 * (55 * rates[0] - 59 * rates[1] + 37 * rates[2] - 9 * rates[3])
             out[:, j + 1] = y[:, :3]
-            if j % 100 == 0 and not (np.abs(y[:, 0]) < REACH).all():     # not a number too
+            if j % 100 == 0 and not (np.abs(y[:, 0]) < REACH).all():  # not a number too
                 raise RuntimeError(f"a hull left the tank: surge {y[:, 0]} m at {t:.0f} s")
         return out
 
@@ -617,8 +671,10 @@ class Tank:
         """What the sensors see of motions (r, n, 3): the tracked point, from where it was before mooring; m, m, rad."""
         x, z = self.tracked.T[:, :, None]
         c, s = np.cos(motion[..., 2]), np.sin(motion[..., 2])
-        return np.stack([motion[..., 0] + c * x + s * z - x,
-                         motion[..., 1] + c * z - s * x - z - self.afloat[:, None], motion[..., 2]], axis=-1)
+        return np.stack(
+            [motion[..., 0] + c * x + s * z - x, motion[..., 1] + c * z - s * x - z - self.afloat[:, None], motion[..., 2]],
+            axis=-1,
+        )
 
 
 def release(seed: int, name: str, index: int):
@@ -683,7 +739,7 @@ def write(setup: Setup, records: dict, folder) -> None:
     for number, (name, clean) in enumerate(records.items()):
         kind, index = name.split("-")
         sea = kind == "sea"
-        channels = [*CHANNELS, "wave"][:clean.shape[1]]
+        channels = [*CHANNELS, "wave"][: clean.shape[1]]
         random = np.random.default_rng([seed, SENSORS, number])
         noisy = clean + random.standard_normal(clean.shape) * [NOISE[channel] for channel in channels]
         header = "time_s,surge_m,heave_m,pitch_deg" + ",wave_m" * sea
@@ -694,13 +750,28 @@ def write(setup: Setup, records: dict, folder) -> None:
         last = index == ("2" if sea else "3")
         test = {"id": name, "kind": "irregular" if sea else "decay", "file": f"{name}.csv", "use": "holdout" if last else "fit"}
         hs, tp = SEAS.get(name, (0.0, 0.0))
-        tests.append(test | ({"significant_wave_height": hs, "peak_period": tp, "transient": TRANSIENT} if sea
-                             else {"degree_of_freedom": kind}))
-    manifest = {"name": f"campaign-{seed}", "platform": "platform.yaml", "scale": 1.0,
-                "channels": {"time": {"column": "time_s", "unit": "s"}, "surge": {"column": "surge_m", "unit": "m"},
-                             "heave": {"column": "heave_m", "unit": "m"}, "pitch": {"column": "pitch_deg", "unit": "deg"}},
-                "wave_channel": {"column": "wave_m", "unit": "m", "position": [0.0, 0.0]},
-                "noise": {channel: NOISE[channel] for channel in CHANNELS}, "tests": tests}
+        tests.append(
+            test
+            | (
+                {"significant_wave_height": hs, "peak_period": tp, "transient": TRANSIENT}
+                if sea
+                else {"degree_of_freedom": kind}
+            )
+        )
+    manifest = {
+        "name": f"campaign-{seed}",
+        "platform": "platform.yaml",
+        "scale": 1.0,
+        "channels": {
+            "time": {"column": "time_s", "unit": "s"},
+            "surge": {"column": "surge_m", "unit": "m"},
+            "heave": {"column": "heave_m", "unit": "m"},
+            "pitch": {"column": "pitch_deg", "unit": "deg"},
+        },
+        "wave_channel": {"column": "wave_m", "unit": "m", "position": [0.0, 0.0]},
+        "noise": {channel: NOISE[channel] for channel in CHANNELS},
+        "tests": tests,
+    }
     yaml = YAML(typ="safe", pure=True)
     yaml.default_flow_style, yaml.sort_base_mapping_type_on_output = False, False
     yaml.dump(manifest, folder / "campaign.yaml")
@@ -711,7 +782,7 @@ def make_campaigns(specs: Sequence[Spec], batch: int = BATCH) -> list[dict]:
     """Writes the campaigns of specs that name a folder; their truths. Those of one seed share seas: keep them together."""
     truths = []
     for start in range(0, len(specs), batch):
-        setups = [Setup(spec) for spec in specs[start:start + batch]]
+        setups = [Setup(spec) for spec in specs[start : start + batch]]
         for setup, records in zip(setups, simulate(setups)):
             if setup.spec.folder is not None:
                 write(setup, records, setup.spec.folder)

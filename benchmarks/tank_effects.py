@@ -89,8 +89,15 @@ def at_point(q, x, z):
 class Umbilical(Effect):
     """A spring, a mean pull and some mass where a cable leaves the hull (Bergdahl 2017; lumped as in basin reports)."""
 
-    parameters = {"": {"stiffness": (200.0, 1500.0, 8000.0), "pull": (-1e3, -1e4, -7e4), "mass": (700.0, 6e3, 4e4),
-                       "x": (-8.0, -8.0, -8.0), "z": (9.0, 9.0, 9.0)}}
+    parameters = {
+        "": {
+            "stiffness": (200.0, 1500.0, 8000.0),
+            "pull": (-1e3, -1e4, -7e4),
+            "mass": (700.0, 6e3, 4e4),
+            "x": (-8.0, -8.0, -8.0),
+            "z": (9.0, 9.0, 9.0),
+        }
+    }
 
     @staticmethod
     def amend(setup, p):
@@ -105,8 +112,10 @@ class Umbilical(Effect):
 class CoulombFriction(Effect):
     """F tanh(v / v0) against the motion."""
 
-    parameters = {"surge": {"force": (1e3, 5e3, 3e4), "v0": (0.01,) * 3, "axis": (SURGE,) * 3},
-                  "pitch": {"force": (2e5, 1e6, 4e6), "v0": (2e-4,) * 3, "axis": (PITCH,) * 3}}
+    parameters = {
+        "surge": {"force": (1e3, 5e3, 3e4), "v0": (0.01,) * 3, "axis": (SURGE,) * 3},
+        "pitch": {"force": (2e5, 1e6, 4e6), "v0": (2e-4,) * 3, "axis": (PITCH,) * 3},
+    }
 
     def force(self, now):
         r, axis = np.arange(len(now.v)), self.p["axis"].astype(int)
@@ -132,8 +141,11 @@ class Hysteresis(Effect):
 class MooringNonlinearity(Effect):
     """-c3 x^3, -c2 x |x| or -c2 x^2 in surge, beyond the lines' own geometry."""
 
-    parameters = {"cubic": {"c3": (16.0, 70.0, 280.0)}, "odd_quadratic": {"c2": (100.0, 400.0, 1600.0)},
-                  "quadratic": {"c2_even": (100.0, 400.0, 1400.0)}}
+    parameters = {
+        "cubic": {"c3": (16.0, 70.0, 280.0)},
+        "odd_quadratic": {"c2": (100.0, 400.0, 1600.0)},
+        "quadratic": {"c2_even": (100.0, 400.0, 1400.0)},
+    }
 
     def force(self, now):
         x, p = now.q[:, 0], self.p
@@ -143,9 +155,11 @@ class MooringNonlinearity(Effect):
 class RadiationMemory(Effect):
     """-int K(t - s) v(s) ds, K = K0 exp(-b t) (cos w t - b/w sin w t): no damping at zero frequency (Cummins 1962)."""
 
-    parameters = {"surge": {"K0": (1e5, 5e5, 2e6), "decay": (0.2,) * 3, "omega": (0.6,) * 3, "axis": (SURGE,) * 3},
-                  "heave": {"K0": (6e4, 2e5, 8e5), "decay": (0.15,) * 3, "omega": (0.45,) * 3, "axis": (HEAVE,) * 3},
-                  "pitch": {"K0": (1e8, 3.5e8, 1.2e9), "decay": (0.15,) * 3, "omega": (0.5,) * 3, "axis": (PITCH,) * 3}}
+    parameters = {
+        "surge": {"K0": (1e5, 5e5, 2e6), "decay": (0.2,) * 3, "omega": (0.6,) * 3, "axis": (SURGE,) * 3},
+        "heave": {"K0": (6e4, 2e5, 8e5), "decay": (0.15,) * 3, "omega": (0.45,) * 3, "axis": (HEAVE,) * 3},
+        "pitch": {"K0": (1e8, 3.5e8, 1.2e9), "decay": (0.15,) * 3, "omega": (0.5,) * 3, "axis": (PITCH,) * 3},
+    }
     states = 2
 
     def begin(self):
@@ -179,20 +193,23 @@ class AmplitudeDependentDrag(Effect):
     at a sharp edge (Graham 1980).
     """
 
-    parameters = {"power": {"exponent": (-0.04, -0.13, -0.33), "KC0": (2.0,) * 3, "c": (0.0,) * 3},
-                  "inverse": {"exponent": (0.0,) * 3, "KC0": (2.0,) * 3, "c": (0.05, 0.2, 0.8)}}
+    parameters = {
+        "power": {"exponent": (-0.04, -0.13, -0.33), "KC0": (2.0,) * 3, "c": (0.0,) * 3},
+        "inverse": {"exponent": (0.0,) * 3, "KC0": (2.0,) * 3, "c": (0.05, 0.2, 0.8)},
+    }
     OMEGA = 2 * np.pi / np.array([135.0, 20.4, 27.6])
     WIDTH = 12.5
 
     def drag(self, now, u, size):
         amplitude = np.hypot(now.q - self.runs["equilibrium"], now.v / self.OMEGA)
         waves = self.runs["hs"] / 4 * 2**0.5
-        both = np.stack([np.hypot(amplitude[:, 0], 12.0 * amplitude[:, 2]),
-                         np.hypot(amplitude[:, 1], 26.0 * amplitude[:, 2])], axis=1)
+        both = np.stack(
+            [np.hypot(amplitude[:, 0], 12.0 * amplitude[:, 2]), np.hypot(amplitude[:, 1], 26.0 * amplitude[:, 2])], axis=1
+        )
         both = np.where(waves[:, None] > 0, waves[:, None], both)
         kc = np.clip(2 * np.pi * both / self.WIDTH, 0.05, 20.0)
         p = {name: value[:, None] for name, value in self.p.items()}
-        factor = (kc / p["KC0"])**p["exponent"] * (1 + p["c"] / kc) / (1 + p["c"] / p["KC0"])
+        factor = (kc / p["KC0"]) ** p["exponent"] * (1 + p["c"] / kc) / (1 + p["c"] / p["KC0"])
         return np.where(now.vertical, factor[:, 1:], factor[:, :1]) * size * u
 
 
@@ -211,7 +228,7 @@ class SeaStateDependentDrag(Effect):
         if self.memory is None:
             self.memory = np.zeros_like(u)
         high = self.b[0] * u + self.memory
-        if now.first:                                                    # transposed direct form, once a step
+        if now.first:  # transposed direct form, once a step
             self.memory = self.b[1] * u - self.a[1] * high
         share = self.p["share"][:, None]
         return share * size * u + (1 - share) * now.size_of(high) * high
@@ -228,12 +245,12 @@ class WaveDrift(Effect):
         for r, sea in enumerate(self.runs["sea"]):
             if sea is None:
                 continue
-            shape = (sea.first_omega / self.p["omega0"][r])**2
-            curve = 0.5 * 1025.0 * GRAVITY * self.p["length"][r] * (shape / (1 + shape))**2
+            shape = (sea.first_omega / self.p["omega0"][r]) ** 2
+            curve = 0.5 * 1025.0 * GRAVITY * self.p["length"][r] * (shape / (1 + shape)) ** 2
             t = np.arange(sea.half_steps) * HALF
             envelope = sea.sum_of(sea.first_amplitude * np.sqrt(curve), t)
             change = sea.sum_of(1j * sea.first_omega * sea.first_amplitude * np.sqrt(curve), t)
-            squared, rate = np.abs(envelope)**2, 2 * (envelope.conj() * change).real
+            squared, rate = np.abs(envelope) ** 2, 2 * (envelope.conj() * change).real
             self.series[r] = squared + self.p["quadrature"][r] * rate
 
     def force(self, now):
@@ -250,17 +267,29 @@ class WaveDriftDamping(Effect):
     parameters = {"": {"alpha": (800.0, 4000.0, 1.6e4)}}
 
     def force(self, now):
-        return along(SURGE, -self.p["alpha"] * self.runs["hs"]**2 * now.v[:, 0])
+        return along(SURGE, -self.p["alpha"] * self.runs["hs"] ** 2 * now.v[:, 0])
 
 
 class HiddenOscillator(Effect):
     """A second mass on a spring and a damper. "pitch": a part of the declared mass slides along the hull at height z, with
     its weight (slack tank, loose damper); "surge": a body of its own is tied to the hull there (a float in tow)."""
 
-    parameters = {"pitch": {"mass": (1e3, 5e3, 5e4), "period": (24.0,) * 3, "damping": (0.02,) * 3, "z": (12.0,) * 3,
-                            "carried": (1.0,) * 3},
-                  "surge": {"mass": (2.5e4, 1e5, 6e5), "period": (90.0,) * 3, "damping": (0.02,) * 3, "z": (0.0,) * 3,
-                            "carried": (0.0,) * 3}}
+    parameters = {
+        "pitch": {
+            "mass": (1e3, 5e3, 5e4),
+            "period": (24.0,) * 3,
+            "damping": (0.02,) * 3,
+            "z": (12.0,) * 3,
+            "carried": (1.0,) * 3,
+        },
+        "surge": {
+            "mass": (2.5e4, 1e5, 6e5),
+            "period": (90.0,) * 3,
+            "damping": (0.02,) * 3,
+            "z": (0.0,) * 3,
+            "carried": (0.0,) * 3,
+        },
+    }
     states = 2
 
     @staticmethod
@@ -297,7 +326,7 @@ class NonlinearHydrostatics(Effect):
     parameters = {"": {"C3": (6e3, 3e4, 1.2e5)}}
 
     def force(self, now):
-        return along(HEAVE, -self.p["C3"] * now.q[:, 1]**3)
+        return along(HEAVE, -self.p["C3"] * now.q[:, 1] ** 3)
 
 
 class CoupledDamping(Effect):
@@ -315,30 +344,37 @@ class CoupledDamping(Effect):
 class CubicDamping(Effect):
     """-b3 v^3."""
 
-    parameters = {"surge": {"b3": (1e5, 5e5, 2e6), "axis": (SURGE,) * 3},
-                  "pitch": {"b3": (1e12, 5e12, 4e13), "axis": (PITCH,) * 3}}
+    parameters = {
+        "surge": {"b3": (1e5, 5e5, 2e6), "axis": (SURGE,) * 3},
+        "pitch": {"b3": (1e12, 5e12, 4e13), "axis": (PITCH,) * 3},
+    }
     power = 3
 
     def force(self, now):
         r, axis = np.arange(len(now.v)), self.p["axis"].astype(int)
         v, force = now.v[r, axis], np.zeros_like(now.v)
-        force[r, axis] = -self.p[f"b{self.power}"] * v * np.abs(v)**(self.power - 1)
+        force[r, axis] = -self.p[f"b{self.power}"] * v * np.abs(v) ** (self.power - 1)
         return force
 
 
 class QuadraticDamping(CubicDamping):
     """-b2 |v| v."""
 
-    parameters = {"surge": {"b2": (1e5, 5e5, 2e6), "axis": (SURGE,) * 3},
-                  "pitch": {"b2": (1.2e10, 6e10, 2.4e11), "axis": (PITCH,) * 3}}
+    parameters = {
+        "surge": {"b2": (1e5, 5e5, 2e6), "axis": (SURGE,) * 3},
+        "pitch": {"b2": (1.2e10, 6e10, 2.4e11), "axis": (PITCH,) * 3},
+    }
     power = 2
 
 
 class MassProperties(Effect):
     """The declared inertia, centre of mass (its height) or mass is not the hull's."""
 
-    parameters = {"inertia": {"inertia_factor": (1.01, 1.03, 1.08)}, "centre_of_mass": {"rise": (0.1, 0.4, 1.2)},
-                  "mass": {"mass_factor": (1.004, 1.016, 1.05)}}
+    parameters = {
+        "inertia": {"inertia_factor": (1.01, 1.03, 1.08)},
+        "centre_of_mass": {"rise": (0.1, 0.4, 1.2)},
+        "mass": {"mass_factor": (1.004, 1.016, 1.05)},
+    }
 
     @staticmethod
     def amend(setup, p):
@@ -380,8 +416,11 @@ class WaveGaugePosition(Effect):
 class WaveReflection(Effect):
     """r eta(t - tau) comes back against the waves; the wave channel has the incident waves only, or also what comes back."""
 
-    parameters = {"": {"share": (0.01, 0.04, 0.15), "delay": (90.0,) * 3},
-                  "incident": {"seen": (0.0,) * 3}, "measured": {"seen": (1.0,) * 3}}
+    parameters = {
+        "": {"share": (0.01, 0.04, 0.15), "delay": (90.0,) * 3},
+        "incident": {"seen": (0.0,) * 3},
+        "measured": {"seen": (1.0,) * 3},
+    }
 
     @staticmethod
     def amend(setup, p):
@@ -438,18 +477,35 @@ class ParametricPitch(Effect):
         return np.stack([0.0 * z, -0.5 * self.p["gain"] * theta**2, -self.p["gain"] * z * theta], axis=1)
 
 
-HALF = 0.1                                                               # s, the unit of now.half
+HALF = 0.1  # s, the unit of now.half
 
 EFFECTS: dict[str, type[Effect]] = {
-    "umbilical": Umbilical, "coulomb_friction": CoulombFriction, "hysteresis": Hysteresis,
-    "mooring_nonlinearity": MooringNonlinearity, "radiation_memory": RadiationMemory, "current": Current,
-    "amplitude_dependent_drag": AmplitudeDependentDrag, "sea_state_dependent_drag": SeaStateDependentDrag,
-    "wave_drift": WaveDrift, "wave_drift_damping": WaveDriftDamping, "hidden_oscillator": HiddenOscillator,
-    "nonlinear_hydrostatics": NonlinearHydrostatics, "coupled_damping": CoupledDamping, "cubic_damping": CubicDamping,
-    "quadratic_damping": QuadraticDamping, "mass_properties": MassProperties, "sensor_reference": SensorReference,
-    "sensor_lag": SensorLag, "wave_gauge_position": WaveGaugePosition, "wave_reflection": WaveReflection,
-    "static_offset": StaticOffset, "stiffness_drift": StiffnessDrift, "end_stop": EndStop, "cogging": Cogging,
-    "parametric_pitch": ParametricPitch}
+    "umbilical": Umbilical,
+    "coulomb_friction": CoulombFriction,
+    "hysteresis": Hysteresis,
+    "mooring_nonlinearity": MooringNonlinearity,
+    "radiation_memory": RadiationMemory,
+    "current": Current,
+    "amplitude_dependent_drag": AmplitudeDependentDrag,
+    "sea_state_dependent_drag": SeaStateDependentDrag,
+    "wave_drift": WaveDrift,
+    "wave_drift_damping": WaveDriftDamping,
+    "hidden_oscillator": HiddenOscillator,
+    "nonlinear_hydrostatics": NonlinearHydrostatics,
+    "coupled_damping": CoupledDamping,
+    "cubic_damping": CubicDamping,
+    "quadratic_damping": QuadraticDamping,
+    "mass_properties": MassProperties,
+    "sensor_reference": SensorReference,
+    "sensor_lag": SensorLag,
+    "wave_gauge_position": WaveGaugePosition,
+    "wave_reflection": WaveReflection,
+    "static_offset": StaticOffset,
+    "stiffness_drift": StiffnessDrift,
+    "end_stop": EndStop,
+    "cogging": Cogging,
+    "parametric_pitch": ParametricPitch,
+}
 
 
 def find(effect: str) -> tuple[type[Effect], str]:

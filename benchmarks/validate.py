@@ -41,9 +41,24 @@ from benchmarks.evidence.common import CACHE, ROOT, Absent, Section, say
 
 PAGE = ROOT / "docs" / "validation.md"
 SECTIONS = (
-    "seeds", "coverage", "identified", "periods", "hulls", "openfast", "openfast_waves", "measured", "measured_waves",
-    "tuned_seas", "classical_bias", "starts", "global_search", "study", "diagnoses", "lacking", "numerical_tank",
-)  # fmt: skip
+    "seeds",
+    "coverage",
+    "identified",
+    "periods",
+    "hulls",
+    "openfast",
+    "openfast_waves",
+    "measured",
+    "measured_waves",
+    "tuned_seas",
+    "classical_bias",
+    "starts",
+    "global_search",
+    "study",
+    "diagnoses",
+    "lacking",
+    "numerical_tank",
+)
 INTRO = """\
 # Validation
 
@@ -78,17 +93,24 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return lacking.run(figures, options.processes)
     if name == "diagnoses":
         return diagnoses.run(figures, options.processes, options.diagnoses)
-    plain = {"periods": periods, "hulls": hulls, "openfast": openfast, "openfast_waves": openfast_waves,
-             "measured": measured, "study": study_text}  # fmt: skip
+    plain = {
+        "periods": periods,
+        "hulls": hulls,
+        "openfast": openfast,
+        "openfast_waves": openfast_waves,
+        "measured": measured,
+        "study": study_text,
+    }
     return plain[name].run(figures)
 
 
 def command(name: str, options: argparse.Namespace) -> str:
     """What makes a section alone."""
     counts = {
-        "seeds": f" --seeds {options.seeds}", "starts": f" --starts {options.starts}",
+        "seeds": f" --seeds {options.seeds}",
+        "starts": f" --starts {options.starts}",
         "diagnoses": f" --diagnoses {options.diagnoses}",
-    }  # fmt: skip
+    }
     return f"python -m benchmarks.validate --only {name}{counts.get(name, '')}"
 
 
@@ -115,10 +137,13 @@ def wrapped(text: str) -> str:
         goes_on = parts and parts[-1] and not parts[-1].startswith(keep) and line and not line.startswith((*keep, "- "))
         parts[-1:] = [f"{parts[-1]} {line}"] if goes_on else [*parts[-1:], line]
     lines = [
-        part if part.startswith(keep) else textwrap.fill(
-            part, 120, subsequent_indent="  " if part.startswith("- ") else "", break_long_words=False, break_on_hyphens=False)
+        part
+        if part.startswith(keep)
+        else textwrap.fill(
+            part, 120, subsequent_indent="  " if part.startswith("- ") else "", break_long_words=False, break_on_hyphens=False
+        )
         for part in parts
-    ]  # fmt: skip
+    ]
     return "\n".join(lines)
 
 

@@ -90,6 +90,8 @@ def _raised(exponent: int) -> str:
 def listed(words: Sequence[str]) -> str:
     """a, b and c."""
     return words[0] if len(words) == 1 else " and ".join(x for x in (", ".join(words[:-1]), *words[-1:]) if x)
+
+
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 
 

@@ -8,6 +8,10 @@ KINDS = {"decay": "free decay", "irregular": "irregular waves", "regular": "regu
 UNDETERMINED = "not determined"
 BANDS = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
 LAW_NAMES = {
-    "constant": "constant", "significant_height": "power of Hs", "peak_period": "power of Tp", "both": "powers of Hs and Tp",
-    "keulegan_carpenter": "power of KC", "high_pass": "slow motion apart",
-}  # fmt: skip
+    "constant": "constant",
+    "significant_height": "power of Hs",
+    "peak_period": "power of Tp",
+    "both": "powers of Hs and Tp",
+    "keulegan_carpenter": "power of KC",
+    "high_pass": "slow motion apart",
+}

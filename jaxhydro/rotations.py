@@ -39,9 +39,7 @@ def attitude_rates(attitude: Float[Array, "3"], angular: Float[Array, "3"]) -> F
     return attitude_rates_of(cosines(attitude), angular)
 
 
-def attitude_rates_of(
-    both: tuple[Float[Array, "3"], Float[Array, "3"]], angular: Float[Array, "3"]
-) -> Float[Array, "3"]:
+def attitude_rates_of(both: tuple[Float[Array, "3"], Float[Array, "3"]], angular: Float[Array, "3"]) -> Float[Array, "3"]:
     """`attitude_rates` from cosines and sines."""
     (cr, cp, _), (sr, sp, _) = both
     p, q, r = angular

@@ -59,17 +59,23 @@ def of_factor(name: str) -> dict[str, Any]:
         (path / "platform.yaml").write_text(json.dumps(document(factor, 1 / 1.6)))  # JSON is YAML
         np.savetxt(path / "heave.csv", np.column_stack([time, measured]), delimiter=",", header="t,z", comments="", fmt="%.6f")
         manifest = {
-            "name": "heave", "platform": "platform.yaml", "noise": {"heave": NOISE}, "zero": None,
+            "name": "heave",
+            "platform": "platform.yaml",
+            "noise": {"heave": NOISE},
+            "zero": None,
             "channels": {"time": {"column": "t", "unit": "s"}, "heave": {"column": "z", "unit": "m"}},
             "tests": [{"id": "heave", "kind": "decay", "degree_of_freedom": "heave", "file": "heave.csv"}],
-        }  # fmt: skip
+        }
         (path / "campaign.yaml").write_text(json.dumps({k: v for k, v in manifest.items() if v is not None}))
         result = calibrate(load_campaign(path), free=LABELS)
     true_values = {label: float(model.values[label]) for label in LABELS}
     found["fit"] = {
-        label: [result.parameters[label].value / true_values[label],
-                (result.parameters[label].standard_deviation or np.nan) / true_values[label]] for label in LABELS
-    }  # fmt: skip
+        label: [
+            result.parameters[label].value / true_values[label],
+            (result.parameters[label].standard_deviation or np.nan) / true_values[label],
+        ]
+        for label in LABELS
+    }
     return found
 
 
@@ -98,8 +104,15 @@ def words(results: list[dict[str, Any]], figures: Path) -> Section:
         else:
             pq = ["–", "–", "refused", "refused"]
         rows.append([f"{factor:g}", *pq, *fit])
-    heads = ("Factor", "First half cycle's ratio", "Half cycles", "p / true [95 %]", "q / true [95 %]",
-             "B33 / true ± sd", "`pontoon.Cd_z` / true ± sd")  # fmt: skip
+    heads = (
+        "Factor",
+        "First half cycle's ratio",
+        "Half cycles",
+        "p / true [95 %]",
+        "q / true [95 %]",
+        "B33 / true ± sd",
+        "`pontoon.Cd_z` / true ± sd",
+    )
     text = f"""
 A heave decay of the NumPy model from {RELEASED:g} m, {DURATION:g} s, noise {1000 * NOISE:g} mm, the pontoon's drag
 multiplied by a factor and B33 by its square. The P-Q analysis (`classical`) gives p and q; what they should be is B_lin/M

@@ -21,10 +21,18 @@ EDGE = {
     *(ROOT / "calibration" / name for name in ("plots", "report", "commands", "formatting.py", "vocabulary.py")),
 }
 TRUE = {
-    "column.Ca_t": 1.50, "column.Ca_z": 0.12, "column.Cd_t": 2.09, "column.Cd_z": 2.23,
-    "pontoon.Ca_t": 0.11, "pontoon.Ca_z": 1.87, "pontoon.Cd_t": 1.84, "pontoon.Cd_z": 4.96,
-    "linear_damping.B11": 4.4e4, "linear_damping.B33": 1.6e5, "linear_damping.B55": 3.63e8,
-}  # fmt: skip
+    "column.Ca_t": 1.50,
+    "column.Ca_z": 0.12,
+    "column.Cd_t": 2.09,
+    "column.Cd_z": 2.23,
+    "pontoon.Ca_t": 0.11,
+    "pontoon.Ca_z": 1.87,
+    "pontoon.Cd_t": 1.84,
+    "pontoon.Cd_z": 4.96,
+    "linear_damping.B11": 4.4e4,
+    "linear_damping.B33": 1.6e5,
+    "linear_damping.B55": 3.63e8,
+}
 
 
 class Section(NamedTuple):

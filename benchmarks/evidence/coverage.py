@@ -20,9 +20,12 @@ DRAWS = 48
 KINDS = ("white", "drifting", "ringing")
 MEASURED = ("kvlcc2", "focal-c4")
 METHODS = {
-    "coloured": "Laplace, coloured errors", "stated": "as `calibrate` states", "white": "as if white",
-    "profile": "profile", "blocks": "block bootstrap",
-}  # fmt: skip
+    "coloured": "Laplace, coloured errors",
+    "stated": "as `calibrate` states",
+    "white": "as if white",
+    "profile": "profile",
+    "blocks": "block bootstrap",
+}
 
 
 def of_campaign(name: str) -> dict[str, Any]:
@@ -55,10 +58,13 @@ def of_campaign(name: str) -> dict[str, Any]:
         found["blocks"] = {k: draws.interval(k, kind="normal") for k in known}
         found["unsettled"] = {"draws": draws.unsettled}
     return {
-        "intervals": found, "excess": likely.excess(), "converged": fit.converged, "iterations": fit.iterations,
+        "intervals": found,
+        "excess": likely.excess(),
+        "converged": fit.converged,
+        "iterations": fit.iterations,
         "value": {k: p.value for k, p in result.parameters.items()},
         "deviation": dict(zip(likely.labels, map(float, likely.deviation()), strict=True)),
-    }  # fmt: skip
+    }
 
 
 def of_measured(name: str) -> dict[str, list[float]]:
@@ -88,8 +94,9 @@ def run(figures: Path, processes: int, campaigns: int = CAMPAIGNS) -> Section:
         say(f"  {name} ({kind_of(index)}): {sum(hits)} of {len(hits)} ({len(results)} of {campaigns})")
     measured = {
         name: cached("coverage", key, name, partial(of_measured, name))
-        for name in MEASURED if (SHARED / "measured" / name).exists()
-    }  # fmt: skip
+        for name in MEASURED
+        if (SHARED / "measured" / name).exists()
+    }
     return conclude(results, measured, figures)
 
 
@@ -113,24 +120,33 @@ def share(hits: list[bool]) -> str:
     return f"{100 * np.mean(hits):.0f} % ({100 * low:.0f}–{100 * high:.0f}) of {len(hits)}"
 
 
-def conclude(
-    results: dict[int, dict[str, Any]], measured: dict[str, dict[str, list[float]]], figures: Path
-) -> Section:
+def conclude(results: dict[int, dict[str, Any]], measured: dict[str, dict[str, list[float]]], figures: Path) -> Section:
     """Tables, words and the figure."""
     methods = [m for m in METHODS if hits_of(results, m)]
     over = [(METHODS[m], *(share(hits_of(results, m, kind)) for kind in (None, *KINDS))) for m in methods]
     rows, excess = [], []
     for label in FREE:
         rows.append((f"`{label}`", *(share(hits_of(results, m, label=label)) for m in ("coloured", "profile", "blocks"))))
-        times = [np.median([r["excess"][label] for i, r in results.items() if kind_of(i) == kind]) for kind in KINDS
-                 if any(kind_of(i) == kind for i in results)]  # fmt: skip
+        times = [
+            np.median([r["excess"][label] for i, r in results.items() if kind_of(i) == kind])
+            for kind in KINDS
+            if any(kind_of(i) == kind for i in results)
+        ]
         excess.append((f"`{label}`", *(number(float(x), 2) for x in times)))
-    real = [(name, f"`{label}`", percent(sd), percent(white), f"{number(ratio, 2)} times")
-            for name, of in measured.items() for label, (sd, white, ratio) in of.items()]  # fmt: skip
+    real = [
+        (name, f"`{label}`", percent(sd), percent(white), f"{number(ratio, 2)} times")
+        for name, of in measured.items()
+        for label, (sd, white, ratio) in of.items()
+    ]
     heading = (
-        "\nThe same of decays measured in basins, where the model's own error is what is left (deviations of the coordinate, "
-        "which are about relative; identifiable coefficients only):\n\n"
-    ) if real else ""  # fmt: skip
+        (
+            "\nThe same of decays measured in basins, where the model's own error is what is left (deviations "
+            "of the coordinate, "
+            "which are about relative; identifiable coefficients only):\n\n"
+        )
+        if real
+        else ""
+    )
     by_label = {label: hits_of(results, "coloured", label=label) for label in FREE}
     shares = {label: float(np.mean(hits)) for label, hits in by_label.items() if hits}
     outside = [k for k, x in shares.items() if not LOW <= x <= HIGH]

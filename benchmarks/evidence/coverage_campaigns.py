@@ -82,13 +82,20 @@ def make(folder: Path, number: int) -> Path:
             if kind_of(number) != "white":
                 motion[:, column] += DISTURBED * NOISE[channel] * disturbance(kind_of(number), channel, len(t), random)
         file = f"{name}-{index + 1}.csv"
-        np.savetxt(folder / file, np.column_stack([t, motion]), fmt="%.6f", delimiter=",", comments="",
-                   header="time,surge,heave,pitch")  # fmt: skip
+        np.savetxt(
+            folder / file, np.column_stack([t, motion]), fmt="%.6f", delimiter=",", comments="", header="time,surge,heave,pitch"
+        )
         tests.append({"id": f"{name}-{index + 1}", "kind": "decay", "degree_of_freedom": name, "file": file, "use": "fit"})
     channels = {"time": {"column": "time", "unit": "s"}}
     channels |= {c: {"column": c, "unit": "deg" if c == "pitch" else "m"} for c in CHANNELS}
-    manifest = {"name": f"coverage-{number}", "platform": "platform.yaml", "channels": channels, "noise": dict(NOISE),
-                "tests": tests, "calibrate": {"free": list(FREE)}}  # fmt: skip
+    manifest = {
+        "name": f"coverage-{number}",
+        "platform": "platform.yaml",
+        "channels": channels,
+        "noise": dict(NOISE),
+        "tests": tests,
+        "calibrate": {"free": list(FREE)},
+    }
     for path, document in (("platform.yaml", platform()), ("campaign.yaml", manifest)):
         with open(folder / path, "w") as file:
             YAML(typ="safe").dump(document, file)

@@ -13,20 +13,42 @@ from benchmarks.evidence.common import CACHE, ROOT, Section, cached, fingerprint
 SECTION = "diagnoses"
 TITLE = "What is missing: diagnoses of campaigns from an independent tank"
 EFFECTS = (
-    "umbilical", "coulomb_friction", "hysteresis", "mooring_nonlinearity", "radiation_memory", "current",
-    "amplitude_dependent_drag", "sea_state_dependent_drag", "wave_drift", "wave_drift_damping", "hidden_oscillator",
-    "nonlinear_hydrostatics", "coupled_damping", "mass_properties", "sensor_reference", "sensor_lag", "wave_gauge_position",
+    "umbilical",
+    "coulomb_friction",
+    "hysteresis",
+    "mooring_nonlinearity",
+    "radiation_memory",
+    "current",
+    "amplitude_dependent_drag",
+    "sea_state_dependent_drag",
+    "wave_drift",
+    "wave_drift_damping",
+    "hidden_oscillator",
+    "nonlinear_hydrostatics",
+    "coupled_damping",
+    "mass_properties",
+    "sensor_reference",
+    "sensor_lag",
+    "wave_gauge_position",
     "wave_reflection",
-)  # fmt: skip
+)
 OUTSIDE = ("stiffness_drift", "end_stop", "cogging")  # no candidate has these laws
 PAIRS = (
-    "umbilical+sea_state_dependent_drag", "current+wave_drift", "coulomb_friction+nonlinear_hydrostatics",
-    "radiation_memory+sensor_lag", "hidden_oscillator+mooring_nonlinearity",
-)  # fmt: skip
+    "umbilical+sea_state_dependent_drag",
+    "current+wave_drift",
+    "coulomb_friction+nonlinear_hydrostatics",
+    "radiation_memory+sensor_lag",
+    "hidden_oscillator+mooring_nonlinearity",
+)
 ACTS = {  # motion that these act in, in the tank; others act in several, or in none of their own
-    "coulomb_friction": "surge", "hysteresis": "surge", "mooring_nonlinearity": "surge", "radiation_memory": "surge",
-    "wave_drift_damping": "surge", "hidden_oscillator": "pitch", "nonlinear_hydrostatics": "heave",
-}  # fmt: skip
+    "coulomb_friction": "surge",
+    "hysteresis": "surge",
+    "mooring_nonlinearity": "surge",
+    "radiation_memory": "surge",
+    "wave_drift_damping": "surge",
+    "hidden_oscillator": "pitch",
+    "nonlinear_hydrostatics": "heave",
+}
 NULLS = 20
 STRENGTHS = {1: "weak", 2: "middle", 3: "strong"}
 NAMED, IN_SET, FALSE_ALARMS, BOTH = 0.90, 0.97, 0.05, 0.80  # goals
@@ -120,14 +142,20 @@ def of_case(name: str) -> dict[str, Any]:
         "in_doubt": [one.in_doubt for one in result.effects],
         "refused": {listed(one.effect, one.degree_of_freedom): one.reason for one in result.rejected},
         "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
-        "tried": {f"{one.round} {listed(one.effect, one.degree_of_freedom)}": one.verdict._asdict()
-                  for one in result.scores if one.verdict is not None},
-        "taken_out": {listed(one.effect, one.degree_of_freedom): one.taken_out._asdict()
-                      for one in result.rejected if one.taken_out is not None},
+        "tried": {
+            f"{one.round} {listed(one.effect, one.degree_of_freedom)}": one.verdict._asdict()
+            for one in result.scores
+            if one.verdict is not None
+        },
+        "taken_out": {
+            listed(one.effect, one.degree_of_freedom): one.taken_out._asdict()
+            for one in result.rejected
+            if one.taken_out is not None
+        },
         "laws": {one.motion: [[term.name for term in one.law.terms], one.law.share] for one in result.latent},
         "seconds": result.seconds,
         "sources": fingerprint(*TANK),
-    }  # fmt: skip
+    }
 
 
 def kept() -> dict[str, dict[str, Any]]:
@@ -293,22 +321,36 @@ class Tally(NamedTuple):
         near = {case for case in held if ratio[case] <= FACTOR}
         just = {case for case in held if set(found(results[case])) == set(case.effects)}
         return cls(
-            saying(known, "named"), saying(known, "named", "in the set"), Share(len(near), len(held)),
-            Share(len(near | just), len(held)), saying(nulls, "false alarm", "unexplained"), saying(pairs, "named"),
-            saying(pairs, "named", "in the set"), Share(outside[UNEXPLAINED], sum(outside.values())),
+            saying(known, "named"),
+            saying(known, "named", "in the set"),
+            Share(len(near), len(held)),
+            Share(len(near | just), len(held)),
+            saying(nulls, "false alarm", "unexplained"),
+            saying(pairs, "named"),
+            saying(pairs, "named", "in the set"),
+            Share(outside[UNEXPLAINED], sum(outside.values())),
             Share(outside[LOWER], sum(outside.values())),
-        )  # fmt: skip
+        )
 
     def text(self) -> str:
         """In sentences."""
         two = (
-            f"; of two effects at once both were found in {self.both}, and with those that they cannot be told from in "
-            f"{self.in_sets}"
-        ) if self.both.of else ""  # fmt: skip
+            (
+                f"; of two effects at once both were found in {self.both}, and with those that they cannot be told from in "
+                f"{self.in_sets}"
+            )
+            if self.both.of
+            else ""
+        )
         others = (
-            f" Of effects of this strength that no candidate has the law of, {self.unexplained} are said to be unexplained, "
-            f"and {self.lower} are answered with a law that lowers the error of the tests that were not fitted."
-        ) if self.lower.of else ""  # fmt: skip
+            (
+                f" Of effects of this strength that no candidate has the law of, {self.unexplained} are said to be "
+                f"unexplained, "
+                f"and {self.lower} are answered with a law that lowers the error of the tests that were not fitted."
+            )
+            if self.lower.of
+            else ""
+        )
         return (
             f"At the middle strength the right effect is named first in {self.named}, and among those told apart by nothing, "
             f"or found after another, in {self.listed}; of campaigns with nothing missing {self.alarms} raised a false "
@@ -338,9 +380,12 @@ class Tally(NamedTuple):
 def other_strengths(said: dict[Case, str], results: dict[Case, dict[str, Any]]) -> str:
     """What is said of strong and of weak effects, and of laws from outside, in sentences."""
     words = {
-        "named": "{} named first", "in the set": "{} among others alike", "nothing": "{} not seen", "unexplained":
-        "{} unexplained", "another": "{} called by another name",
-    }  # fmt: skip
+        "named": "{} named first",
+        "in the set": "{} among others alike",
+        "nothing": "{} not seen",
+        "unexplained": "{} unexplained",
+        "another": "{} called by another name",
+    }
     sentences = []
     for strength in (3, 1):
         found = [one for case, one in said.items() if case.effect in EFFECTS and case.strength == strength]
@@ -374,7 +419,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
         f"nothing missing, by sources of its time; a force: the law proposed for what is unexplained, and the share that it "
         f"gives in what was not fitted; in doubt: what helps, and is outdone by something that is refused):\n\n"
         + table(("effect in the tank", *STRENGTHS.values()), rows)
-    )  # fmt: skip
+    )
     nulls = {case: result for case, result in results.items() if not case.effect}
     if nulls:
         text += f"\nOf nothing missing: {', '.join(_words(case, said[case], results[case]) for case in nulls)}.\n"
@@ -397,8 +442,9 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
     }
     tried = {
         case: [one | {"together": one["bic"] + one["net"]} for one in result["tried"].values()]
-        for case, result in nulls.items() if "tried" in result
-    }  # fmt: skip
+        for case, result in nulls.items()
+        if "tried" in result
+    }
     every = [one for some in tried.values() for one in some]
     if not every:
         return ""
@@ -411,14 +457,21 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
         }
         highest = max((value for values in passing.values() for value in values), default=None)
         alone = sum(bool(values) for values in passing.values())
-        rows.append((words, f"{least:g}", f"{max(one[name] for one in every):.3g}", Share(alone, len(tried)),
-                     "–" if highest is None else f"{highest:.3g}"))  # fmt: skip
+        rows.append(
+            (
+                words,
+                f"{least:g}",
+                f"{max(one[name] for one in every):.3g}",
+                Share(alone, len(tried)),
+                "–" if highest is None else f"{highest:.3g}",
+            )
+        )
     return (
         f"\nWhat an effect has to reach, and what the {len(every)} candidates reached that were refitted in "
         f"{len(tried)} campaigns with nothing missing: at most, and at most among those that pass all the other rules, which "
         f"is what a threshold has to be above:\n\n"
         + table(("rule", "threshold", "at most", "told of an effect without the rule", "at most, past the others"), rows)
-    )  # fmt: skip
+    )
 
 
 def draw(results: dict[Case, dict[str, Any]], path: Path) -> Path:

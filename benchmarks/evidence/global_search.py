@@ -34,9 +34,13 @@ def of_seed(name: str) -> dict[str, Any]:
     method, seed = name.rsplit("-", 1)
     found = search(campaign(), method=method, seed=int(seed), budget=Budget(seconds=BUDGET))
     return {
-        "objective": found.objective, "simulations": found.simulations, "seconds": found.seconds, "ended": found.ended,
-        "values": found.values, "history": [column.tolist() for column in found.history],
-    }  # fmt: skip
+        "objective": found.objective,
+        "simulations": found.simulations,
+        "seconds": found.seconds,
+        "ended": found.ended,
+        "values": found.values,
+        "history": [column.tolist() for column in found.history],
+    }
 
 
 def handicap(values: dict[str, float]) -> float:
@@ -86,15 +90,28 @@ def conclude(results: dict[str, list[dict[str, Any]]], best: float, floor: float
         share[method] = len(near) / len(runs)
         medians[method] = np.median(near, axis=0) if near else None
         to = [f"{value:.{digits}f}" for value, digits in zip(np.median(near, axis=0), (0, 1))] if near else ["–", "–"]
-        rows.append((
-            NAMES[method], number(float(np.median(j)), 3), f"{number(float(j.min()), 3)} to {number(float(j.max()), 3)}",
-            f"{len(near)} of {len(runs)}", *to,
-            f"{np.median([one['simulations'] for one in runs]):.0f}", f"{np.median([one['seconds'] for one in runs]):.0f}",
-        ))  # fmt: skip
+        rows.append(
+            (
+                NAMES[method],
+                number(float(np.median(j)), 3),
+                f"{number(float(j.min()), 3)} to {number(float(j.max()), 3)}",
+                f"{len(near)} of {len(runs)}",
+                *to,
+                f"{np.median([one['simulations'] for one in runs]):.0f}",
+                f"{np.median([one['seconds'] for one in runs]):.0f}",
+            )
+        )
     seeds = max(len(runs) for runs in results.values())
     head = (
-        "Method", "J, median", "J, range", "Within 1 %", "... simulations", "... CPU s", "Simulations in all", "CPU s in all",
-    )  # fmt: skip
+        "Method",
+        "J, median",
+        "J, range",
+        "Within 1 %",
+        "... simulations",
+        "... CPU s",
+        "Simulations in all",
+        "CPU s in all",
+    )
     text = (
         f"The paper's problem: one decay each of surge, heave and pitch ({', '.join(RECORDS)} of the built-in campaign) and "
         f"the platform's eleven coefficients, each anywhere from a tenth to ten times of its declared value, log-uniform. "
@@ -112,9 +129,8 @@ def conclude(results: dict[str, list[dict[str, Any]]], best: float, floor: float
         "nothing of releases, and are given them: positions and rates from least squares over the first 3.1 cycles, "
         "whose coefficients are thrown away, its time and simulations counted; offsets are eliminated in J. Nine unknowns a "
         f"record less is an advantage. What it costs: with these releases the best coefficients have J {number(floor)}, "
-        f"{100 * (floor / best - 1):.2g} % above the least J.\n"
-        + comparison(results, medians)
-    )  # fmt: skip
+        f"{100 * (floor / best - 1):.2g} % above the least J.\n" + comparison(results, medians)
+    )
     short = []
     if share.get("multistart", 1.0) < 1:
         short.append(f"multi-start least squares came within 1 % of the least J from {share['multistart']:.0%} of the seeds")
@@ -132,8 +148,10 @@ def comparison(results: dict[str, list[dict[str, Any]]], medians: dict[str, Any]
             continue
         if medians[method] is not None and medians["multistart"] is not None:
             many, long = medians[method] / medians["multistart"]
-            lines.append(f"- {NAMES[method]} took {many:.1f} times the simulations and {long:.1f} times the CPU time of "
-                         "multi-start to come within 1 %, where it did.")  # fmt: skip
+            lines.append(
+                f"- {NAMES[method]} took {many:.1f} times the simulations and {long:.1f} times the CPU time of "
+                "multi-start to come within 1 %, where it did."
+            )
             continue
         ended = float(np.median([one["objective"] for one in results[method]]))
         sooner = [at for one in ours if (at := reached(one, ended)) is not None]
@@ -142,7 +160,9 @@ def comparison(results: dict[str, list[dict[str, Any]]], medians: dict[str, Any]
         if sooner:
             simulations, seconds = np.median(sooner, axis=0)
             many, long = spent / (simulations, seconds)
-            there = (f" Its median J, {number(ended, 3)}, multi-start has after {simulations:.0f} simulations and "
-                     f"{seconds:.1f} s (medians): {many:.0f} times fewer and {long:.0f} times sooner.")  # fmt: skip
+            there = (
+                f" Its median J, {number(ended, 3)}, multi-start has after {simulations:.0f} simulations and "
+                f"{seconds:.1f} s (medians): {many:.0f} times fewer and {long:.0f} times sooner."
+            )
         lines.append(f"- {NAMES[method]} did not come within 1 % from any seed.{there}")
     return "\n".join(lines) + "\n"

@@ -48,8 +48,16 @@ def draw(results: dict[str, list[dict[str, Any]]], names: dict[str, str], best: 
                 axis.set_minor_formatter(NullFormatter())
             ax.set_ylim(0.75 * best, None)
         axes[0].set_ylabel("J, the least so far")
-        axes[0].annotate("least J of all", (0.01, best), (2, 2), xycoords=("axes fraction", "data"),
-                         textcoords="offset points", va="bottom", fontsize=7, color=MEASURED)  # fmt: skip
+        axes[0].annotate(
+            "least J of all",
+            (0.01, best),
+            (2, 2),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            va="bottom",
+            fontsize=7,
+            color=MEASURED,
+        )
         seeds = max(len(runs) for runs in results.values())
         header(figure, f"Three decays, eleven coefficients: medians and ranges of {seeds} seeds", artists, 5)
         save(figure, path)

@@ -30,12 +30,28 @@ def period_rows(name: str, case: Case, found: dict[str, Any], panels: dict[str, 
             period = 1 / frequency
             digits = 100 * published.rounding / frequency
             shown = f"{period:.2f}" if digits < 0.01 else f"{period:.4g} ± {digits:.1g} %"
-            rows.append((case.title, f"{dof} period (s)", f"{found['periods'][dof]:.2f}", shown,
-                         percent(found["periods"][dof] / period - 1), published.source))  # fmt: skip
+            rows.append(
+                (
+                    case.title,
+                    f"{dof} period (s)",
+                    f"{found['periods'][dof]:.2f}",
+                    shown,
+                    percent(found["periods"][dof] / period - 1),
+                    published.source,
+                )
+            )
     for dof, period in panels.get(name, {}).get("periods", {}).items():
         if name != "volturnus-s":
-            rows.append((case.title, f"{dof} period (s)", f"{found['periods'][dof]:.4g}", f"{period:.4g}",
-                         percent(found["periods"][dof] / period - 1), PANELS))  # fmt: skip
+            rows.append(
+                (
+                    case.title,
+                    f"{dof} period (s)",
+                    f"{found['periods'][dof]:.4g}",
+                    f"{period:.4g}",
+                    percent(found["periods"][dof] / period - 1),
+                    PANELS,
+                )
+            )
     dof = worst(found["periods"], found["reference"]["periods"])
     ours, theirs = found["periods"][dof], found["reference"]["periods"][dof]
     rows.append(
@@ -104,8 +120,10 @@ def run(figures: Path) -> Section:
         apart = found["motion"][dof] / found["reference"]["motion"][dof] - 1
         say(f"  {name}: {dof} in waves differs most from plain NumPy, {percent(apart)}")
         if abs(apart) > EXACT:
-            short.append(f"{case.title}: {dof} in waves of {case.period:g} s differs by {percent(apart)} from the same hull "
-                         f"in plain NumPy (goal {100 * EXACT:g} %)")  # fmt: skip
+            short.append(
+                f"{case.title}: {dof} in waves of {case.period:g} s differs by {percent(apart)} from the same hull "
+                f"in plain NumPy (goal {100 * EXACT:g} %)"
+            )
     variants = cached("hulls", key, "variants", two_members)
     largest = {label: max(abs(x) for kind in one.values() for x in kind.values()) for label, one in variants.items()}
     text = (

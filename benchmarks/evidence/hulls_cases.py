@@ -34,22 +34,44 @@ class Case(NamedTuple):
 
 
 CASES = {
-    "oc3-hywind": Case("OC3-Hywind", HULLS / "oc3-hywind.yaml", 20.0, 0.01, 0.0, (
-        Published({"pitch": 0.034}, 5e-4, "FAST, linearised: NREL's forum, topic 2422, post 6"),
-        Published({"surge": 0.0081183, "heave": 0.032428, "yaw": 0.12051}, 5e-6,
-                  "BModes' OC3Hywind.bmi, by pyBModes at 977b3d8, cases/ECOSYSTEM_FINDING.md"),
-        Published({"surge": 0.00796903, "heave": 0.03245079, "pitch": 0.03384323}, 1e-8, RAFT),
-    )),
-    "oc4-deepcwind": Case("OC4-DeepCwind", HULLS / "oc4-deepcwind.yaml", 14.0, 0.01, 0.0, (
-        Published({"surge": 0.0093, "heave": 0.0578, "pitch": 0.0373}, 5e-5, OC4_SOURCE),
-        Published({"surge": 0.00884301, "heave": 0.05733308, "pitch": 0.04003508, "yaw": 0.01253087}, 1e-8, RAFT),
-    )),
-    "volturnus-s": Case("VolturnUS-S", BUILT_IN, 14.0, 0.01, 0.0, (
-        Published({"surge": 0.007, "heave": 0.049, "pitch": 0.036}, 5e-4, "the report, NREL/TP-5000-76773"),
-    )),
+    "oc3-hywind": Case(
+        "OC3-Hywind",
+        HULLS / "oc3-hywind.yaml",
+        20.0,
+        0.01,
+        0.0,
+        (
+            Published({"pitch": 0.034}, 5e-4, "FAST, linearised: NREL's forum, topic 2422, post 6"),
+            Published(
+                {"surge": 0.0081183, "heave": 0.032428, "yaw": 0.12051},
+                5e-6,
+                "BModes' OC3Hywind.bmi, by pyBModes at 977b3d8, cases/ECOSYSTEM_FINDING.md",
+            ),
+            Published({"surge": 0.00796903, "heave": 0.03245079, "pitch": 0.03384323}, 1e-8, RAFT),
+        ),
+    ),
+    "oc4-deepcwind": Case(
+        "OC4-DeepCwind",
+        HULLS / "oc4-deepcwind.yaml",
+        14.0,
+        0.01,
+        0.0,
+        (
+            Published({"surge": 0.0093, "heave": 0.0578, "pitch": 0.0373}, 5e-5, OC4_SOURCE),
+            Published({"surge": 0.00884301, "heave": 0.05733308, "pitch": 0.04003508, "yaw": 0.01253087}, 1e-8, RAFT),
+        ),
+    ),
+    "volturnus-s": Case(
+        "VolturnUS-S",
+        BUILT_IN,
+        14.0,
+        0.01,
+        0.0,
+        (Published({"surge": 0.007, "heave": 0.049, "pitch": 0.036}, 5e-4, "the report, NREL/TP-5000-76773"),),
+    ),
     "iti-barge": Case("ITI Energy barge", HULLS / "iti-barge.yaml", 20.0, 0.01, 0.0),
     "ship-section": Case("ship section, 0.4 m wide", HULLS / "ship-section.yaml", 3.0, 2e-4, 90.0),
-}  # fmt: skip
+}
 BASES = {
     "name": "base_column",
     "shape": "circ",

@@ -13,9 +13,10 @@ NAME = "identified"
 TITLE = "What nine decays tell of eleven coefficients, and a sea beside them"
 FOLDER = SHARED / "campaigns" / "nothing-missing"
 CASES = {
-    "nine decays": (("decays",), "bands"), "and one sea, its energies": (("decays", "waves"), "bands"),
+    "nine decays": (("decays",), "bands"),
+    "and one sea, its energies": (("decays", "waves"), "bands"),
     "and one sea, its motion": (("decays", "waves"), "motion"),
-}  # fmt: skip
+}
 VAGUE = 0.25  # a deviation, of the value, from which a coefficient is not known
 
 
@@ -25,8 +26,7 @@ def of_case(sea: str, name: str) -> dict[str, Any]:
 
     campaign, (kinds, objective) = load_campaign(FOLDER), CASES[name]
     records = tuple(
-        replace(r, use="fit" if r.kind == "decay" or (r.id == sea and "waves" in kinds) else "ignore")
-        for r in campaign.records
+        replace(r, use="fit" if r.kind == "decay" or (r.id == sea and "waves" in kinds) else "ignore") for r in campaign.records
     )
     found = calibrate_jointly(replace(campaign, records=records), kinds=kinds, objective=objective)  # type: ignore[arg-type]
     known = found.identifiability
@@ -35,8 +35,10 @@ def of_case(sea: str, name: str) -> dict[str, Any]:
     return {
         "deviation": dict(zip(known.parameters.labels, map(float, deviation), strict=True)),
         "value": {label: one.value for label, one in found.parameters.items()},
-        "spectrum": np.sort(known.spectrum).tolist(), "said": list(known.sentences()), "seconds": found.seconds,
-    }  # fmt: skip
+        "spectrum": np.sort(known.spectrum).tolist(),
+        "said": list(known.sentences()),
+        "seconds": found.seconds,
+    }
 
 
 def run(figures: Path, processes: int) -> Section:

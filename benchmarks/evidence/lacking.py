@@ -88,8 +88,10 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
         for test in [str(x) for x in motion.test.values if str(x) in periods]:
             for dof in MOTIONS:
                 low, high = bands(dof, periods[test])["low_frequency"]
-                slow = {k: within(motion[k].sel(test=test, channel=dof).values, low, high, step)
-                        for k in ("measured", "before", "simulated")}  # fmt: skip
+                slow = {
+                    k: within(motion[k].sel(test=test, channel=dof).values, low, high, step)
+                    for k in ("measured", "before", "simulated")
+                }
                 pair = [float(np.corrcoef(slow["measured"], slow[k])[0, 1]) for k in ("before", "simulated")]
                 correlation.setdefault(test, {})[dof] = pair
     kept = ("missing", "baseline", "augmented", "tests", "notes", "seconds", "next_test")
@@ -167,8 +169,25 @@ def words(found: dict[str, Any]) -> str:
     if decays := decay_rows(found):
         text += table(("Decay", "use", "RMSE over sd, before", "after"), decays) + "\n"
     if seas := sea_rows(found):
-        text += table(("Sea", "use", "Motion", "Low, before", "after", "Wave, before", "after", "RMSE over sd, before", "after",
-                       "Slow motion's correlation, before", "after"), seas) + "\n"  # fmt: skip
+        text += (
+            table(
+                (
+                    "Sea",
+                    "use",
+                    "Motion",
+                    "Low, before",
+                    "after",
+                    "Wave, before",
+                    "after",
+                    "RMSE over sd, before",
+                    "after",
+                    "Slow motion's correlation, before",
+                    "after",
+                ),
+                seas,
+            )
+            + "\n"
+        )
     return text
 
 

@@ -37,14 +37,27 @@ def work(name: str, figures: Path) -> dict[str, Any]:
     measured, simulated = (decay_cycles(test.time, x, main.noise) for x in (main.measured, main.simulated))
     n = min(len(measured.period), len(simulated.period))
     return {
-        "channel": main.channel, "relative": main.relative, "rmse": float(for_people(main.channel, main.rmse)),
-        "noise": float(for_people(main.channel, main.noise)), "scale": float(np.std(main.measured)),
-        "iterations": result.iterations, "converged": result.converged, "seconds": result.seconds,
+        "channel": main.channel,
+        "relative": main.relative,
+        "rmse": float(for_people(main.channel, main.rmse)),
+        "noise": float(for_people(main.channel, main.noise)),
+        "scale": float(np.std(main.measured)),
+        "iterations": result.iterations,
+        "converged": result.converged,
+        "seconds": result.seconds,
         "parameters": {k: [p.start, p.value, p.standard_deviation, p.unit] for k, p in result.parameters.items()},
         "natural_period": natural_modes(result.model).of(main.channel),
-        "cycles": [[float(for_people(main.channel, measured.amplitude[i])), measured.period[i], simulated.period[i],
-                    measured.decrement[i], simulated.decrement[i]] for i in range(n)],
-    }  # fmt: skip
+        "cycles": [
+            [
+                float(for_people(main.channel, measured.amplitude[i])),
+                measured.period[i],
+                simulated.period[i],
+                measured.decrement[i],
+                simulated.decrement[i],
+            ]
+            for i in range(n)
+        ],
+    }
 
 
 def run(figures: Path) -> Section:
@@ -94,18 +107,23 @@ def words_of(name: str, words: str, found: dict[str, Any]) -> str:
     seen = [(f"{c[0]:.3g}", f"{c[1]:.3f}", f"{c[2]:.3f}", f"{c[3]:.4f}", f"{c[4]:.4f}") for c in cycles[picks]]
     lost = [label for label, p in found["parameters"].items() if p[2] is None]
     lines = [
-        f"### {name}", "", f"{words}.", "",
+        f"### {name}",
+        "",
+        f"{words}.",
+        "",
         f"RMSE {number(found['rmse'], 2)} {unit}, {percent(found['relative'])} of the record's standard deviation, "
         f"{found['rmse'] / found['noise']:.0f} times the sensor's noise: what is left is the model's error, not noise. Natural "
         f"period of {found['channel']} of the fitted model: {found['natural_period']:.3f} s. "
-        f"{'Converged' if found['converged'] else 'Not converged'} in {found['iterations']} iterations.", "",
+        f"{'Converged' if found['converged'] else 'Not converged'} in {found['iterations']} iterations.",
+        "",
         table(("Coefficient", "Start", "Calibrated", "Unit"), rows),
         f"This one record does not determine {', '.join(f'`{x}`' for x in lost)}.\n" if lost else "",
-        f"Half cycles against amplitude ({unit}): period (s) and logarithmic decrement per cycle, measured and simulated:", "",
+        f"Half cycles against amplitude ({unit}): period (s) and logarithmic decrement per cycle, measured and simulated:",
+        "",
         table(("Amplitude", "Period", "simulated", "Decrement", "simulated"), seen),
         f"From the largest third of the amplitudes to the smallest the period goes from {third(cycles, 1, True):.3f} to "
         f"{third(cycles, 1, False):.3f} s measured, {third(cycles, 2, True):.3f} to {third(cycles, 2, False):.3f} s simulated; "
         f"the decrement from {third(cycles, 3, True):.3f} to {third(cycles, 3, False):.3f} measured, "
         f"{third(cycles, 4, True):.3f} to {third(cycles, 4, False):.3f} simulated.",
-    ]  # fmt: skip
+    ]
     return "\n".join(lines)

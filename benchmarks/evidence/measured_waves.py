@@ -68,13 +68,21 @@ def case(key: str, name: str) -> dict[str, Any]:
     for test in found.tests:
         seas[test.fit.id] = {
             "bands": {k: {b: [x.measured, x.simulated] for b, x in row.items()} for k, row in in_bands(test).items()},
-            "stated": test.stated_height, "tp": test.peak_period, **spectra(test), **lower(test),
-        }  # fmt: skip
+            "stated": test.stated_height,
+            "tp": test.peak_period,
+            **spectra(test),
+            **lower(test),
+        }
     return {
-        "seas": seas, "notes": list(found.notes), "mismatch": found.seas[0][1].mismatch, "rounds": found.seas[0][1].rounds,
-        "inside": found.seas[0][1].inside, "components": found.seas[0][1].sea.components.omega.size,
-        "arm": 50 * float(shape[0] / shape[4]), "periods": [modes.of(dof) for dof in MOTIONS],
-    }  # fmt: skip
+        "seas": seas,
+        "notes": list(found.notes),
+        "mismatch": found.seas[0][1].mismatch,
+        "rounds": found.seas[0][1].rounds,
+        "inside": found.seas[0][1].inside,
+        "components": found.seas[0][1].sea.components.omega.size,
+        "arm": 50 * float(shape[0] / shape[4]),
+        "periods": [modes.of(dof) for dof in MOTIONS],
+    }
 
 
 def lower(test: Any) -> dict[str, Any]:
@@ -97,10 +105,11 @@ def lower(test: Any) -> dict[str, Any]:
     return {
         "keel": {
             "bands": {k: band_integral(density(test, seen), *band) for k, band in limits.items()},
-            "response": [[float(h.amplitude[i]), float(h.phase[i])] for i in at], "mean": float(seen.mean()),
+            "response": [[float(h.amplitude[i]), float(h.phase[i])] for i in at],
+            "mean": float(seen.mean()),
         },
         "arms": arms,
-    }  # fmt: skip
+    }
 
 
 def spectra(test: Any) -> dict[str, Any]:
@@ -174,8 +183,10 @@ def run(figures: Path, processes: int = 2) -> Section:
     found: dict[str, dict[str, Any]] = {}
     for name, result in parallel(NAME, key, list(CASES), partial(case, key), processes):
         found[name] = result
-        say(f"  {name}: low-frequency surge " + ", ".join(f"{off(sea, 'surge', 'low_frequency'):+.0f} %"
-                                                          for sea in result["seas"].values()))  # fmt: skip
+        say(
+            f"  {name}: low-frequency surge "
+            + ", ".join(f"{off(sea, 'surge', 'low_frequency'):+.0f} %" for sea in result["seas"].values())
+        )
     drawn = figures / "measured-waves.png"
     draw(found, drawn)
     flow = cached(NAME, key, "potential", potential)

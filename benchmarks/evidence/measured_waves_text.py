@@ -77,15 +77,18 @@ def intro(found: dict[str, dict[str, Any]], vague: list[str]) -> list[str]:
         "every step are left out. Errors are (simulated - measured) / measured of the integral of the spectrum (Welch, Hann "
         "segments of 1000 s, half overlapped): low, 0.005-0.025 Hz in surge, 0.02-0.055 Hz in heave and pitch; wave, "
         "0.06-0.15 Hz, in the third sea from 0.05 Hz. Nothing is fitted to these seas: mass, mooring and hydrostatics are "
-        "those of the campaign's own platform file.", "",
+        "those of the campaign's own platform file.",
+        "",
         f"Two sets of coefficients. *{FITTED}*: `jaxhydro calibrate` on focal-c4, the same hull's release in surge on another "
         f"mooring. That one record determines little: {', '.join(f'`{x}`' for x in vague)} stay near what its platform file "
         f"starts from, and only `linear_damping.B11` is a result. *{TUNED}*: Table 1 of the paper this package started from, "
         "tuned there to decays in surge, heave and pitch. Natural periods in surge, heave and pitch: "
         f"{periods[FITTED]} s and {periods[TUNED]} s. `MacCamy-Fuchs` replaces 1 + Ca in the wave load on columns, `ramp` "
-        "keeps it in long waves.", "",
-        f"Significant heights of the windows, in brackets as stated in the manifest (m): {seas}.", "",
-    ]  # fmt: skip
+        "keeps it in long waves.",
+        "",
+        f"Significant heights of the windows, in brackets as stated in the manifest (m): {seas}.",
+        "",
+    ]
 
 
 def height(sea: dict[str, Any]) -> float:
@@ -111,22 +114,32 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
     mean = ", ".join(f"{100 * (s['mean']['surge'][1] / s['mean']['surge'][0] - 1):+.0f}" for s in seas)
     spread = max(
         abs(found["tuned"]["seas"][k]["response"][c][i][0] / mid["response"][c][i][0] - 1)
-        for k in base["seas"] for c in MOTIONS for i in (1, 2, 3)
-    )  # fmt: skip
+        for k in base["seas"]
+        for c in MOTIONS
+        for i in (1, 2, 3)
+    )
     ratio = {c: [f"{mid['response'][c][i][3] / mid['response'][c][i][0]:.2f}" for i in (1, 2, 3)] for c in MOTIONS}
     flow = {c: [f"{potential[c][i][0] / mid['response'][c][i][0]:.2f}" for i in (1, 2, 3)] for c in MOTIONS}
-    keel = {n: {b: ", ".join(f"{off_keel(s, b):+.0f}" for s in found[n]["seas"].values()) + " %" for b in BANDS}
-            for n in ("tuned", "fitted")}  # fmt: skip
+    keel = {
+        n: {b: ", ".join(f"{off_keel(s, b):+.0f}" for s in found[n]["seas"].values()) + " %" for b in BANDS}
+        for n in ("tuned", "fitted")
+    }
     arms = [", ".join(f"{s['arms'][i][0]:+.1f}" for s in seas) for i in (0, 1)]
     least = min(arm[1] for s in seas for arm in s["arms"])
     read = ", ".join(f"{potential['keel'][i][0] / mid['response']['surge'][i][0]:.2f}" for i in (1, 2, 3))
-    finer = max(abs(off(found["tuned-twelve"]["seas"][k], c, b) - off(base["seas"][k], c, b))
-                for k in base["seas"] for c in MOTIONS for b in BANDS)  # fmt: skip
+    finer = max(
+        abs(off(found["tuned-twelve"]["seas"][k], c, b) - off(base["seas"][k], c, b))
+        for k in base["seas"]
+        for c in MOTIONS
+        for b in BANDS
+    )
+
     def amounts(each: dict[str, list[str]]) -> str:
         return ", ".join(f"{c} {', '.join(each[c])}" for c in MOTIONS)
 
     return [
-        "What it shows, with Table 1's coefficients, order 2 and MacCamy-Fuchs unless said:", "",
+        "What it shows, with Table 1's coefficients, order 2 and MacCamy-Fuchs unless said:",
+        "",
         "- **Signs, units, clock and gauge hold.** Measured and simulated waves agree at the gauge; coherence with the wave is "
         "0.96 to 1.00 at 0.08 to 0.12 Hz in all three motions, and phases have the same signs and agree within 15 degrees in "
         "surge and 25 in heave and pitch. Linear potential flow on the same hull (WAMIT's coefficients in focal-c4, mass and "
@@ -155,8 +168,9 @@ def conclusions(found: dict[str, dict[str, Any]], potential: dict[str, list[list
         f"{peak(mid, 'pitch', 0):.1f} s (pitch); the model's natural periods are {base['periods'][1]:.1f} and "
         f"{base['periods'][2]:.1f} s. Heave's natural period is too short, so its added mass too small; whether "
         "the rest, and pitch's, is excitation that is not there or damping that is too large, this comparison does not say.",
-        f"- Twelve elements along every pontoon instead of three change no error by more than {finer:.2f} points.", "",
-    ]  # fmt: skip
+        f"- Twelve elements along every pontoon instead of three change no error by more than {finer:.2f} points.",
+        "",
+    ]
 
 
 def errors(found: dict[str, dict[str, Any]]) -> list[str]:
@@ -201,17 +215,37 @@ def responses(found: dict[str, dict[str, Any]], potential: dict[str, list[list[f
         for i, f in enumerate(AT):
             (a, p, c, a2, p2, _), (*_, a3, p3, _) = (pair[i] for pair in pairs)
             flow = potential[channel][i]
-            rows.append((f"{channel} ({UNITS[channel]}/m)", f"{f:.2f}", f"{c:.2f}", *(f"{x:.3f}" for x in (a, a2, a3, flow[0])),
-                         *(f"{x:.0f}" for x in (math.degrees(p), math.degrees(p2), math.degrees(p3), flow[1]))))  # fmt: skip
+            rows.append(
+                (
+                    f"{channel} ({UNITS[channel]}/m)",
+                    f"{f:.2f}",
+                    f"{c:.2f}",
+                    *(f"{x:.3f}" for x in (a, a2, a3, flow[0])),
+                    *(f"{x:.0f}" for x in (math.degrees(p), math.degrees(p2), math.degrees(p3), flow[1])),
+                )
+            )
         if channel == "surge":
             for i, f in enumerate(AT):
                 keels = [found[name]["seas"][SEA]["keel"]["response"][i] for name in ("tuned", "fitted")]
                 amounts, angles = [x[0] for x in keels], [math.degrees(x[1]) for x in keels]
                 flow = potential["keel"][i]
-                rows.append(("surge at the keel (m/m)", f"{f:.2f}", "", "", *(f"{x:.3f}" for x in (*amounts, flow[0])), "",
-                             *(f"{x:.0f}" for x in (*angles, flow[1]))))  # fmt: skip
+                rows.append(
+                    (
+                        "surge at the keel (m/m)",
+                        f"{f:.2f}",
+                        "",
+                        "",
+                        *(f"{x:.3f}" for x in (*amounts, flow[0])),
+                        "",
+                        *(f"{x:.0f}" for x in (*angles, flow[1])),
+                    )
+                )
     sets = ("", f" {TUNED}", f" {FITTED}", " potential flow")
     heads = ("Motion", "f (Hz)", "Coherence", *(f"Amplitude{x}" for x in sets), *(f"Phase{x} (deg)" for x in sets))
-    return [f"#### Transfer functions from the measured wave in {SEA}, order 2, MacCamy-Fuchs", "",
-            "The check of signs, units and the gauge's place before an error is believed: a phase above 0 leads the wave.", "",
-            table(heads, rows)]  # fmt: skip
+    return [
+        f"#### Transfer functions from the measured wave in {SEA}, order 2, MacCamy-Fuchs",
+        "",
+        "The check of signs, units and the gauge's place before an error is believed: a phase above 0 leads the wave.",
+        "",
+        table(heads, rows),
+    ]

@@ -46,9 +46,12 @@ def run(figures: Path, processes: int) -> Section:
 def known_of(law: dict[str, dict[str, float]]) -> dict[str, Any]:
     """What is known of the tank; `law`, of wave drift, as it was found."""
     return {
-        "mooring": truth.mooring(), "radiation": truth.radiation(), "drift": truth.drift(law),
-        "quadratic": truth.quadratic(), "excitation": truth.excitation(),
-    }  # fmt: skip
+        "mooring": truth.mooring(),
+        "radiation": truth.radiation(),
+        "drift": truth.drift(law),
+        "quadratic": truth.quadratic(),
+        "excitation": truth.excitation(),
+    }
 
 
 def draw(found: dict[str, Any], path: Path) -> None:

@@ -48,9 +48,7 @@ def written() -> Path:
     random = np.random.default_rng(0)
     for name in RUNS:
         table = {key: values[::EVERY] for key, values in columns(name).items()}
-        noisy = {
-            to: table[of] + NOISE[to.split("_")[0]] * random.standard_normal(len(table[of])) for to, of in COLUMNS.items()
-        }
+        noisy = {to: table[of] + NOISE[to.split("_")[0]] * random.standard_normal(len(table[of])) for to, of in COLUMNS.items()}
         series = {"time_s": table["Time"], **noisy, "wave_m": table["Wave1Elev"]}
         head = ",".join(series)
         np.savetxt(CAMPAIGN / f"{name}.csv", np.stack([*series.values()], axis=1), "%.6g", ",", header=head, comments="")
@@ -193,9 +191,16 @@ def diagnosed(which: str) -> dict[str, Any]:
         "verdict": result.verdict,
         "effects": [
             {
-                "effect": one.effect, "motion": one.degree_of_freedom, "parameters": values_of(one.parameters),
-                "score": one.evidence.score, "bic": one.evidence.delta_bic, "held": one.evidence.holdout_gain,
-                "clear": one.evidence.clear, "share": one.share, "alike": list(one.indistinguishable), "in_doubt": one.in_doubt,
+                "effect": one.effect,
+                "motion": one.degree_of_freedom,
+                "parameters": values_of(one.parameters),
+                "score": one.evidence.score,
+                "bic": one.evidence.delta_bic,
+                "held": one.evidence.holdout_gain,
+                "clear": one.evidence.clear,
+                "share": one.share,
+                "alike": list(one.indistinguishable),
+                "in_doubt": one.in_doubt,
             }
             for one in result.effects
         ],
@@ -210,5 +215,8 @@ def diagnosed(which: str) -> dict[str, Any]:
         "latent": [[one.motion, one.words] for one in result.latent],
         "unexplained": [result.unexplained_share, result.signature],
         "converged": [result.baseline.converged, result.augmented.converged],
-        "notes": list(result.notes), "next": result.next_test, "seconds": result.seconds, "motions": motions,
-    }  # fmt: skip
+        "notes": list(result.notes),
+        "next": result.next_test,
+        "seconds": result.seconds,
+        "motions": motions,
+    }

@@ -33,7 +33,7 @@ def stages(results: dict[str, Any]) -> dict[str, dict[str, Any]]:
         "fitted to decays and sea": results["all"]["before"]["errors"],
         "with what was found": results["all"]["after"]["errors"],
         "with what was found, tables among candidates": results["tables"]["after"]["errors"],
-    }  # fmt: skip
+    }
 
 
 def decays_table(results: dict[str, Any]) -> str:
@@ -255,15 +255,17 @@ def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
         for dof in DECAYS
         for band, error in errors[HELD]["bands"][dof].items()
         if abs(error) > MENDED
-    ]  # fmt: skip
+    ]
     lost = [pair for pair in MISSING if "**found**" not in (said_of(results[k], *pair) for k in ("all", "decays"))]
     decay = [one["surge"]["relative"]["surge"] for one in (results["calibrated"]["errors"], errors)]
     short = []
     if left:
         short.append(f"numerical tank: with what was found, the held-out sea is off by {', '.join(left)}")
     if decay[1] > max(LOST, TIMES * decay[0]):
-        short.append(f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "
-                     f"what was found, {percent(decay[0])} where the decays are fitted alone")  # fmt: skip
+        short.append(
+            f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "
+            f"what was found, {percent(decay[0])} where the decays are fitted alone"
+        )
     if lost:
         short.append(f"numerical tank: there and not found: {listed([called(*pair) for pair in lost])}")
     if wrong := not_there(results["all"], MISSING):

@@ -74,10 +74,12 @@ def mooring() -> dict[str, Any]:
     moving = np.linalg.lstsq(terms, -force[some])[0]
     missed = force[some] + terms @ moving
     return {
-        "static": static.tolist(), "moving": moving.tolist(), "missed": float(missed.std() / force[some].std()),
+        "static": static.tolist(),
+        "moving": moving.tolist(),
+        "missed": float(missed.std() / force[some].std()),
         "secant": {f"{x:+g}": -pulled(x) / x for x in (-REACH, -0.1, 0.1, REACH)},
         "tension": [float(np.hypot(*line(ANCHOR - FAIRLEAD))), float(columns(REST)["FAIRTEN1"][-100:].mean())],
-    }  # fmt: skip
+    }
 
 
 def radiation() -> dict[str, Any]:
@@ -121,10 +123,11 @@ def drift(law: dict[str, dict[str, float]]) -> dict[str, Any]:
         made = sum((value * ways[way] for way, value in mine.items()), np.zeros(len(envelope)))[some[::5]]
         slow, of_law = (within(x, *BANDS[motion], float(time[5] - time[0])) for x in (force, made))
         found[motion] = {
-            "mean": float(force.mean()), "slow": float(slow.std()),
+            "mean": float(force.mean()),
+            "slow": float(slow.std()),
             "law": [float(made.mean()), float(of_law.std())] if mine else None,
             "correlation": float(np.corrcoef(slow, of_law)[0, 1]) if mine else None,
-        }  # fmt: skip
+        }
     return found
 
 

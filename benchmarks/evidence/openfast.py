@@ -22,20 +22,37 @@ def platform(setup: dict[str, Any]) -> dict[str, Any]:
     return {
         "name": "VolturnUS-S as in OpenFAST",
         "water": {"density": 1025.0, "depth": 200.0, "gravity": 9.81},
-        "rigid_body": {"mass": setup["mass"], "centre_of_mass": [0, 0, setup["zcg"]],
-                       "inertia": {k: setup[k] for k in ("Ixx", "Iyy", "Izz")}},
+        "rigid_body": {
+            "mass": setup["mass"],
+            "centre_of_mass": [0, 0, setup["zcg"]],
+            "inertia": {k: setup[k] for k in ("Ixx", "Iyy", "Izz")},
+        },
         "members": [
             {"name": "centre", "group": "column", "shape": "circ", "d": 10.0, "rA": [0, 0, -20], "rB": [0, 0, 15]},
-            {"name": "outer", "group": "column", "shape": "circ", "d": 12.5, "rA": [51.75, 0, -20], "rB": [51.75, 0, 15],
-             **around},
+            {
+                "name": "outer",
+                "group": "column",
+                "shape": "circ",
+                "d": 12.5,
+                "rA": [51.75, 0, -20],
+                "rB": [51.75, 0, 15],
+                **around,
+            },
             # lengthened there, so that the strips displace 20206.35 m3
-            {"name": "pontoon", "group": "pontoon", "shape": "rect", "d": [12.5, 7.0], "rA": [3.778677, 0, -16.5],
-             "rB": [46.721323, 0, -16.5], **around},
+            {
+                "name": "pontoon",
+                "group": "pontoon",
+                "shape": "rect",
+                "d": [12.5, 7.0],
+                "rA": [3.778677, 0, -16.5],
+                "rB": [46.721323, 0, -16.5],
+                **around,
+            },
         ],
         "coefficients": {"column": column, "pontoon": pontoon},
         "linear_damping": {"B11": 4.4e4, "B22": 4.4e4, "B33": 1.6e5, "B44": 3.63e8, "B55": 3.63e8},
         "mooring": {"kind": "stiffness_matrix", "stiffness": setup["AddCLin"], "preload": [0, 0, setup["AddF0"][2], 0, 0, 0]},
-    }  # fmt: skip
+    }
 
 
 def decay(dof: str) -> dict[str, Any]:
@@ -69,10 +86,14 @@ def compared(found: dict[str, Any]) -> dict[str, np.ndarray]:
     amplitude = np.abs(reference[0])
     difference = np.abs(motion - reference)
     return {
-        "period": ours.period[:n] / theirs.period[:n] - 1, "amplitude": ours.amplitude[:n] / theirs.amplitude[:n] - 1,
-        "largest": difference[first].max() / amplitude, "rms": np.sqrt((difference[first] ** 2).mean()) / amplitude,
-        "mean_period": theirs.period[:n].mean(), "our_period": ours.period[:n].mean(), "released": amplitude,
-    }  # fmt: skip
+        "period": ours.period[:n] / theirs.period[:n] - 1,
+        "amplitude": ours.amplitude[:n] / theirs.amplitude[:n] - 1,
+        "largest": difference[first].max() / amplitude,
+        "rms": np.sqrt((difference[first] ** 2).mean()) / amplitude,
+        "mean_period": theirs.period[:n].mean(),
+        "our_period": ours.period[:n].mean(),
+        "released": amplitude,
+    }
 
 
 def drift(found: dict[str, Any]) -> float:
@@ -102,18 +123,36 @@ def run(figures: Path) -> Section:
     for dof, found in results.items():
         c = notes[dof] = compared(found)
         unit = "deg" if dof == "pitch" else "m"
-        rows.append((
-            dof, f"{c['released']:g} {unit}", f"{c['mean_period']:.3f}", f"{c['our_period']:.3f}",
-            f"{100 * (c['our_period'] / c['mean_period'] - 1):+.4f} %", f"{100 * np.abs(c['period']).max():.3f} %",
-            f"{100 * c['amplitude'][0]:+.3f} %", f"{100 * c['amplitude'][-1]:+.3f} %", f"{100 * c['largest']:.3f} %",
-        ))  # fmt: skip
+        rows.append(
+            (
+                dof,
+                f"{c['released']:g} {unit}",
+                f"{c['mean_period']:.3f}",
+                f"{c['our_period']:.3f}",
+                f"{100 * (c['our_period'] / c['mean_period'] - 1):+.4f} %",
+                f"{100 * np.abs(c['period']).max():.3f} %",
+                f"{100 * c['amplitude'][0]:+.3f} %",
+                f"{100 * c['amplitude'][-1]:+.3f} %",
+                f"{100 * c['largest']:.3f} %",
+            )
+        )
         say(f"  {dof}: period {100 * (c['our_period'] / c['mean_period'] - 1):+.4f} %, largest {100 * c['largest']:.3f} %")
-    head = ("Motion", "Released", "OpenFAST (s)", "jaxhydro (s)", "Period", "worst half cycle", "Amplitude, first",
-            f"{CYCLES}th cycle", "Largest difference")  # fmt: skip
+    head = (
+        "Motion",
+        "Released",
+        "OpenFAST (s)",
+        "jaxhydro (s)",
+        "Period",
+        "worst half cycle",
+        "Amplitude, first",
+        f"{CYCLES}th cycle",
+        "Largest difference",
+    )
     text = (
         "OpenFAST v5.0.0 with the same strips, coefficients, linear mooring and no waves, released without velocity "
         f"(`decay_*_strip` of the shared reference runs). The first {CYCLES} cycles; the largest difference of the two motions "
-        "is relative to the released amplitude.\n\n" + table(head, rows)
+        "is relative to the released amplitude.\n\n"
+        + table(head, rows)
         + f"\nSurge and heave agree to {100 * max(notes[d]['largest'] for d in ('surge', 'heave')):.3f} % of the release, "
         "OpenFAST's own printing and integration error included. Pitch differs by "
         f"{100 * notes['pitch']['largest']:.2f} %: as OpenFAST's source has it, its strip loads keep the directions of the "
@@ -125,8 +164,10 @@ def run(figures: Path) -> Section:
     )
     path = figures / "openfast-pitch.png"
     draw(results["pitch"], path)
-    short = (f"the pitch decay differs from OpenFAST's by {100 * notes['pitch']['largest']:.2f} % of the release, and only "
-             "part of it is explained",)
+    short = (
+        f"the pitch decay differs from OpenFAST's by {100 * notes['pitch']['largest']:.2f} % of the release, and only "
+        "part of it is explained",
+    )
     return Section(TITLE, text, (path,), short)
 
 

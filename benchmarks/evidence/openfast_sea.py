@@ -200,8 +200,11 @@ def loads(run: Run, every: int = 2, waves: jh.AbstractSea | None = None, **optio
         series = run.table[channel][::every]
         missed = found[:, i] - series
         size = series.std()
-        result[name] = {"rms": float(np.sqrt((missed**2).mean()) / size), "mean": float(missed.mean() / size),
-                        "slope": float(np.polyfit(series, found[:, i], 1)[0])}  # fmt: skip
+        result[name] = {
+            "rms": float(np.sqrt((missed**2).mean()) / size),
+            "mean": float(missed.mean() / size),
+            "slope": float(np.polyfit(series, found[:, i], 1)[0]),
+        }
     return result
 
 

@@ -66,11 +66,14 @@ def free(name: str) -> dict[str, Any]:
     first = times <= 600
     _, half = of.motion(run, of.sea(run), step=0.125)
     found = {
-        "until": float(times[-1]), "whole": of.missed(run, times, ours), "step": of.missed(run, times, half),
+        "until": float(times[-1]),
+        "whole": of.missed(run, times, ours),
+        "step": of.missed(run, times, half),
         "first": of.missed(run, times[first], {k: x[first] for k, x in ours.items()}),
-        "ours": energies(times, ours, run.setup["Tp"]), "theirs": energies(times, theirs, run.setup["Tp"]),
+        "ours": energies(times, ours, run.setup["Tp"]),
+        "theirs": energies(times, theirs, run.setup["Tp"]),
         "others": max(float(np.abs(ours[k]).max()) for k in ("sway", "roll", "yaw")),
-    }  # fmt: skip
+    }
     if run.case.order == 2 and not name.startswith("free"):
         times_of = times[times <= 600]
         pairs = of.plain(run).gauge(times_of, order=2)
@@ -115,8 +118,13 @@ def of_loads(found: dict[str, Any]) -> str:
     rows = []
     for case, both in found.items():
         nodes = both.get("nodes")
-        rows.append((f"`fixed_comp_{case}`", *(percent(both["gauss"][x]["rms"], 3) for x in ("Fx", "Fz", "My")),
-                     *(percent(nodes[x]["rms"], 3) if nodes else "–" for x in ("Fx", "Fz", "My"))))  # fmt: skip
+        rows.append(
+            (
+                f"`fixed_comp_{case}`",
+                *(percent(both["gauss"][x]["rms"], 3) for x in ("Fx", "Fz", "My")),
+                *(percent(nodes[x]["rms"], 3) if nodes else "–" for x in ("Fx", "Fz", "My")),
+            )
+        )
     return table(("Run", "Fx", "Fz", "My", "by nodes: Fx", "Fz", "My"), rows)
 
 
@@ -125,16 +133,37 @@ def of_motions(found: dict[str, Any]) -> str:
     rows, energy = [], []
     for name, one in found.items():
         numerics = one.get("numerics")
-        rows.append((f"`{name}`", f"{one['until']:.0f}", *(percent(one["first"][d]) for d in DOFS),
-                     *(percent(one["whole"][d]) for d in DOFS),
-                     *(percent(numerics[d]) if numerics else "–" for d in DOFS)))  # fmt: skip
+        rows.append(
+            (
+                f"`{name}`",
+                f"{one['until']:.0f}",
+                *(percent(one["first"][d]) for d in DOFS),
+                *(percent(one["whole"][d]) for d in DOFS),
+                *(percent(numerics[d]) if numerics else "–" for d in DOFS),
+            )
+        )
         if one["until"] > 900:
             ours, theirs = one["ours"], one["theirs"]
-            energy.append((f"`{name}`", f"{theirs['mean']:.3f} ({ours['mean'] - theirs['mean']:+.3f})", *(
-                f"{theirs[key]:.3g} ({100 * (ours[key] / theirs[key] - 1):+.1f} %)" for key in theirs if key != "mean"
-            )))  # fmt: skip
-    head = ("Run", "Until (s)", "first 600 s: surge", "heave", "pitch", "all of it: surge", "heave", "pitch",
-            "its nodes and grid: surge", "heave", "pitch")  # fmt: skip
+            energy.append(
+                (
+                    f"`{name}`",
+                    f"{theirs['mean']:.3f} ({ours['mean'] - theirs['mean']:+.3f})",
+                    *(f"{theirs[key]:.3g} ({100 * (ours[key] / theirs[key] - 1):+.1f} %)" for key in theirs if key != "mean"),
+                )
+            )
+    head = (
+        "Run",
+        "Until (s)",
+        "first 600 s: surge",
+        "heave",
+        "pitch",
+        "all of it: surge",
+        "heave",
+        "pitch",
+        "its nodes and grid: surge",
+        "heave",
+        "pitch",
+    )
     bands = tuple(f"{d}, {b}" for d in DOFS for b in ("low", "wave"))
     return table(head, rows) + "\n" + ENERGY + "\n\n" + table(("Run", "Mean surge (m)", *bands), energy)
 
@@ -153,8 +182,10 @@ def of_changes(found: dict[str, Any]) -> str:
     for sea, one in found.items():
         base = one["base"]
         rows = [("OpenFAST's, here", f"{base['mean']:.3f}", *(f"{base[key]:.3g}" for key in keys))]
-        rows += [(label, f"{one[label]['mean']:.3f}", *(f"{100 * (one[label][k] / base[k] - 1):+.1f} %" for k in keys))
-                 for label in (*CHANGES, *(["tank"] if "tank" in one else []))]  # fmt: skip
+        rows += [
+            (label, f"{one[label]['mean']:.3f}", *(f"{100 * (one[label][k] / base[k] - 1):+.1f} %" for k in keys))
+            for label in (*CHANGES, *(["tank"] if "tank" in one else []))
+        ]
         rows = [(TANK, *row[1:]) if row[0] == "tank" else row for row in rows]
         title = {"ss1": "Hs 3.1 m, Tp 8.96 s (ss1):", "ss2": "Hs 8.1 m, Tp 12.8 s (ss2):"}[sea]
         parts.append(title + "\n\n" + table(("Conventions", "Mean surge (m)", *bands), rows))
@@ -183,15 +214,23 @@ def run(figures: Path) -> Section:
     draw(seas["ss1"], path)
     short = [
         f"{what} in waves differ from OpenFAST's by up to {percent(value)} of their deviation (goal {100 * goal:g} %)"
-        for what, value, goal in (("forces", worst, LOADS_GOAL), ("motions", apart, MOTION_GOAL)) if value > goal
-    ]  # fmt: skip
-    energy = {f"{n}: {k}": one["ours"][k] / one["theirs"][k] - 1 for n, one in motions.items() if one["until"] > 900
-              for k in one["theirs"] if k != "mean"}  # fmt: skip
+        for what, value, goal in (("forces", worst, LOADS_GOAL), ("motions", apart, MOTION_GOAL))
+        if value > goal
+    ]
+    energy = {
+        f"{n}: {k}": one["ours"][k] / one["theirs"][k] - 1
+        for n, one in motions.items()
+        if one["until"] > 900
+        for k in one["theirs"]
+        if k != "mean"
+    }
     far = max(energy, key=lambda k: abs(energy[k]))
     if abs(energy[far]) > MOTION_GOAL:
         where = far.replace(" l", ", low").replace(" w", ", wave")
-        short.append(f"in waves the energy of {where} differs from OpenFAST's by {100 * energy[far]:+.1f} %, its lumping at "
-                     "the waterline the likely cause, but not shown to be it")  # fmt: skip
+        short.append(
+            f"in waves the energy of {where} differs from OpenFAST's by {100 * energy[far]:+.1f} %, its lumping at "
+            "the waterline the likely cause, but not shown to be it"
+        )
     text = words(loads, motions, seas, (of_loads(loads), of_motions(motions), of_changes(seas)))
     return Section(TITLE, text, (path,), tuple(short))
 
@@ -217,4 +256,3 @@ def draw(found: dict[str, Any], path: Path) -> None:
         axes[-1].set_xlabel("Frequency (Hz)")
         header(figure, "Spectra in case 3, Hs 3.1 m", lines)
         save(figure, path)
-

@@ -57,7 +57,8 @@ def words(loads: dict[str, Any], motions: dict[str, Any], seas: dict[str, Any], 
         "without its lag, of free waves only, not on the centre column; no set-down, and of the difference waves those below "
         "its limit of 0.75 rad/s.\n\n"
         "**Loads on the platform held upright**: root mean square of the difference over OpenFAST's standard deviation "
-        f"(goal 2 %: {met[held <= 0.02]}).\n\n" + tables[0]
+        f"(goal 2 %: {met[held <= 0.02]}).\n\n"
+        + tables[0]
         + "\nWhat is left is OpenFAST's lumping of loads at nodes 2.5 m apart, where this package integrates by Gauss points. "
         f"With strips at its nodes forces differ by at most {100 * plain:.2g} % where the waterline stays; from its run with "
         f"elements of 1 m forces and moments differ by {100 * fine:.2g} %. With nodes moments stay {100 * moment:.2g} % apart, "
@@ -65,7 +66,8 @@ def words(loads: dict[str, Any], motions: dict[str, Any], seas: dict[str, Any], 
         "**Motions** from rest in the same waves, by four-step Adams-Bashforth at 0.25 s: root mean square of the difference "
         f"over the standard deviation (goal 5 %: {motions_met}). In the last three columns the strips are at OpenFAST's nodes "
         "and the kinematics on its grid, 5 m apart (2.5 m in `comp`), taken between grid points by a cubic, at 0.125 s. Sway, "
-        f"roll and yaw stay below {max(one['others'] for one in motions.values()):.0e} m or deg.\n\n" + tables[1]
+        f"roll and yaw stay below {max(one['others'] for one in motions.values()):.0e} m or deg.\n\n"
+        + tables[1]
         + f"\nWithout stretching surge differs by up to {largest('whole', 'surge', smooth)}, slowly, which is OpenFAST's grid: "
         f"with it {largest('numerics', 'surge', smooth)} are left. With stretching it differs by up to {stretched}, and its "
         f"low-frequency energy in `ss1_c3` by {100 * (ours['surge l'] / theirs['surge l'] - 1):+.1f} %, which neither grid nor "
@@ -79,7 +81,8 @@ def words(loads: dict[str, Any], motions: dict[str, Any], seas: dict[str, Any], 
         "**What this package's own conventions change** in case 3: one at a time, then all, relative to OpenFAST's conventions "
         f"in this package. (At half the step the default's figures change by at most {100 * own_step:.1g} %.) The last row of "
         "the first sea is OpenFAST's potential-flow model of the hull with full difference-frequency loads, radiation and "
-        "catenary lines: another mooring and added mass, but the loads that strips lack.\n\n" + tables[2]
+        "catenary lines: another mooring and added mass, but the loads that strips lack.\n\n"
+        + tables[2]
         + "\nThe lag of diffraction, which OpenFAST drops, matters most: under a stretched surface the force on the wet part "
         f"above still water then has a mean. In ss1 it takes the mean surge from {base['mean']:.2f} to {lag['mean']:.2f} m and "
         f"the low-frequency energy of surge from {base['surge l']:.2f} to {lag['surge l']:.2f} m² ({tank['mean']:.2f} m and "

@@ -88,11 +88,13 @@ def worked_out() -> dict[str, Any]:
     weight = float(model.body.mass * model.environment.gravity)
     strips = buoyancy(members_of(load_platform("volturnus-s"))).upright(1.0)["displaced_volume"]
     return {
-        "values": [x.tolist() for x in cases], "periods": [periods(x).tolist() for x in cases],
+        "values": [x.tolist() for x in cases],
+        "periods": [periods(x).tolist() for x in cases],
         "added": [added(x) for x in cases],
         "inertia": [float(changed(x).body.inertia_at_reference()[1, 1]) for x in cases],
-        "imbalance": (np.asarray(model.force_at_rest(np.zeros(6))) / weight).tolist(), "strips": float(strips),
-    }  # fmt: skip
+        "imbalance": (np.asarray(model.force_at_rest(np.zeros(6))) / weight).tolist(),
+        "strips": float(strips),
+    }
 
 
 def joints() -> tuple[float, float]:
@@ -132,15 +134,23 @@ def run(figures: Path) -> Section:
     counted = hub_by_counting()
     wamit = of_wamit()
     rows = [
-        (dof, f"{REPORT[dof]:.3f}", f"{period:.2f}", f"{wamit[dof]:.2f}",
-         *(f"{row[i]:.2f} ({100 * (row[i] / period - 1):+.2f} %)" for row in found["periods"]))
+        (
+            dof,
+            f"{REPORT[dof]:.3f}",
+            f"{period:.2f}",
+            f"{wamit[dof]:.2f}",
+            *(f"{row[i]:.2f} ({100 * (row[i] / period - 1):+.2f} %)" for row in found["periods"]),
+        )
         for i, (dof, period) in enumerate(PERIODS.items())
-    ]  # fmt: skip
+    ]
     masses = [
-        (f"added mass in {dof}", f"{goal:.4g}",
-         *(f"{row[i]:.4g} ({100 * (row[i] / goal - 1):+.1f} %)" for row in found["added"]))
+        (
+            f"added mass in {dof}",
+            f"{goal:.4g}",
+            *(f"{row[i]:.4g} ({100 * (row[i] / goal - 1):+.1f} %)" for row in found["added"]),
+        )
         for i, (dof, goal) in enumerate(ADDED.items())
-    ]  # fmt: skip
+    ]
     values = [(f"`{label}`", "–", *(number(row[i], 3) for row in found["values"])) for i, label in enumerate(TUNED)]
     values += [("pitch inertia about the reference point", "4.26e+10", *(f"{x:.4g}" for x in found["inertia"]))]
     strips, total = found["strips"], found["strips"] + 3 * outer + hub
@@ -171,20 +181,30 @@ def run(figures: Path) -> Section:
         f"{100 * moment:.2g} % of the weight times 1 m (goal 0.1 %: {'met' if worst < 1e-3 else 'not met'}).\n\n"
         f"**Volume.** The strips run from column face to column face and displace {strips:,.0f} m³; WAMIT's hull displaces "
         f"{VOLUME:,.0f} m³. The joints are the difference: the platform file declares the volume, by which the hull floats.\n\n"
-        + table(("Volume", "m³"), [
-            ("strips", f"{strips:,.1f}"),
-            ("between the pontoons' flat ends and the round outer columns, 3 x 7 (12.5 x 6.25 - π 6.25² / 2)",
-             f"{3 * outer:,.1f}"),
-            ("hub: three bands to the axis, less the centre column, less what the strips count "
-             f"(by counting cells: {counted:.1f})", f"{hub:,.1f}"),
-            ("sum", f"{total:,.1f}"),
-            ("WAMIT", f"{VOLUME:,.1f}"),
-        ])
+        + table(
+            ("Volume", "m³"),
+            [
+                ("strips", f"{strips:,.1f}"),
+                (
+                    "between the pontoons' flat ends and the round outer columns, 3 x 7 (12.5 x 6.25 - π 6.25² / 2)",
+                    f"{3 * outer:,.1f}",
+                ),
+                (
+                    "hub: three bands to the axis, less the centre column, less what the strips count "
+                    f"(by counting cells: {counted:.1f})",
+                    f"{hub:,.1f}",
+                ),
+                ("sum", f"{total:,.1f}"),
+                ("WAMIT", f"{VOLUME:,.1f}"),
+            ],
+        )
         + f"\nThe sum is {total - VOLUME:+.1f} m³ ({100 * (total / VOLUME - 1):+.4f} %) off.\n"
-    )  # fmt: skip
+    )
     short = [f"as shipped, with Table 1's coefficients, the built-in platform's periods are up to {100 * off:.1f} % off"]
     if two >= 0.02:
-        short.append(f"with two coefficients tuned to surge and heave the pitch period is {100 * two:.2f} % off (three "
-                     "meet the goal of 2 %); "
-                     f"{100 * against:.2f} % off what its own mass data give with WAMIT")
+        short.append(
+            f"with two coefficients tuned to surge and heave the pitch period is {100 * two:.2f} % off (three "
+            "meet the goal of 2 %); "
+            f"{100 * against:.2f} % off what its own mass data give with WAMIT"
+        )
     return Section(TITLE, text, (), tuple(short))

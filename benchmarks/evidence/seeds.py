@@ -19,10 +19,12 @@ def calibrated(folder: str) -> dict[str, Any]:
 
     result = calibrate(load_campaign(folder))
     return {
-        "objective": result.objective("fit"), "iterations": result.iterations, "seconds": result.seconds,
+        "objective": result.objective("fit"),
+        "iterations": result.iterations,
+        "seconds": result.seconds,
         "converged": result.converged,
         "parameters": {k: [p.value, p.standard_deviation, p.identifiable] for k, p in result.parameters.items()},
-    }  # fmt: skip
+    }
 
 
 def of_seed(name: str) -> dict[str, Any]:
@@ -41,8 +43,10 @@ def run(seeds: int, processes: int, figures: Path) -> Section:
     results = {}
     for name, result in parallel("seeds", key, [f"seed-{i + 1}" for i in range(seeds)], of_seed, processes):
         results[name] = result
-        say(f"  {name}: J {result['objective']:.5f}, {result['iterations']} iterations, {result['seconds']:.0f} s "
-            f"({len(results)} of {seeds})")
+        say(
+            f"  {name}: J {result['objective']:.5f}, {result['iterations']} iterations, {result['seconds']:.0f} s "
+            f"({len(results)} of {seeds})"
+        )
     return conclude([results[name] for name in sorted(results, key=lambda name: int(name.removeprefix("seed-")))], figures)
 
 
@@ -63,12 +67,17 @@ def conclude(results: list[dict[str, Any]], figures: Path) -> Section:
         scores[label] = z
         seen = z[known]
         rms = float(np.sqrt(np.mean(seen**2))) if len(seen) else np.nan
-        rows.append((
-            f"`{label}`", number(true, 3), percent(float(value.mean() / true - 1)),
-            percent(float(value.std(ddof=1) / true)) if n > 1 else "–",
-            percent(float(np.nanmean(sd) / true)) if known.any() else "–", f"{rms:.2f}",
-            f"{int((inside & known).sum())} of {int(known.sum())}",
-        ))  # fmt: skip
+        rows.append(
+            (
+                f"`{label}`",
+                number(true, 3),
+                percent(float(value.mean() / true - 1)),
+                percent(float(value.std(ddof=1) / true)) if n > 1 else "–",
+                percent(float(np.nanmean(sd) / true)) if known.any() else "–",
+                f"{rms:.2f}",
+                f"{int((inside & known).sum())} of {int(known.sum())}",
+            )
+        )
     share, need = int(inside_all.sum()), int(np.ceil(GOAL * n))
     every = np.concatenate([z[np.isfinite(z)] for z in scores.values()])
     least = min(int(row[-1].split()[0]) for row in rows)

@@ -44,10 +44,13 @@ def of_start(name: str) -> dict[str, Any]:
     start = starts(count)[index - 1]
     result = calibrate(load_campaign(DEMO), start=start["values"])
     return start | {
-        "objective": result.objective("fit"), "first": result.history[0], "iterations": result.iterations,
-        "seconds": result.seconds, "converged": result.converged,
+        "objective": result.objective("fit"),
+        "first": result.history[0],
+        "iterations": result.iterations,
+        "seconds": result.seconds,
+        "converged": result.converged,
         "reached": {label: [p.value, p.standard_deviation] for label, p in result.parameters.items()},
-    }  # fmt: skip
+    }
 
 
 def outcomes(count: int = 20, processes: int = 2) -> list[dict[str, Any]]:
@@ -70,10 +73,18 @@ def run(count: int, processes: int, figures: Path) -> Section:
     for i, one in enumerate(found):
         off = [f"{100 * (r - 1):+.0f} %" for r in one["ratio"]]
         factor = max(max(one["values"][k] / TRUE[k], TRUE[k] / one["values"][k]) for k in TRUE)
-        rows.append((
-            i + 1, f"{factor:.1f}", *off, f"{one['objective']:.6f}", f"{100 * (one['objective'] / best - 1):.3f} %",
-            one["iterations"], f"{one['seconds']:.0f}", "yes" if one["converged"] else "no",
-        ))  # fmt: skip
+        rows.append(
+            (
+                i + 1,
+                f"{factor:.1f}",
+                *off,
+                f"{one['objective']:.6f}",
+                f"{100 * (one['objective'] / best - 1):.3f} %",
+                one["iterations"],
+                f"{one['seconds']:.0f}",
+                "yes" if one["converged"] else "no",
+            )
+        )
     iterations = [one["iterations"] for one in found]
     worst = spread_of(found)
     text = (
@@ -107,5 +118,3 @@ def spread_of(found: list[dict[str, Any]]) -> str:
         apart[label] = float(np.ptp(values) / np.median(sd)) if sd else float("nan")
     label = max(apart, key=lambda k: apart[k])
     return f"The coefficient that the starts leave furthest apart is `{label}`: {apart[label]:.2f} of its standard deviation."
-
-

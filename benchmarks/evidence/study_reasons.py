@@ -153,11 +153,21 @@ def elements() -> dict[str, Any]:
     sea = study.sea_of(SEA, 1, study.model_of("3").environment, 2, "vertical")
     found = {}
     for points in (1, 2):
-        one = convergence(platform, sea, study.times(), peak_period=study.SEAS[SEA][1], elements=ELEMENTS, points=points,
-                          transient=study.TRANSIENT)  # fmt: skip
+        one = convergence(
+            platform,
+            sea,
+            study.times(),
+            peak_period=study.SEAS[SEA][1],
+            elements=ELEMENTS,
+            points=points,
+            transient=study.TRANSIENT,
+        )
         integral = [one.integral[dof][band].tolist() for dof, band in study.COLUMNS]
-        found[str(points)] = {"integral": integral, "period": [one.period[dof].tolist() for dof in ("heave", "pitch")],
-                              "difference": [one.difference[dof].tolist() for dof in ("surge", "heave", "pitch")]}  # fmt: skip
+        found[str(points)] = {
+            "integral": integral,
+            "period": [one.period[dof].tolist() for dof in ("heave", "pitch")],
+            "difference": [one.difference[dof].tolist() for dof in ("surge", "heave", "pitch")],
+        }
     return found
 
 

@@ -86,9 +86,7 @@ def ratio_table(found: dict[str, list[dict[str, Any]]]) -> tuple[str, list[str]]
     return table(head, rows), outside
 
 
-def conclude(
-    found: dict[str, list[dict[str, Any]]], variants: dict[str, Any], cut: dict[str, Any], figures: Path
-) -> Section:
+def conclude(found: dict[str, list[dict[str, Any]]], variants: dict[str, Any], cut: dict[str, Any], figures: Path) -> Section:
     """Tables, words and figures."""
     ratios, outside = ratio_table(found)
     of_bands = "\n".join(

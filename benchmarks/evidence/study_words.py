@@ -6,21 +6,33 @@ from benchmarks.evidence.common import table
 from benchmarks.evidence.study_reasons import ELEMENTS, SEEDS, STIFFER
 
 ERRORS = {  # %: the paper's Table 2, of PSD integrals against its experiment in the moderate sea, in the order of COLUMNS
-    "1": (-99, -10, -89, 31, -74, 9), "2": (-95, -10, -58, 31, -59, 10),
-    "3": (8, -34, -58, 31, -67, 8.4), "4": (21, -32, -67, 10, -74, 6),
-}  # fmt: skip
+    "1": (-99, -10, -89, 31, -74, 9),
+    "2": (-95, -10, -58, 31, -59, 10),
+    "3": (8, -34, -58, 31, -67, 8.4),
+    "4": (21, -32, -67, 10, -74, 6),
+}
 OPENFAST = {  # variances (m2, deg2), in the order of COLUMNS: ../shared/reference/openfast/README.md, ss1
-    "1": (0.0133, 0.0356, 0.00024, 0.0315, 0.0021, 0.0146), "2": (0.0110, 0.0356, 0.00075, 0.0316, 0.0040, 0.0146),
-    "3": (0.1215, 0.0280, 0.00061, 0.0317, 0.0050, 0.0147), "4": (0.1217, 0.0280, 0.00062, 0.0317, 0.0051, 0.0148),
-}  # fmt: skip
+    "1": (0.0133, 0.0356, 0.00024, 0.0315, 0.0021, 0.0146),
+    "2": (0.0110, 0.0356, 0.00075, 0.0316, 0.0040, 0.0146),
+    "3": (0.1215, 0.0280, 0.00061, 0.0317, 0.0050, 0.0147),
+    "4": (0.1217, 0.0280, 0.00062, 0.0317, 0.0051, 0.0148),
+}
 NAMES = {  # of variants, in short
-    "base": "as above", "many": "pontoons of many strips", "lines": f"lines {STIFFER:g} times as stiff",
-    "focal": "body, lines and water (350 m) of FOCAL campaign 2", "sharp": "peak enhancement 3.3",
-    "still": "strips' directions of the platform at rest", "rest": "flow at the rest position", "both": "both of these",
-    "flat": "displaced hull under a flat surface", "no lag": "MacCamy-Fuchs without its lag",
-    "neither": "neither, as OpenFAST", "tuned": "tuned Ca kept in long waves", "plain": "stretching without MacCamy-Fuchs",
+    "base": "as above",
+    "many": "pontoons of many strips",
+    "lines": f"lines {STIFFER:g} times as stiff",
+    "focal": "body, lines and water (350 m) of FOCAL campaign 2",
+    "sharp": "peak enhancement 3.3",
+    "still": "strips' directions of the platform at rest",
+    "rest": "flow at the rest position",
+    "both": "both of these",
+    "flat": "displaced hull under a flat surface",
+    "no lag": "MacCamy-Fuchs without its lag",
+    "neither": "neither, as OpenFAST",
+    "tuned": "tuned Ca kept in long waves",
+    "plain": "stretching without MacCamy-Fuchs",
     "unstretched": "MacCamy-Fuchs without stretching",
-}  # fmt: skip
+}
 PAIRS = (("2", "1"), ("3", "2"), ("4", "3"))
 
 
@@ -48,10 +60,20 @@ def words(found: dict[str, dict[str, Any]], cut: dict[str, Any]) -> str:
         later = [over("3", "2", i) if "3" in result else "–" for i in (0, 1, 4)]
         drift = f"{both['3'][-1] - both['2'][-1]:.2f}" if "3" in result else "–"
         rows.append((name, *first, *later, drift))
-    head = ("Changed", "surge LF 2/1", "heave LF 2/1", "pitch LF 2/1", "surge LF 3/2", "surge WF 3/2", "pitch LF 3/2",
-            "drift 3 - 2 (m)")  # fmt: skip
-    paper = [implied(a, b, i)[0] for a, b, i in
-             (("2", "1", 0), ("2", "1", 2), ("2", "1", 4), ("3", "2", 0), ("3", "2", 1), ("3", "2", 4))]  # fmt: skip
+    head = (
+        "Changed",
+        "surge LF 2/1",
+        "heave LF 2/1",
+        "pitch LF 2/1",
+        "surge LF 3/2",
+        "surge WF 3/2",
+        "pitch LF 3/2",
+        "drift 3 - 2 (m)",
+    )
+    paper = [
+        implied(a, b, i)[0]
+        for a, b, i in (("2", "1", 0), ("2", "1", 2), ("2", "1", 4), ("3", "2", 0), ("3", "2", 1), ("3", "2", 4))
+    ]
     rows.insert(0, ("*the paper*", *(f"{x:.3g}" for x in paper), "–"))
     lines = []
     finest = [cut["2"]["integral"][i][-1] for i in range(6)]
@@ -124,7 +146,7 @@ def reasons(found: dict[str, dict[str, Any]]) -> str:
         the hull's own motion past a flat surface ({of("flat", "2/1", 4)}), which spoils heave ({of("flat", "2/1", 2)}), or
         partly
         with directions at rest ({of("still", "2/1", 4)}; OpenFAST {openfast("2/1", 4)}). No one change gives both.""",
-    )  # fmt: skip
+    )
     return "\n".join(f"- {joined(point)}" for point in points) + "\n"
 
 

@@ -11,7 +11,9 @@ NAME = "tuned_seas"
 FOLDER = SHARED / "measured"
 STARTS = {"campaign 4": "focal-c4's release in surge", "Table 1": "the paper's Table 1"}
 LAWS = {
-    "powers of Hs": "significant_height", "powers of KC": "keulegan_carpenter", "slow motion apart": "high_pass",
+    "powers of Hs": "significant_height",
+    "powers of KC": "keulegan_carpenter",
+    "slow motion apart": "high_pass",
 }  # begun from Table 1
 ALONE, SEAS = " alone", ("sea-3m", "sea-6m", "sea-8m")
 MENDED = 0.3  # of the energy in a band: what is further off after tuning is said not to be mended
@@ -33,10 +35,10 @@ def start_of(key: str, name: str) -> dict[str, float]:
 def bands_of(found: Any) -> dict[str, Any]:
     """Test -> use, and channel -> band -> errors before and after."""
     return {
-        test.id: {"use": test.use} | {
-            channel: {band: [one.before, one.after] for band, one in row.items()} for channel, row in test.bands.items()
-        } for test in found.tests
-    }  # fmt: skip
+        test.id: {"use": test.use}
+        | {channel: {band: [one.before, one.after] for band, one in row.items()} for channel, row in test.bands.items()}
+        for test in found.tests
+    }
 
 
 def tuned(key: str, name: str) -> dict[str, Any]:
@@ -65,9 +67,11 @@ def tuned(key: str, name: str) -> dict[str, Any]:
         },
         "bands": bands_of(found),
         "relative": {test.id: {s.channel: s.relative for s in test.series if s.scored} for test in found.tests},
-        "said": list(found.identifiability.sentences()), "history": list(found.history), "converged": found.converged,
+        "said": list(found.identifiability.sentences()),
+        "history": list(found.history),
+        "converged": found.converged,
         "seconds": found.seconds,
-    }  # fmt: skip
+    }
 
 
 def run(figures: Path, processes: int) -> Section:
@@ -95,17 +99,20 @@ def words_of_laws(results: dict[str, dict[str, Any]]) -> str:
     held = [id for id in tests if plain["bands"][id]["use"] == "holdout"]
     each = {"constants": plain} | {name: results[name] for name in LAWS if name in results}
     rows = [
-        [f"{channel}, {band.split('_')[0]}", name,
-         *(f"{100 * one['bands'][id][channel][band][1]:+.0f} %" for id in tests)]
-        for channel in ("surge", "heave", "pitch") for band in ("low_frequency", "wave_frequency")
+        [f"{channel}, {band.split('_')[0]}", name, *(f"{100 * one['bands'][id][channel][band][1]:+.0f} %" for id in tests)]
+        for channel in ("surge", "heave", "pitch")
+        for band in ("low_frequency", "wave_frequency")
         for name, one in each.items()
-    ]  # fmt: skip
+    ]
     heads = ["Coefficients", *(f"{id}{' (held out)' if id in held else ''}" for id in tests)]
     errors = [
-        [name, str(len(one["parameters"]) - len(plain["parameters"])),
-         *(number(_rms(one, some), 3) for some in ([id for id in tests if id not in held], held))]
+        [
+            name,
+            str(len(one["parameters"]) - len(plain["parameters"])),
+            *(number(_rms(one, some), 3) for some in ([id for id in tests if id not in held], held)),
+        ]
         for name, one in each.items()
-    ]  # fmt: skip
+    ]
     exponents = {k: v for k, v in law["parameters"].items() if k.endswith(".Hs_exponent")}
     alone = [results[f"{sea}{ALONE}"]["parameters"] for sea in SEAS if f"{sea}{ALONE}" in results]
     values = []
@@ -115,9 +122,11 @@ def words_of_laws(results: dict[str, dict[str, Any]]) -> str:
         values.append([f"`{base}`", *cells, _value(law["parameters"][base])[1], _value(one)[1]])
     added = [
         [name, f"`{label}`", _value(one)[1]]
-        for name, law_ in LAWS.items() if law_ != "significant_height"
-        for label, one in results.get(name, plain)["parameters"].items() if label not in plain["parameters"]
-    ]  # fmt: skip
+        for name, law_ in LAWS.items()
+        if law_ != "significant_height"
+        for label, one in results.get(name, plain)["parameters"].items()
+        if label not in plain["parameters"]
+    ]
     return f"""
 **Coefficients that depend on the sea, or on the motion** (`jaxhydro calibrate ../shared/measured/focal-c2 --tests waves
 --law significant-height`, `keulegan-carpenter` and `high-pass`, begun from Table 1; `--law choose` does these and every
@@ -154,7 +163,7 @@ def words(results: dict[str, dict[str, Any]]) -> tuple[str, tuple[str, ...]]:
         for channel in ("surge", "heave", "pitch")
         for band in ("low_frequency", "wave_frequency")
         for name in results
-    ]  # fmt: skip
+    ]
     energies = table(["Energy of", "Begun from", *(f"{id}{' (held out)' if id in held else ''}" for id in tests)], rows)
     labels = list(dict.fromkeys(label for found in results.values() for label in found["parameters"]))
     rows = [
@@ -162,11 +171,15 @@ def words(results: dict[str, dict[str, Any]]) -> tuple[str, tuple[str, ...]]:
     ]
     values = table(["Coefficient", *(x for name in results for x in (name, "tuned"))], rows)
     left = {
-        name: [f"{channel} {band.split('_')[0]} {100 * pair[1]:+.0f} %"
-               for channel, row in found["bands"][held[0]].items() if channel != "use"
-               for band, pair in row.items() if abs(pair[1]) > MENDED]
+        name: [
+            f"{channel} {band.split('_')[0]} {100 * pair[1]:+.0f} %"
+            for channel, row in found["bands"][held[0]].items()
+            if channel != "use"
+            for band, pair in row.items()
+            if abs(pair[1]) > MENDED
+        ]
         for name, found in results.items()
-    }  # fmt: skip
+    }
     beyond = "; from ".join(f"{name}, in {', '.join(words) or 'nothing'}" for name, words in left.items())
     said = "\n".join(f"- From {name}: {sentence}." for name, found in results.items() for sentence in found["said"][:6])
     spread = {name: (found["history"][0], found["history"][-1]) for name, found in results.items()}
@@ -174,7 +187,7 @@ def words(results: dict[str, dict[str, Any]]) -> tuple[str, tuple[str, ...]]:
     text = f"""
 `jaxhydro calibrate ../shared/measured/focal-c2 --start ...`: the energies of surge, heave and pitch in the low and the
 wave-frequency band of the two lower seas, twelve numbers, are fitted in their measured waves; the third sea is held out. Begun
-from {' and from '.join(STARTS.values())}; those are also the middle of the vague priors, a factor of 4.5 either way. The root
+from {" and from ".join(STARTS.values())}; those are also the middle of the vague priors, a factor of 4.5 either way. The root
 mean square of ln(simulated / measured energy), after the first iteration and at the end: {errors}.
 
 Error of energies, (simulated - measured) / measured, before and after:
@@ -193,8 +206,9 @@ some of that here: they are no result about the hull until the reference is put 
 """
     short = tuple(
         f"tuned to two lower seas from {name}, the third is more than {100 * MENDED:.0f} % off in {', '.join(words)}"
-        for name, words in left.items() if words
-    )  # fmt: skip
+        for name, words in left.items()
+        if words
+    )
     return text, short
 
 

@@ -103,9 +103,10 @@ def _of_sizes(records: Sequence[Record], length: float, scale: float, known: set
             continue
         large = min(sizes) > highest
         fitting = [
-            (f"{factor:.4g}", units) for factor, units in _size_factors(turns, scale)
+            (f"{factor:.4g}", units)
+            for factor, units in _size_factors(turns, scale)
             if all(USUAL[0] < (size / factor if large else size * factor) < USUAL[1] for size in sizes)
-        ]  # fmt: skip
+        ]
         if fitting:
             told |= set(dofs)
             times, units = (" or ".join(words) for words in zip(*fitting, strict=True))
@@ -124,9 +125,13 @@ def _size_factors(turns: bool, scale: float) -> Iterator[tuple[float, str]]:
 
 
 def _of_relations(
-    records: Sequence[Record], modes: Modes, widths: Float[np.ndarray, "6"], length: float, scale: float,
+    records: Sequence[Record],
+    modes: Modes,
+    widths: Float[np.ndarray, "6"],
+    length: float,
+    scale: float,
     known: set[str],
-) -> Iterator[Hint]:  # fmt: skip
+) -> Iterator[Hint]:
     """Do two motions of a mode go together as the model's do? What is `known` to be off is left aside."""
     found: dict[tuple[str, str], list[float]] = {}
     first: dict[tuple[str, str], Record] = {}
@@ -156,8 +161,10 @@ def _of_factor(one: str, two: str, values: Sequence[float], scale: float, known:
     """In words, by what the ratio of motion `one` to motion `two` misses the model's, all records the same."""
     if all(value < 0 for value in values) and all(abs(math.log(-value)) < CLOSE for value in values):
         keys = f"(`channels.{one}.sign` or `channels.{two}.sign`)"
-        return (f"{one} and {two} go together as the declared model's do, with the other sign: an axis reversed {keys}, or "
-                "recorded at another point (`tracked_point`)?")  # fmt: skip
+        return (
+            f"{one} and {two} go together as the declared model's do, with the other sign: an axis reversed {keys}, or "
+            "recorded at another point (`tracked_point`)?"
+        )
     turns = quantity(one) != quantity(two)
     if {quantity(one), quantity(two)} & known or (turns and "time" in known):
         return None
@@ -167,8 +174,9 @@ def _of_factor(one: str, two: str, values: Sequence[float], scale: float, known:
     if turns:
         factors.append((TURN, f"degrees and radians mixed up (`channels.{two}.unit`)"))
         factors += [(max(scale, 1 / scale), "lengths not at the scale that `scale` states")] if scale != 1 else []
-    said = [why for factor, why in factors
-            if all(abs(size - math.copysign(math.log(factor), sizes[0])) < CLOSE for size in sizes)]  # fmt: skip
+    said = [
+        why for factor, why in factors if all(abs(size - math.copysign(math.log(factor), sizes[0])) < CLOSE for size in sizes)
+    ]
     times = f"{math.exp(abs(float(np.median(sizes)))):.3g} times"
     return f"{larger} is {times} too large beside {smaller}, by the declared model: {' or '.join(said)}?" if said else None
 
@@ -197,8 +205,10 @@ def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -
         units, factor = ("degrees and radians", TURN) if quantity(name) == "angle" else ("millimetres and metres", 1000.0)
         for sign, word in ((1, "large"), (-1, "small")):
             if all(abs(size - sign * math.log(factor)) < 2 * CLOSE for size, _ in values):
-                yield (f"{name} is {factor:.4g} times too {word}, against that simulated in all {len(values)} tests in waves: "
-                       f"{units} mixed up (`channels.{name}.unit`)?")  # fmt: skip
+                yield (
+                    f"{name} is {factor:.4g} times too {word}, against that simulated in all {len(values)} tests in waves: "
+                    f"{units} mixed up (`channels.{name}.unit`)?"
+                )
 
 
 def _size(record: Record) -> float:

@@ -30,13 +30,13 @@ from calibration.campaign.signals import (
 )
 from jaxhydro.errors import Problem
 
-REPAIRABLE = 0.02                 # of a window's rows
-LEAST_SAMPLES = 20                # in a window
-GAP = 3.5                         # median steps
-COARSE, TOO_COARSE = 15, 8        # samples per cycle
-TOO_COARSE_WAVES = 4              # these only drive: what is slower is worth having still
-FEW_WAVES = 20                    # after the transient
-SHOWN = 5                         # of one kind in one channel
+REPAIRABLE = 0.02  # of a window's rows
+LEAST_SAMPLES = 20  # in a window
+GAP = 3.5  # median steps
+COARSE, TOO_COARSE = 15, 8  # samples per cycle
+TOO_COARSE_WAVES = 4  # these only drive: what is slower is worth having still
+FEW_WAVES = 20  # after the transient
+SHOWN = 5  # of one kind in one channel
 
 Severity = Literal["warning", "error"]
 
@@ -123,8 +123,13 @@ class _Check:
         if not first <= last:
             yield self.found("error", "time", None, "none", "times")
         elif start < first - beyond or end > last + beyond:
-            yield self.found("error", "", None, f"a window from {self.at(start)} to {self.at(end)}",
-                             f"a window in the file's range, {self.at(first)} to {self.at(last)}")
+            yield self.found(
+                "error",
+                "",
+                None,
+                f"a window from {self.at(start)} to {self.at(end)}",
+                f"a window in the file's range, {self.at(first)} to {self.at(last)}",
+            )
         elif count < LEAST_SAMPLES:
             yield self.found("error", "", None, f"{count} samples", f"{LEAST_SAMPLES} samples or more in the window")
         elif self.test.transient > 0 and after < LEAST_SAMPLES:
@@ -138,8 +143,12 @@ class _Check:
         for channel, unit in self.series.units.items():
             stated = self.series.channels[channel]
             if unit != stated.unit:
-                yield self.found("warning", channel, None, f"the file states {unit} for column {stated.column!r}, and the "
-                                 f"manifest {stated.unit}")
+                yield self.found(
+                    "warning",
+                    channel,
+                    None,
+                    f"the file states {unit} for column {stated.column!r}, and the manifest {stated.unit}",
+                )
 
     def zero(self) -> Iterator[Finding]:
         """Is there still water to take off?"""
@@ -147,13 +156,19 @@ class _Check:
         if zero is not None and zero.window is not None:
             fewest, (first, last) = min(map(len, self.series.still.values())), self.series.span
             if fewest < LEAST_SAMPLES:
-                yield self.found("error", "", None, f"{fewest} in {list(zero.window)}, of a file from {self.at(first)} "
-                                 f"to {self.at(last)}", f"{LEAST_SAMPLES} or more samples in zero.window")
+                yield self.found(
+                    "error",
+                    "",
+                    None,
+                    f"{fewest} in {list(zero.window)}, of a file from {self.at(first)} to {self.at(last)}",
+                    f"{LEAST_SAMPLES} or more samples in zero.window",
+                )
         elif zero is not None:
             rest = next(other for other in self.others if other.test.id == zero.test)
             for channel in sorted(set(self.values) & set(DOFS) - set(rest.values)):
-                yield self.found("error", channel, None, f"no such channel in test {zero.test}",
-                                 "a channel that the zero test has too")
+                yield self.found(
+                    "error", channel, None, f"no such channel in test {zero.test}", "a channel that the zero test has too"
+                )
 
     def clock(self) -> Iterator[Finding]:
         """Do times increase, and evenly?"""
@@ -162,22 +177,32 @@ class _Check:
         steps = np.diff(time)
         if np.any(steps < 0):
             i = int(np.argmax(steps < 0))
-            yield self.found("error", "time", float(time[i]), f"a step back from {self.at(time[i])} to "
-                             f"{self.at(time[i + 1])} at sample {self.series.rows[rows[i + 1]] + 1} of the file",
-                             "times that increase")
+            yield self.found(
+                "error",
+                "time",
+                float(time[i]),
+                f"a step back from {self.at(time[i])} to "
+                f"{self.at(time[i + 1])} at sample {self.series.rows[rows[i + 1]] + 1} of the file",
+                "times that increase",
+            )
             return
         if same := int(np.sum(steps == 0)):
             i = int(np.argmax(steps == 0))
             yield self.dropped(same, "time", float(time[i]), f"{same} times that repeat, the first {self.at(time[i])}")
         steps = np.diff(self.time)
         for i in np.flatnonzero(steps > GAP * self.step)[:SHOWN]:
-            yield self.found("warning", "time", float(self.time[i]), f"a gap of {self.at(steps[i])} after "
-                             f"{self.at(self.time[i])}, where steps are {self.at(self.step)}")
+            yield self.found(
+                "warning",
+                "time",
+                float(self.time[i]),
+                f"a gap of {self.at(steps[i])} after {self.at(self.time[i])}, where steps are {self.at(self.step)}",
+            )
         usual = steps[steps < 1.5 * self.step]
         rounding = resolution(usual) if len(usual) else 0.0
         if rounding > 0.02 * self.step and np.ptp(usual) < 2.5 * rounding:
-            yield self.found("warning", "time", None, f"times are written to {self.at(rounding)}, where steps are "
-                             f"{self.at(self.step)}")
+            yield self.found(
+                "warning", "time", None, f"times are written to {self.at(rounding)}, where steps are {self.at(self.step)}"
+            )
 
     def missing(self) -> Iterator[Finding]:
         """Values that are not there."""
@@ -195,8 +220,9 @@ class _Check:
     def dropped(self, count: int, channel: str, time: float | None, message: str) -> Finding:
         if count < REPAIRABLE * len(self.series.time):
             return self.found("warning", channel, time, f"{message}: these rows are dropped")
-        return self.found("error", channel, time, message,
-                          f"fewer than {REPAIRABLE:.0%} of the {len(self.series.time)} rows to be dropped")
+        return self.found(
+            "error", channel, time, message, f"fewer than {REPAIRABLE:.0%} of the {len(self.series.time)} rows to be dropped"
+        )
 
     def oscillation(self) -> Iterator[Finding]:
         """Is what oscillates sampled often and long enough?"""
@@ -227,8 +253,13 @@ class _Check:
             yield self.found("warning", WAVE, None, f"{name} is stated as {stated:g} m, and recorded as {height:.3g} m")
         left = float(self.time[-1] - self.time[0]) - test.transient
         if irregular and self.period is not None and left < FEW_WAVES * self.period:
-            yield self.found("warning", WAVE, None, f"only {self.at(left)} after the transient, {left / self.period:.1f} waves "
-                             f"of about {self.at(self.period)}: too few to tell a sea by")
+            yield self.found(
+                "warning",
+                WAVE,
+                None,
+                f"only {self.at(left)} after the transient, {left / self.period:.1f} waves "
+                f"of about {self.at(self.period)}: too few to tell a sea by",
+            )
 
     def signal(self, channel: str) -> Iterator[Finding]:
         """Frozen, clipped, spiked, drifting?"""
@@ -246,23 +277,35 @@ class _Check:
         starts, lengths = constant_stretches(values, grain)
         long = max(LEAST_SAMPLES, int((self.period or 0) / 3 / self.step))
         for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:SHOWN]:
-            beside = (values[max(0, i - long): i + 1], values[i + n - 1: i + n + long])
+            beside = (values[max(0, i - long) : i + 1], values[i + n - 1 : i + n + long])
             still = self.still_until() > time[i + n - 1] or self.in_zero(time[i], time[i + n - 1])
-            if max(map(np.ptp, beside)) > 6 * step[i] and not still:           # else it has come to rest
-                yield self.found("warning", channel, float(time[i]), f"frozen from {self.at(time[i])} to "
-                                 f"{self.at(time[i + n - 1])}, {n} samples at {values[i]:.5g}")
+            if max(map(np.ptp, beside)) > 6 * step[i] and not still:  # else it has come to rest
+                yield self.found(
+                    "warning",
+                    channel,
+                    float(time[i]),
+                    f"frozen from {self.at(time[i])} to {self.at(time[i + n - 1])}, {n} samples at {values[i]:.5g}",
+                )
         piece = straight_piece(values, step)
         for name, extreme in (("highest", values.max()), ("lowest", values.min())):
             flat = (np.abs(values[starts] - extreme) < grain / 2) & (lengths >= 3 * piece) & (starts > 0)
             flat &= flanks(values, starts, lengths) > 16 * step[starts]
             if (count := int(lengths[flat].sum())) >= 6:
-                yield self.found("warning", channel, float(time[starts[flat][0]]), f"clipped: {count} samples at its "
-                                 f"{name} value, {extreme:.5g}, up to {lengths[flat].max()} in a row")
+                yield self.found(
+                    "warning",
+                    channel,
+                    float(time[starts[flat][0]]),
+                    f"clipped: {count} samples at its {name} value, {extreme:.5g}, up to {lengths[flat].max()} in a row",
+                )
         off = spikes(values, step)
         if len(off := off[time[off + 2] - time[off - 2] < 4.5 * self.step]):  # none beside a gap
             i, more = int(off[0]), f", and {len(off) - 1} more" if len(off) > 1 else ""
-            yield self.found("warning", channel, float(time[i]), f"a spike at {self.at(time[i])}, {values[i]:.5g} "
-                             f"between {values[i - 1]:.5g} and {values[i + 1]:.5g}{more}")
+            yield self.found(
+                "warning",
+                channel,
+                float(time[i]),
+                f"a spike at {self.at(time[i])}, {values[i]:.5g} between {values[i - 1]:.5g} and {values[i + 1]:.5g}{more}",
+            )
         yield from self.drift(channel, values, grain)
 
     def still_until(self) -> float:

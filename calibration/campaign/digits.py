@@ -6,11 +6,11 @@ import numpy as np
 
 from calibration.campaign.signals import resolution
 
-_PLACES = range(-6, 13)        # decimal places that are looked for
-_USUAL = 0.9                   # quantile of the places in one decade: trailing zeros are not written
-_LONGEST_PIECE = 50.0          # samples: a straight piece that is longer is no sign of interpolation
-_STRAIGHT = 2.5                # steps of the last digit, by which rounding alone bends a straight line
-_CORNER = 2.0                  # times that, at half of the corners at least
+_PLACES = range(-6, 13)  # decimal places that are looked for
+_USUAL = 0.9  # quantile of the places in one decade: trailing zeros are not written
+_LONGEST_PIECE = 50.0  # samples: a straight piece that is longer is no sign of interpolation
+_STRAIGHT = 2.5  # steps of the last digit, by which rounding alone bends a straight line
+_CORNER = 2.0  # times that, at half of the corners at least
 
 
 def local_resolution(values: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from calibration.campaign.records import Series
 from calibration.campaign.wave_bounds import CYCLES, begun_before, wave_span, waves_left, waves_of_others
 
 _LATER = "a `window` that begins later overrides this"
-Told = tuple[str, float | None, str]             # channel, time, message
+Told = tuple[str, float | None, str]  # channel, time, message
 
 
 def extent_warnings(

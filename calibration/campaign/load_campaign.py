@@ -76,8 +76,9 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     try:
         platform = load_platform(platform_source(manifest, folder))
     except InputError as error:
-        problems += [Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint)
-                     for p in error.problems]
+        problems += [
+            Problem(f"{manifest.platform}: {p.where}".rstrip(": "), p.expected, p.found, p.hint) for p in error.problems
+        ]
     else:
         problems += _of_other_waves(manifest, platform)
     try:
@@ -92,8 +93,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     if grave := [finding.problem for finding in errors if finding.test not in spared]:
         raise InputError(source, grave)
     faulty = {finding.test for finding in errors}
-    findings = tuple(replace(f, severity="warning", message=f"left out: {f.message}") if f in errors else f
-                     for f in findings)
+    findings = tuple(replace(f, severity="warning", message=f"left out: {f.message}") if f in errors else f for f in findings)
     records = tuple(record for record in records_of(manifest, series) if record.id not in faulty)
     campaign = Campaign(manifest, folder, platform, records, findings)
     model = campaign.model

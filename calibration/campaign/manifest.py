@@ -33,7 +33,7 @@ from jaxhydro.units import SI
 
 DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 CHANNELS = ("time", *DOFS)
-WAVE = "wave"                                    # the wave channel's name among the others
+WAVE = "wave"  # the wave channel's name among the others
 
 
 def quantity(channel: str) -> str:
@@ -56,7 +56,7 @@ Unit = Annotated[Text, Field(description="a unit: " + ", ".join(unit for units i
 Sign = Annotated[Literal[1, -1], BeforeValidator(lambda value: int(value) if value in (1.0, -1.0) else value)]
 
 
-Window = tuple[Number, Number]                   # on the file's own time axis
+Window = tuple[Number, Number]  # on the file's own time axis
 
 
 def _ordered(value: tuple[float, float]) -> Iterator[Problem]:
@@ -108,7 +108,7 @@ class Sea(Schema):
 class Test(Schema):
     """One test: a file, or a window of it."""
 
-    __test__ = False                             # not for pytest
+    __test__ = False  # not for pytest
 
     id: Name
     kind: Kind
@@ -160,10 +160,10 @@ class Manifest(Schema):
     density_ratio: Annotated[Positive, Field(le=100)] = 1.0
     channels: dict[str, Channel]
     wave_channel: WaveChannel | None = None
-    wave_band: tuple[Positive, Positive] | None = None              # Hz on the files' time axis
+    wave_band: tuple[Positive, Positive] | None = None  # Hz on the files' time axis
     noise: dict[str, Positive] = Field(default_factory=dict)
     zero: Zero | None = None
-    tracked_point: tuple[Number, Number, Number] | None = None      # m at the scale of the files, body axes
+    tracked_point: tuple[Number, Number, Number] | None = None  # m at the scale of the files, body axes
     tests: tuple[Test, ...]
     calibrate: Calibrate = Calibrate()
 
@@ -191,9 +191,12 @@ class Manifest(Schema):
 
     def turned(self, channels: Collection[str]) -> Manifest:
         """With the signs of these channels changed, in tests that have one of their own, too."""
+
         def other(some: Mapping[str, Any]) -> dict[str, Any]:
-            return {name: one.model_copy(update={"sign": -one.sign}) if name in channels and one and one.sign else one
-                    for name, one in some.items()}  # fmt: skip
+            return {
+                name: one.model_copy(update={"sign": -one.sign}) if name in channels and one and one.sign else one
+                for name, one in some.items()
+            }
 
         wave = None if self.wave_channel is None else other({WAVE: self.wave_channel})[WAVE]
         tests = tuple(test.model_copy(update={"channels": other(test.channels)}) for test in self.tests)
@@ -220,8 +223,7 @@ def _channel_problems(manifest: Manifest) -> Iterator[Problem]:
             hint = "Waves have their own key, wave_channel." if name == WAVE else suggest(name, CHANNELS)
             yield Problem(where, "one of " + ", ".join(CHANNELS), repr(name), hint)
         elif unit not in (known := SI[quantity(name)]):
-            yield Problem(f"{where}.unit", f"a unit of {quantity(name)}: " + ", ".join(known), repr(unit),
-                          suggest(unit, known))
+            yield Problem(f"{where}.unit", f"a unit of {quantity(name)}: " + ", ".join(known), repr(unit), suggest(unit, known))
 
 
 def _test_problems(manifest: Manifest) -> Iterator[Problem]:
@@ -242,13 +244,16 @@ def _test_problems(manifest: Manifest) -> Iterator[Problem]:
         if test.kind == "decay" and test.degree_of_freedom is None:
             yield Problem(f"{at}.degree_of_freedom", "the motion that was released: " + ", ".join(DOFS), "nothing")
         elif test.degree_of_freedom is not None and test.degree_of_freedom not in present:
-            yield Problem(f"{at}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present),
-                          repr(test.degree_of_freedom))
+            yield Problem(
+                f"{at}.degree_of_freedom", "a motion that has a channel: " + ", ".join(present), repr(test.degree_of_freedom)
+            )
         if test.kind in IN_WAVES and test.use != "ignore" and manifest.wave_channel is None:
             yield Problem(f"{at}.kind", "a wave_channel in the manifest, since waves drive this test", "none")
         if manifest.tracked_point is not None:
-            yield from (Problem(f"{at}, {p.where}", p.expected, p.found, p.hint)
-                        for p in missing_angles(manifest.tracked_point, present))
+            yield from (
+                Problem(f"{at}, {p.where}", p.expected, p.found, p.hint)
+                for p in missing_angles(manifest.tracked_point, present)
+            )
         for problem in _ordered(test.window) if test.window is not None else ():
             yield Problem(f"{at}.window", problem.expected, problem.found)
 
@@ -276,8 +281,9 @@ def _other_problems(manifest: Manifest) -> Iterator[Problem]:
 
 def _unknown(where: str, expected: str, name: str, known: Iterable[str]) -> Problem:
     known = sorted(known)
-    return Problem(where, f"{expected}: {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}", repr(name),
-                   suggest(name, known))
+    return Problem(
+        where, f"{expected}: {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}", repr(name), suggest(name, known)
+    )
 
 
 def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
@@ -294,8 +300,14 @@ def read_manifest(path: str | PathLike[str]) -> tuple[Manifest, Path]:
             problems.append(Problem(f"tests[{i}].file", f"a file in {folder}", f"no such file: {test.file!r}", hint))
     if _is_path(manifest.platform) and not _there(folder / manifest.platform):
         near = [item.name for item in folder.iterdir() if item.suffix in (".yaml", ".yml")]
-        problems.append(Problem("platform", f"a file in {folder}, or a built-in platform's name",
-                                f"no such file: {manifest.platform!r}", suggest(manifest.platform, near)))
+        problems.append(
+            Problem(
+                "platform",
+                f"a file in {folder}, or a built-in platform's name",
+                f"no such file: {manifest.platform!r}",
+                suggest(manifest.platform, near),
+            )
+        )
     if problems:
         raise InputError(str(path), problems)
     return manifest, folder
@@ -314,5 +326,5 @@ def _is_path(platform: str) -> bool:
 def _there(path: Path) -> bool:
     try:
         return path.is_file()
-    except (OSError, ValueError):                # a name that no file can have
+    except (OSError, ValueError):  # a name that no file can have
         return False

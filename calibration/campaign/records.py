@@ -23,8 +23,8 @@ from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.interop.data_files import read_table
 from jaxhydro.units import SI
 
-_LEAST_NOISE = 1e-6                              # m at the scale of the file, or rad: finer than any basin's sensor
-_BEYOND = 1e15                                   # what is larger stands for a missing value
+_LEAST_NOISE = 1e-6  # m at the scale of the file, or rad: finer than any basin's sensor
+_BEYOND = 1e15  # what is larger stands for a missing value
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,14 +33,14 @@ class Series:
     as `wave`."""
 
     test: Test
-    time: np.ndarray                             # (n,) in the time channel's unit
-    values: dict[str, np.ndarray]                # channel -> (n,) in the channel's unit
+    time: np.ndarray  # (n,) in the time channel's unit
+    values: dict[str, np.ndarray]  # channel -> (n,) in the channel's unit
     channels: dict[str, Channel]
-    span: tuple[float, float]                    # first and last time of the whole file
-    rows: np.ndarray                             # (n,) index in the file, 0 for the first sample
-    still: dict[str, np.ndarray] = field(default_factory=dict)      # in the manifest's zero window of this file
-    units: dict[str, str] = field(default_factory=dict)             # channel -> the unit that the file states, if any
-    free: FreeMotion | None = None               # of a decay: the free motion in its window; all else is cut off
+    span: tuple[float, float]  # first and last time of the whole file
+    rows: np.ndarray  # (n,) index in the file, 0 for the first sample
+    still: dict[str, np.ndarray] = field(default_factory=dict)  # in the manifest's zero window of this file
+    units: dict[str, str] = field(default_factory=dict)  # channel -> the unit that the file states, if any
+    free: FreeMotion | None = None  # of a decay: the free motion in its window; all else is cut off
 
     @property
     def good(self) -> np.ndarray:
@@ -61,20 +61,20 @@ class Record:
     kind: str
     use: str
     degree_of_freedom: str | None
-    time: np.ndarray                             # (n,) s, on the file's axis
-    values: dict[str, np.ndarray]                # motion -> (n,) m, rad
-    wave: np.ndarray | None                      # (n,) m
-    wave_position: tuple[float, float] | None    # m; None without a wave; the origin where none is stated
-    noise: dict[str, float]                      # one standard deviation, m or rad; also `wave`, where measured
-    noise_declared: bool                         # for every channel; False if any was estimated
-    transient: float                             # s from the start, not to be compared
-    test: Test                                   # as declared: at the scale of the file
+    time: np.ndarray  # (n,) s, on the file's axis
+    values: dict[str, np.ndarray]  # motion -> (n,) m, rad
+    wave: np.ndarray | None  # (n,) m
+    wave_position: tuple[float, float] | None  # m; None without a wave; the origin where none is stated
+    noise: dict[str, float]  # one standard deviation, m or rad; also `wave`, where measured
+    noise_declared: bool  # for every channel; False if any was estimated
+    transient: float  # s from the start, not to be compared
+    test: Test  # as declared: at the scale of the file
     file: str
 
 
 def there(values: np.ndarray) -> np.ndarray:
     """(n,) bool: neither missing nor infinite, nor so large that it stands for that, nor a logger's number for it."""
-    good = np.abs(values) < _BEYOND              # False for nan
+    good = np.abs(values) < _BEYOND  # False for nan
     code = missing_code(values[good])
     return good if code is None else good & (values != code)
 
@@ -117,11 +117,17 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     for channel, stated in list(channels.items()):
         column, where = stated.column, f"{test.file}, channel {channel} of test {test.id}"
         if isinstance(column, str) and names.count(column) > 1:
-            problems.append(Problem(where, f"one column {column!r}", f"{names.count(column)} of that name",
-                                    "A number, 0 for the first column, tells them apart."))
+            problems.append(
+                Problem(
+                    where,
+                    f"one column {column!r}",
+                    f"{names.count(column)} of that name",
+                    "A number, 0 for the first column, tells them apart.",
+                )
+            )
         elif column not in names if isinstance(column, str) else column >= len(names):
             if channel == WAVE and test.kind not in IN_WAVES and WAVE not in test.channels:
-                del channels[channel]            # no waves, and none measured
+                del channels[channel]  # no waves, and none measured
                 continue
             problems.append(Problem(where, f"a column {column!r}", ", ".join(names[:12]), suggest(column, names)))
         else:
@@ -146,9 +152,16 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     rows = _rows(time, test.window)
     zero = manifest.zero.window if manifest.zero is not None else None
     still = _rows(time, zero) if zero is not None else np.arange(0)
-    series = Series(test, time[rows], {name: values[rows] for name, values in columns.items()}, channels,
-                    (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan), rows,
-                    {name: values[still][there(values[still])] for name, values in columns.items()}, units)
+    series = Series(
+        test,
+        time[rows],
+        {name: values[rows] for name, values in columns.items()},
+        channels,
+        (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan),
+        rows,
+        {name: values[still][there(values[still])] for name, values in columns.items()},
+        units,
+    )
     return _free(series) if test.kind == "decay" else series
 
 
@@ -158,7 +171,7 @@ def _free(series: Series) -> Series:
     free = free_motion(series.time[good], series.values[str(series.test.degree_of_freedom)][good])
     if free.start == free.end == "record":
         return series
-    last = good[free.last - 1] if series.test.window is None else len(series.time) - 1       # what is stated is respected
+    last = good[free.last - 1] if series.test.window is None else len(series.time) - 1  # what is stated is respected
     kept = slice(good[free.first], last + 1)
     values = {name: column[kept] for name, column in series.values.items()}
     return replace(series, time=series.time[kept], values=values, rows=series.rows[kept], free=free)
@@ -219,19 +232,35 @@ def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Reco
     test, scale, good = series.test, factors(manifest, series.channels), series.good
     out = frozen(series)
     time = series.time[good] * scale["time"]
-    values = {name: column[good] * scale[name] - zeros.get(name, 0.0)
-              for name, column in series.values.items() if name not in out}
+    values = {
+        name: column[good] * scale[name] - zeros.get(name, 0.0) for name, column in series.values.items() if name not in out
+    }
     stated = factors(manifest, manifest.all_channels)
     floor = {name: _LEAST_NOISE * (1.0 if quantity(name) == "angle" else manifest.scale) for name in values}
-    noise = {name: manifest.noise[name] * abs(stated[name]) if name in manifest.noise
-             else max(noise_level(time, column), floor[name]) for name, column in values.items()}
+    noise = {
+        name: manifest.noise[name] * abs(stated[name])
+        if name in manifest.noise
+        else max(noise_level(time, column), floor[name])
+        for name, column in values.items()
+    }
     wave = values.pop(WAVE, None)
     if manifest.tracked_point is not None:
         x, y, z = manifest.tracked_point
         point = (manifest.scale * x, manifest.scale * y, manifest.scale * z)
         values, noise = at_reference(values, point), noise_at_reference(noise, point)
     x, y = (manifest.wave_channel.position if manifest.wave_channel else None) or (0.0, 0.0)
-    return Record(id=test.id, kind=test.kind, use=test.use, degree_of_freedom=test.degree_of_freedom, time=time,
-                  values=values, wave=wave, noise=noise, noise_declared=set(noise) <= set(manifest.noise), test=test,
-                  wave_position=None if wave is None else (x * manifest.scale, y * manifest.scale),
-                  transient=test.transient * abs(scale["time"]), file=test.file)
+    return Record(
+        id=test.id,
+        kind=test.kind,
+        use=test.use,
+        degree_of_freedom=test.degree_of_freedom,
+        time=time,
+        values=values,
+        wave=wave,
+        noise=noise,
+        noise_declared=set(noise) <= set(manifest.noise),
+        test=test,
+        wave_position=None if wave is None else (x * manifest.scale, y * manifest.scale),
+        transient=test.transient * abs(scale["time"]),
+        file=test.file,
+    )

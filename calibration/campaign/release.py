@@ -10,24 +10,24 @@ from scipy import ndimage, signal
 
 from calibration.campaign.signals import noise_level
 
-STILL = 0.2                     # period, for which stillness is looked for; a free peak moves by 0.19 of its amplitude in it
-FLAT = 0.08                     # of the amplitude of the motion that follows: less is stillness
-CAUGHT = 0.03                   # of the amplitude before: less is more than damping does
-LARGE = 0.3                     # of the first amplitude: friction alone may stop less
-HOLD = 0.35                     # period: what lasts less between motions is no hold, but two motions that cancel
-SMOOTH = 0.06                   # period, over which noise is averaged
-NOISE = 3.0                     # deviations of the averaged noise, by which stillness may move
-PROMINENT = 0.1                 # of the largest amplitude: what counts as a turn
-LEAST_TURNS = 3                 # of a free motion
-SHORT_HOLD = 0.05               # period: a hold that is shorter is not told from a release
-SLOW = 0.3                      # of the range: turns of a slow motion that is the main one
-UNLIKE = 0.012                  # of the amplitude, by which a short hold and its release may miss a level and a cosine
-AT_REST = 0.15                  # of the amplitude: a hold closer to rest is none
-OFF_REST, ABRUPT = 0.3, 0.8     # of the amplitude: where a caught model stands, and its speed just before over omega
-AFTER = 0.02                    # period after the release, at which the test begins
-GROWTH, OF_RANGE = 1.25, 0.18    # by which a swing exceeds the two before it, and by how much of the whole range
-ALIKE = 0.15                    # period, by which half a period may differ: another motion is no second push
-COARSEST = 8                    # samples per cycle
+STILL = 0.2  # period, for which stillness is looked for; a free peak moves by 0.19 of its amplitude in it
+FLAT = 0.08  # of the amplitude of the motion that follows: less is stillness
+CAUGHT = 0.03  # of the amplitude before: less is more than damping does
+LARGE = 0.3  # of the first amplitude: friction alone may stop less
+HOLD = 0.35  # period: what lasts less between motions is no hold, but two motions that cancel
+SMOOTH = 0.06  # period, over which noise is averaged
+NOISE = 3.0  # deviations of the averaged noise, by which stillness may move
+PROMINENT = 0.1  # of the largest amplitude: what counts as a turn
+LEAST_TURNS = 3  # of a free motion
+SHORT_HOLD = 0.05  # period: a hold that is shorter is not told from a release
+SLOW = 0.3  # of the range: turns of a slow motion that is the main one
+UNLIKE = 0.012  # of the amplitude, by which a short hold and its release may miss a level and a cosine
+AT_REST = 0.15  # of the amplitude: a hold closer to rest is none
+OFF_REST, ABRUPT = 0.3, 0.8  # of the amplitude: where a caught model stands, and its speed just before over omega
+AFTER = 0.02  # period after the release, at which the test begins
+GROWTH, OF_RANGE = 1.25, 0.18  # by which a swing exceeds the two before it, and by how much of the whole range
+ALIKE = 0.15  # period, by which half a period may differ: another motion is no second push
+COARSEST = 8  # samples per cycle
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     period = _period(x, step, noise)
     slow = ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
     apart = np.diff(_turns(slow, 0, len(x), SLOW * float(np.ptp(x))))
-    if len(apart) and float(np.median(apart)) < 4 * period / step:      # the fast motion is not what was released
+    if len(apart) and float(np.median(apart)) < 4 * period / step:  # the fast motion is not what was released
         period = _period(slow, step, 0.0)
     gap = float(np.diff(time).max())
     if not COARSEST * step < period < 0.7 * (time[-1] - time[0]) or gap > max(STILL * period, 1.5 * step):
@@ -76,8 +76,15 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     first, last, start, end, held, level = found
     at = even[0] + step * np.array([first, last, held])
     rows = np.searchsorted(time, at[:2] - 1e-9 * step)
-    return FreeMotion(int(rows[0]) if start != "record" else 0, int(rows[1]) if end != "record" else len(time),
-                      start, end, float(at[2]), level, float(at[1]))  # fmt: skip
+    return FreeMotion(
+        int(rows[0]) if start != "record" else 0,
+        int(rows[1]) if end != "record" else len(time),
+        start,
+        end,
+        float(at[2]),
+        level,
+        float(at[1]),
+    )
 
 
 def _first_decay(
@@ -88,7 +95,7 @@ def _first_decay(
     noise = NOISE * sigma / max(SMOOTH * period, 1) ** 0.5
     spread = _range(y, width)
     after = 0.5 * np.roll(_range(y, cycle), -width)
-    after[len(y) - width:] = 0.0
+    after[len(y) - width :] = 0.0
     moves = after > max(PROMINENT * size, 0.8 * noise / FLAT)
     runs = [run for run in _runs((spread < FLAT * after + noise) & moves) if run[1] - run[0] + width > HOLD * period]
     begins = [0, *(last + width for _, last in runs)]
@@ -104,7 +111,7 @@ def _first_decay(
         cycle = round(2 * float(np.median(np.diff(turns[:7]))))
         first, start, held = float(begin), "record", 0.0
         since = runs[i - 1][0] if i else 0
-        level = float(np.median(x[since: begin])) if i else float(x[: max(cycle // 30, 1)].mean())
+        level = float(np.median(x[since:begin])) if i else float(x[: max(cycle // 30, 1)].mean())
         if i and abs(level - rest) < AT_REST * amplitude:
             start, held = "push", float(begin)
             large = [turn for turn in turns if abs(y[turn] - rest) > 0.5 * amplitude]
@@ -129,10 +136,10 @@ def _stop(
     apart, whole = np.diff(turns) / cycle, float(np.ptp(y))
     for k in range(2, len(swings) - 1):
         before = max(swings[k - 1], swings[k - 2])
-        grown = swings[k: k + 3] > max(GROWTH * before, before + OF_RANGE * whole)
-        if grown[0] and (grown[1:] & (np.abs(apart[k + 1: k + 3] - 0.5) < ALIKE)).any():
+        grown = swings[k : k + 3] > max(GROWTH * before, before + OF_RANGE * whole)
+        if grown[0] and (grown[1:] & (np.abs(apart[k + 1 : k + 3] - 0.5) < ALIKE)).any():
             while k > 2 and swings[k - 1] > GROWTH * max(swings[k - 2], swings[k - 3]):
-                k -= 1                           # a pull before the release is part of it
+                k -= 1  # a pull before the release is part of it
             return float(turns[k]), "push"
     width = round(STILL * cycle)
     spread, before = _range(y, width), np.zeros(len(y))
@@ -144,8 +151,8 @@ def _stop(
             break
         if last - first + width < HOLD * cycle:
             continue
-        speed = np.abs(np.diff(y[max(first - cycle // 8, 0): first + 1])).max(initial=0.0) * cycle / (2 * np.pi)
-        off = abs(float(np.median(y[first: first + width])) - rest)
+        speed = np.abs(np.diff(y[max(first - cycle // 8, 0) : first + 1])).max(initial=0.0) * cycle / (2 * np.pi)
+        off = abs(float(np.median(y[first : first + width])) - rest)
         if max(off / OFF_REST, speed / ABRUPT) > before[first]:
             return float(first - SMOOTH * cycle), "catch"
     return (float(pushed - AFTER * cycle), "push") if pushed is not None else (float(len(y)), "record")
@@ -163,7 +170,7 @@ def _released(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> 
 
 def _turns(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
     """Where a motion turns, high and low in turn."""
-    part = y[begin: end]
+    part = y[begin:end]
     high, low = (signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
     both = sorted([*((k, 1) for k in high), *((k, -1) for k in low)])
     kept: list[tuple[int, int]] = []
@@ -202,4 +209,4 @@ def _period(x: np.ndarray, step: float, noise: float) -> float:
     mean = (total[high] - total[low]) / (high - low)
     mean -= 2 * len(speed) * (2 * noise * np.sin(np.pi * frequency[known] * step)) ** 2
     best = int(np.argmax(mean))
-    return float(1 / frequency[low[best] + max(int(np.argmax(power[low[best]: high[best]])), low[best] == 0)])
+    return float(1 / frequency[low[best] + max(int(np.argmax(power[low[best] : high[best]])), low[best] == 0)])

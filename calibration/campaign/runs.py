@@ -79,8 +79,15 @@ def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
     notes = [f"{where}: {missing} samples are missing, and drawn straight"] if missing else []
     position = records[0].wave_position
     assert position is not None
-    return Run(test.file, even * scale["time"], wave * scale[WAVE] - still.get(WAVE, 0.0), position,
-               math.radians(test.sea.heading), tuple(sorted(records, key=lambda r: r.time[0])), tuple(notes))  # fmt: skip
+    return Run(
+        test.file,
+        even * scale["time"],
+        wave * scale[WAVE] - still.get(WAVE, 0.0),
+        position,
+        math.radians(test.sea.heading),
+        tuple(sorted(records, key=lambda r: r.time[0])),
+        tuple(notes),
+    )
 
 
 def evenly(time: np.ndarray, values: np.ndarray, where: str, unit: str) -> tuple[np.ndarray, np.ndarray, int]:
@@ -99,8 +106,10 @@ def evenly(time: np.ndarray, values: np.ndarray, where: str, unit: str) -> tuple
     off = np.abs(time - start - slope * index)
     worst = int(np.argmax(off))
     if off[worst] > UNEVEN * slope:
-        raise wrong("even sampling, since a sea is made of the whole record",
-                    f"{time[worst]:.6g} {unit}, which is {off[worst]:.3g} off an even step of {slope:.6g} {unit}")  # fmt: skip
+        raise wrong(
+            "even sampling, since a sea is made of the whole record",
+            f"{time[worst]:.6g} {unit}, which is {off[worst]:.3g} off an even step of {slope:.6g} {unit}",
+        )
     gap = int(np.argmax(np.diff(index)))
     if index[gap + 1] - index[gap] - 1 > LONGEST_GAP:
         missed = f"{index[gap + 1] - index[gap] - 1} missing after {time[gap]:.6g} {unit}"

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 from scipy import signal
 
-SPIKE = 8.0               # robust standard deviations
-OUTSIDE = 2.0             # the same, or steps of the last digit: a spike is that far beyond both neighbours
-CODE = 10.0               # times all else: what is no measurement
-SEGMENT = 1000.0          # s of a record in waves, or an eighth of it
+SPIKE = 8.0  # robust standard deviations
+OUTSIDE = 2.0  # the same, or steps of the last digit: a spike is that far beyond both neighbours
+CODE = 10.0  # times all else: what is no measurement
+SEGMENT = 1000.0  # s of a record in waves, or an eighth of it
 
 
 def resolution(values: np.ndarray) -> float:
@@ -67,9 +67,9 @@ def dominant_period(time: np.ndarray, values: np.ndarray) -> float | None:
         return None
     even = np.linspace(time[0], time[-1], len(time))
     resampled = np.interp(even, time, values)
-    power = np.abs(np.fft.rfft(resampled - line(even, resampled), 4 * len(resampled)))**2
+    power = np.abs(np.fft.rfft(resampled - line(even, resampled), 4 * len(resampled))) ** 2
     peak = int(np.argmax(power))
-    if peak == 0 or power[int(0.6 * peak): int(1.6 * peak) + 5].sum() < 0.4 * power.sum():
+    if peak == 0 or power[int(0.6 * peak) : int(1.6 * peak) + 5].sum() < 0.4 * power.sum():
         return None
     return float(4 * len(resampled) * (even[1] - even[0]) / peak)
 
@@ -127,7 +127,7 @@ def spikes(values: np.ndarray, step: np.ndarray) -> np.ndarray:
     scatter = 1.4826 * pd.Series(np.abs(off)).rolling(101, center=True, min_periods=8).median().to_numpy()
     tolerance = np.maximum(scatter, step)
     alone = np.abs(off) > SPIKE * tolerance
-    for shift in (-1, 1):                        # its neighbours are off by two thirds of it, the other way
+    for shift in (-1, 1):  # its neighbours are off by two thirds of it, the other way
         alone &= np.abs(np.roll(off, shift) + 2 / 3 * off) < 0.35 * np.abs(off)
     above = np.sign(off)
     outside = np.minimum(above * (middle - before), above * (middle - after))

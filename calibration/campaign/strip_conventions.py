@@ -23,10 +23,13 @@ class Strips(BaseModel):
     def of(cls, model: Model) -> "Strips":
         """Those of a model."""
         coupled = all(getattr(load, "coupled", True) for load in model.loads)
-        return cls.model_validate({
-            "directions": model.directions, "drag_speed": "vector" if coupled else "component",
-            "centripetal": model.centripetal,
-        })  # fmt: skip
+        return cls.model_validate(
+            {
+                "directions": model.directions,
+                "drag_speed": "vector" if coupled else "component",
+                "centripetal": model.centripetal,
+            }
+        )
 
     def given_to(self, model: Model) -> Model:
         """The model with strips so loaded; itself where they are."""

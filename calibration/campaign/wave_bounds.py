@@ -7,13 +7,13 @@ from scipy import ndimage
 
 from calibration.campaign.signals import dominant_period, noise_level
 
-CYCLES = 10              # over which the height of waves is averaged
-QUIET = 0.35             # of the usual height: waves that have not begun, or have died down
-FULL = 0.5               # of it in the first cycle: waves that had begun before
-ABOVE_NOISE = 5.0        # standard deviations
-OF_MOTION = 0.03         # of the largest motion: less is not told
-FASTER = 0.6             # of the natural period: what is slower may be another motion's
-LASTING = 0.7            # of the amplitude a sixth of the record before: less dies down with the motion
+CYCLES = 10  # over which the height of waves is averaged
+QUIET = 0.35  # of the usual height: waves that have not begun, or have died down
+FULL = 0.5  # of it in the first cycle: waves that had begun before
+ABOVE_NOISE = 5.0  # standard deviations
+OF_MOTION = 0.03  # of the largest motion: less is not told
+FASTER = 0.6  # of the natural period: what is slower may be another motion's
+LASTING = 0.7  # of the amplitude a sixth of the record before: less dies down with the motion
 
 
 def wave_span(time: np.ndarray, wave: np.ndarray, period: float) -> tuple[float, float]:
@@ -26,7 +26,7 @@ def wave_span(time: np.ndarray, wave: np.ndarray, period: float) -> tuple[float,
     power = ndimage.uniform_filter1d(centred**2, width, mode="reflect")
     usual = np.flatnonzero(power > QUIET**2 * np.median(power))
     first, last = int(usual[0]), int(usual[-1])
-    inside = round((0.5 - QUIET**2) * width)     # a mean over `width` sees waves that far away
+    inside = round((0.5 - QUIET**2) * width)  # a mean over `width` sees waves that far away
     return float(time[first + inside if first > 0 else 0]), float(time[last - inside if last < len(time) - 1 else -1])
 
 

@@ -39,9 +39,11 @@ from jaxhydro.errors import InputError, Problem
 
 SECONDS = 60.0  # CPU time of a search
 ENDED = {
-    "settled": "ended of its own", "reached": "ended of its own", "budget": "cut off by --search-seconds",
+    "settled": "ended of its own",
+    "reached": "ended of its own",
+    "budget": "cut off by --search-seconds",
     "interrupted": "stopped by the user",
-}  # fmt: skip
+}
 
 
 def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.tests_counted) -> Campaign:

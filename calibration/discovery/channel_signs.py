@@ -104,7 +104,13 @@ def _effect(channel: str, met: Sequence[Met], alike: tuple[str, ...]) -> Effect:
 
     label, meaning = f"sensor_sign.{channel}", f"sign of the recorded {channel}, by that which is declared"
     return Effect(
-        "sensor_sign", channel, meaning, "", {label: Estimate(label, -1.0, None, "-", meaning, 1.0, False, True)},
-        Evidence(float("nan"), float("nan"), gone("holdout"), float("nan")), max(0.0, gone("fit")), alike,
+        "sensor_sign",
+        channel,
+        meaning,
+        "",
+        {label: Estimate(label, -1.0, None, "-", meaning, 1.0, False, True)},
+        Evidence(float("nan"), float("nan"), gone("holdout"), float("nan")),
+        max(0.0, gone("fit")),
+        alike,
         "still water, the platform pushed by hand along every axis",
-    )  # fmt: skip
+    )

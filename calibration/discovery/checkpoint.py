@@ -58,9 +58,18 @@ class Checkpoint:
 def keep(path: Path, search: "Search", states: list[State], seconds: float) -> None:
     """Write what was reached, and what it took (s), whole or not at all. Raises InputError where it cannot be written."""
     reached = Checkpoint(
-        search.order, search.declared_in_second_order, search.study.expected, tuple(states), search.found,
-        tuple(search.scores), search.rejected, tuple(search.notes), search.alone, np.asarray(search.begun), seconds,
-    )  # fmt: skip
+        search.order,
+        search.declared_in_second_order,
+        search.study.expected,
+        tuple(states),
+        search.found,
+        tuple(search.scores),
+        search.rejected,
+        tuple(search.notes),
+        search.alone,
+        np.asarray(search.begun),
+        seconds,
+    )
     arrays: list[np.ndarray] = []
     about = {
         "fingerprint": fingerprint(search),

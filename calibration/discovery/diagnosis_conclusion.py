@@ -36,7 +36,12 @@ LEFT = {"decay": 0.03, "waves": 0.05}
 
 
 def conclude(
-    campaign: Campaign, search: Search, before: State, after: State, notes: Sequence[str], seconds: float,
+    campaign: Campaign,
+    search: Search,
+    before: State,
+    after: State,
+    notes: Sequence[str],
+    seconds: float,
     first: Sequence[Effect] = (),
 ) -> Diagnosis:
     """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
@@ -52,11 +57,24 @@ def conclude(
     lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
-        campaign.manifest.name, verdict, baseline, augmented, effects, tuple(search.rejected.values()), tuple(search.scores),
-        anatomy(search, before), left, share, words, next_test(search, after, verdict),
-        (*lost, *doubts_of(search, after, augmented, more), *notes), seconds, latent,
-        search.strips, search.study.options[search.order] if search.study.seas else None,
-    )  # fmt: skip
+        campaign.manifest.name,
+        verdict,
+        baseline,
+        augmented,
+        effects,
+        tuple(search.rejected.values()),
+        tuple(search.scores),
+        anatomy(search, before),
+        left,
+        share,
+        words,
+        next_test(search, after, verdict),
+        (*lost, *doubts_of(search, after, augmented, more), *notes),
+        seconds,
+        latent,
+        search.strips,
+        search.study.options[search.order] if search.study.seas else None,
+    )
 
 
 def much(search: Search, left: Sequence[Finding]) -> list[Finding]:
@@ -126,9 +144,18 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Cal
         earlier = {test.id: test for test in before.tests}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
     return Calibration(
-        campaign.manifest.name, augmented_model(search, state), parameters, tuple(tests),
-        state.settled, state.iterations, 0.0, (), (), campaign.platform.name, None,
-    )  # fmt: skip
+        campaign.manifest.name,
+        augmented_model(search, state),
+        parameters,
+        tuple(tests),
+        state.settled,
+        state.iterations,
+        0.0,
+        (),
+        (),
+        campaign.platform.name,
+        None,
+    )
 
 
 def _as_given(search: Search, state: State, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
@@ -215,7 +242,14 @@ def effect_of(search: Search, one: Candidate, after: State, doubt: str | None) -
     held = found.verdict.held if found.verdict.unseen else float("nan")
     parameters = estimates_of(search, after, one.labels) | _as_given(search, after, one.choices)
     return Effect(
-        one.effect, one.dof, "; ".join(meanings), one.source, parameters,
-        Evidence(found.score, found.verdict.bic, held, found.verdict.clear), max(0.0, 1 - now / left) if left > 0 else 0.0,
-        found.alike, one.telling or None, doubt,
-    )  # fmt: skip
+        one.effect,
+        one.dof,
+        "; ".join(meanings),
+        one.source,
+        parameters,
+        Evidence(found.score, found.verdict.bic, held, found.verdict.clear),
+        max(0.0, 1 - now / left) if left > 0 else 0.0,
+        found.alike,
+        one.telling or None,
+        doubt,
+    )

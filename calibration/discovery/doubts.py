@@ -54,8 +54,11 @@ def in_doubt(search: Search, state: State, before: Calibration, after: Calibrati
     motions follow worse with it: what acts in its place goes with the waves' square as well."""
     last = max((one.round for one in search.scores), default=0)
     candidates = {(one.effect, one.dof): one.name for one in search.posed.candidates}
-    tried = {candidates[one.effect, one.degree_of_freedom]: one.verdict for one in search.scores
-             if one.round == last and one.verdict is not None}  # fmt: skip
+    tried = {
+        candidates[one.effect, one.degree_of_freedom]: one.verdict
+        for one in search.scores
+        if one.round == last and one.verdict is not None
+    }
     tried |= {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
     verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
     found = outdone({name: one.worth for name, one in verdicts.items()}, tried)

@@ -46,9 +46,7 @@ def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: n
     return Look(place, look.active, residual, slopes, mine)
 
 
-def bounded(
-    study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float
-) -> tuple[np.ndarray, np.ndarray]:
+def bounded(study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float) -> tuple[np.ndarray, np.ndarray]:
     """A damped step that stays where parameters make sense: what would leave goes to the end, the others as is best then."""
     step, own = solve(study, look, used, prior, damping)
     low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T

@@ -93,10 +93,20 @@ def study_of(
     if max(steps) > ALONE * sum(steps):
         width = -(-width // 2)
     return Study(
-        space, model, tuple(names), directions, width, decays, tuple(seas),
-        {name: tuple(some) for name, some in others.items()}, tuple(series), decaying, own_width, tuple(cuts),
+        space,
+        model,
+        tuple(names),
+        directions,
+        width,
+        decays,
+        tuple(seas),
+        {name: tuple(some) for name, some in others.items()},
+        tuple(series),
+        decaying,
+        own_width,
+        tuple(cuts),
         {"second": options, **other_options},
-    )  # fmt: skip
+    )
 
 
 def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
@@ -148,15 +158,13 @@ def series_of_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> 
     return found, Rows.of([cut] * len(found), n, TAPERED)
 
 
-def _series(
-    record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0
-) -> Series:
+def _series(record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0) -> Series:
     """`motion` (b,) is the mean square of what the test is about, in the channel's unit."""
     noise, spread = record.noise[channel], float(np.std(values))
     floor = np.sqrt(noise**2 + FLOOR[record.kind] ** 2 * motion)
     return Series(
         record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values), floor, slow
-    )  # fmt: skip
+    )
 
 
 def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[Series, Bands]], np.ndarray]:
@@ -212,7 +220,17 @@ def _sea_record(
     last = int(np.ceil((times[max(fitted)] - times[0]) / dt - 1e-9)) if fitted else 0
     measured = [[np.interp(w[:n], run.samples(r), r.values[c]) for c in channels] for r, w in zip(tests, windows)]
     return SeaRecord(
-        model, sea, jnp.asarray(times), jnp.asarray(dt), jnp.asarray(np.array(measured)), space, from_rest, count,
-        last, tuple(int(w[0]) for w in windows), tuple(DOFS.index(c) for c in channels), tuple(r.id for r in tests),
+        model,
+        sea,
+        jnp.asarray(times),
+        jnp.asarray(dt),
+        jnp.asarray(np.array(measured)),
+        space,
+        from_rest,
+        count,
+        last,
+        tuple(int(w[0]) for w in windows),
+        tuple(DOFS.index(c) for c in channels),
+        tuple(r.id for r in tests),
         slow,
-    )  # fmt: skip
+    )

@@ -212,8 +212,10 @@ class Search(Scoring):
         prior = self.prior(chosen)
         deviation = predict(self.study, after.look, prior).deviation[[after.look.active.index(i) for i in mine]]
         far = (np.abs(self.study.steps(after.look.place.x)[mine]) - BEYOND * width) / deviation
-        squares = [float((away(self.study, at.look.place, by)[0][mine] ** 2).sum())
-                   for at, by in ((state, self.prior(state.chosen)), (after, prior))]  # fmt: skip
+        squares = [
+            float((away(self.study, at.look.place, by)[0][mine] ** 2).sum())
+            for at, by in ((state, self.prior(state.chosen)), (after, prior))
+        ]
         gain = self.gain(state, after) + squares[0] - squares[1]
         off = [label for label, beyond in zip(one.amplitudes, far) if beyond > LEAST_CLEAR]
         if not off or gain - len(off) * math.log(self.count) < LEAST_BIC:

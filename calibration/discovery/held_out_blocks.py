@@ -102,9 +102,16 @@ def in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarra
     if not series:
         raise ValueError("no test is long enough to be cut into blocks")
     return replace(
-        study, decays=decays, seas=tuple(seas), other_seas={}, series=tuple(series), decay_records=tuple(cut),
-        own_width=own_width, cuts=tuple(cuts), expected=None,
-    ), np.array(numbers)  # fmt: skip
+        study,
+        decays=decays,
+        seas=tuple(seas),
+        other_seas={},
+        series=tuple(series),
+        decay_records=tuple(cut),
+        own_width=own_width,
+        cuts=tuple(cuts),
+        expected=None,
+    ), np.array(numbers)
 
 
 def parts(record: Record) -> list[Record]:
@@ -112,8 +119,10 @@ def parts(record: Record) -> list[Record]:
     cuts = np.array_split(np.arange(len(record.time)), COUNT)
     return [
         replace(
-            record, id=f"{record.id}, block {k + 1}", time=record.time[at],
+            record,
+            id=f"{record.id}, block {k + 1}",
+            time=record.time[at],
             values={name: values[at] for name, values in record.values.items()},
         )
         for k, at in enumerate(cuts)
-    ]  # fmt: skip
+    ]

@@ -78,10 +78,13 @@ class Study:
         """Which series are what their tests are about (s,): a decay's own motion; in waves what moves beside others of its
         unit."""
         own = {record.id: record.degree_of_freedom for record in self.decay_records}
-        moves = {test: moving({one.channel: one.spread for one in self.series if one.test == test})
-                  for test in {one.test for one in self.series} - set(own)}  # fmt: skip
-        return np.array([one.channel == own[one.test] if one.test in own else one.channel in moves[one.test]
-                         for one in self.series])  # fmt: skip
+        moves = {
+            test: moving({one.channel: one.spread for one in self.series if one.test == test})
+            for test in {one.test for one in self.series} - set(own)
+        }
+        return np.array(
+            [one.channel == own[one.test] if one.test in own else one.channel in moves[one.test] for one in self.series]
+        )
 
     @cached_property
     def row_series(self) -> np.ndarray:
@@ -229,8 +232,9 @@ class Study:
         some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
         with stoppable_threads(cores()) as pool:
             jobs = [self._slopes(pool, place, mine) for mine in some]
-            looks = [self._look(place, mine, [None if job is None else job.result() for job in one])
-                     for mine, one in zip(some, jobs)]  # fmt: skip
+            looks = [
+                self._look(place, mine, [None if job is None else job.result() for job in one]) for mine, one in zip(some, jobs)
+            ]
         whole = looks[0]
         for one in looks[1:]:
             whole = whole.beside(one)

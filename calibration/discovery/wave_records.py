@@ -39,8 +39,10 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
         if seen and kind in kinds and float(np.median(seen)) < PRESENT:
             kinds.remove(kind)  # type: ignore[arg-type]
             percent = 100 * max(0.0, float(np.median(seen)))
-            words.append(f"the wave records have {percent:.0f} % of the second order at {kind}s of frequencies "
-                         "that waves of their height bind: it is left out of the seas")  # fmt: skip
+            words.append(
+                f"the wave records have {percent:.0f} % of the second order at {kind}s of frequencies "
+                "that waves of their height bind: it is left out of the seas"
+            )
     if not kinds:
         return replace(options, order=1), tuple(words)
     return replace(options, kinds=tuple(kinds)), tuple(words)  # type: ignore[arg-type]

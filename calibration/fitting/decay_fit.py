@@ -75,7 +75,12 @@ class Fit:
         self.products: np.ndarray | None = None
 
     def minimise(
-        self, stage: str, weight, until, tolerance: float, fraction: tuple[float, float],
+        self,
+        stage: str,
+        weight,
+        until,
+        tolerance: float,
+        fraction: tuple[float, float],
         samples: float | None = None,
     ) -> bool:
         """Levenberg-Marquardt from where the fit is, to a relative decrease below `tolerance`.

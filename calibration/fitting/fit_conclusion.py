@@ -59,9 +59,7 @@ def _motions(problem: Problem, unknowns: Unknowns, x):
     return jax.lax.map(lambda inputs: problem.motion(x, *inputs), (unknowns.own, problem.data))
 
 
-def series_of(
-    problem: Problem, records: Sequence[Record], unknowns: Unknowns, before: Problem | None = None
-) -> list[TestFit]:
+def series_of(problem: Problem, records: Sequence[Record], unknowns: Unknowns, before: Problem | None = None) -> list[TestFit]:
     """Every record measured against simulated. `before` is the same with the model that the calibration started from."""
     data = problem.data
     after = np.asarray(_motions(problem, unknowns, unknowns.shared))

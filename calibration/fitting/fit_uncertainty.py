@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from calibration.fitting.decay_fit import Fit
 
 
-
 def errors_of(fit: Fit, tests: Sequence[TestFit]) -> tuple[np.ndarray, np.ndarray]:
     """Variance of the residuals and how many of their samples count as one, by record and channel of a finished fit."""
     data, products = fit.problem.data, fit.products

@@ -80,6 +80,7 @@ def calibrate_jointly(
     fit = None
     x = space.start
     if decays:
+
         def first(stage: str, iteration: int, value: float, fraction: float) -> None:
             report(stage, iteration, value, 0.3 * fraction, "J")
 
@@ -139,9 +140,18 @@ def _conclude(
     said = remarks(campaign, parameters, known, ("decay", *IN_WAVES, "static"))
     said = (*_of_kinds(campaign, model, joint), *said)
     return Calibration(
-        campaign.manifest.name, model, parameters, tuple(tests), joint.converged and not lost, joint.iterations, seconds,
-        tuple(joint.history), (*lost, *said, *notes), campaign.platform.name, known,
-    )  # fmt: skip
+        campaign.manifest.name,
+        model,
+        parameters,
+        tuple(tests),
+        joint.converged and not lost,
+        joint.iterations,
+        seconds,
+        tuple(joint.history),
+        (*lost, *said, *notes),
+        campaign.platform.name,
+        known,
+    )
 
 
 def _of_kinds(campaign: Campaign, model: Model, joint: JointFit) -> tuple[str, ...]:

@@ -83,9 +83,15 @@ class JointFit:
     """
 
     def __init__(
-        self, sources: Sources, decays: Fit | None, space: ParameterSpace, x, report: Callable, loss: Loss,
+        self,
+        sources: Sources,
+        decays: Fit | None,
+        space: ParameterSpace,
+        x,
+        report: Callable,
+        loss: Loss,
         pose: Callable[[Any], SeaProblem],
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.pose = pose
         self.sources, self.decays, self.space, self.report, self.loss = sources, decays, space, report, loss
         self.mean, self.width = space.prior

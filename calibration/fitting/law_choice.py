@@ -50,9 +50,11 @@ class LawFit:
         value = float(coefficients(model.in_sea(state).loads)[label])
         assert known is not None
         reference = reference_of(model.loads)
-        logs = {} if reference is None else {
-            exponent_label(label, over): math.log(now / then) for over, now, then in zip(state._fields, state, reference)
-        }  # fmt: skip
+        logs = (
+            {}
+            if reference is None
+            else {exponent_label(label, over): math.log(now / then) for over, now, then in zip(state._fields, state, reference)}
+        )
         law = drag_laws_of(model).get(label)
         if isinstance(law, KeuleganCarpenter):
             ratio = float(log_ratio(surface_number(model.hull, label, state.significant_height) ** 2, law.reference))

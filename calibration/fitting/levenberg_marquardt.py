@@ -95,9 +95,7 @@ def _step(objective: Callable, unknowns: PyTree, args: PyTree, state: Any):
     return SOLVER.step(objective, unknowns, args, {}, state, frozenset())
 
 
-def descend(
-    objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float, trust: float = TRUST
-) -> Iterator[Reached]:
+def descend(objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float, trust: float = TRUST) -> Iterator[Reached]:
     """Levenberg-Marquardt on the residuals that `objective(unknowns, args)` returns first, iteration by iteration. Its damping
     begins as 1 / `trust`.
 

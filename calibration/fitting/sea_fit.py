@@ -110,9 +110,15 @@ def calibrate_in_waves(
 
     def pose(model: Model) -> SeaProblem:
         return pose_in_waves(
-            model, made, space, options, from_rest=campaign.manifest.zero is not None, scale=campaign.manifest.scale,
-            step=sea_step(declared, options), objective=objective,
-        )  # fmt: skip
+            model,
+            made,
+            space,
+            options,
+            from_rest=campaign.manifest.zero is not None,
+            scale=campaign.manifest.scale,
+            step=sea_step(declared, options),
+            objective=objective,
+        )
 
     fit = (ShootingFit if objective == "blocks" else SeaFit)(pose, declared, report)
     try:
@@ -126,9 +132,7 @@ def calibrate_in_waves(
     return _conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)
 
 
-def _conclude(
-    campaign: Campaign, declared: Model, fit: SeaFit, options: Options, made: Seas, seconds: float
-) -> Calibration:
+def _conclude(campaign: Campaign, declared: Model, fit: SeaFit, options: Options, made: Seas, seconds: float) -> Calibration:
     """Parameters with their deviations, and all tests in waves before and after."""
     problem = fit.problem
     model = problem.space.model(problem.model, fit.x)
@@ -137,9 +141,18 @@ def _conclude(
     tests, warnings = tests_in_waves(campaign, declared, model, options, made)
     notes = (*remarks(campaign, parameters, known, IN_WAVES), *sea_remarks(model, tests), *fit.notes, *warnings)
     return Calibration(
-        campaign.manifest.name, model, parameters, tests, fit.converged, fit.iterations, seconds, tuple(fit.history),
-        notes, campaign.platform.name, known,
-    )  # fmt: skip
+        campaign.manifest.name,
+        model,
+        parameters,
+        tests,
+        fit.converged,
+        fit.iterations,
+        seconds,
+        tuple(fit.history),
+        notes,
+        campaign.platform.name,
+        known,
+    )
 
 
 def tests_in_waves(
@@ -161,6 +174,7 @@ def _test(after: SeaTest, before: SeaTest) -> TestFit:
         earlier = in_bands(before)
         bands = {
             name: {k: BandError(band.error, earlier[name][k].error, band.low, band.high) for k, band in row.items()}
-            for name, row in in_bands(after).items() if name in counts
-        }  # fmt: skip
+            for name, row in in_bands(after).items()
+            if name in counts
+        }
     return replace(after.fit, series=series, start=start, bands=bands)

@@ -36,13 +36,18 @@ def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
             continue
         length = float(test.time[-1] - test.time[0])
         periods = {channel: modes.of(channel) for channel in test.bands}
-        few = [f"{length / period:.1f} of {channel}" for channel, period in periods.items()
-               if math.isfinite(period) and length < FEW * period]  # fmt: skip
+        few = [
+            f"{length / period:.1f} of {channel}"
+            for channel, period in periods.items()
+            if math.isfinite(period) and length < FEW * period
+        ]
         if few:
             alike.setdefault(f"{length:.0f} s are few natural periods ({', '.join(few)})", []).append(test.id)
     for short, ids in alike.items():
-        yield (f"{listed(ids)}: {short}: how much energy a slow motion has in them is to a good part chance, and stated "
-               "deviations are too small")  # fmt: skip
+        yield (
+            f"{listed(ids)}: {short}: how much energy a slow motion has in them is to a good part chance, and stated "
+            "deviations are too small"
+        )
 
 
 def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:
@@ -52,5 +57,7 @@ def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:
             continue
         before, after = map(error_of_energies, zip(*pairs, strict=True))
         if after > WORSE * before:
-            yield (f"held out, {test.id} is followed worse than by the declared model: error of ln(energy) {number(before, 2)} "
-                   f"before, {number(after, 2)} after")  # fmt: skip
+            yield (
+                f"held out, {test.id} is followed worse than by the declared model: error of ln(energy) {number(before, 2)} "
+                f"before, {number(after, 2)} after"
+            )

@@ -81,8 +81,12 @@ class ShootingFit(SeaFit):
     def left(self) -> tuple[float, bool]:
         self.shot = shoot(self.problem, self.unknowns)
         residual, piece = np.asarray(self.shot.residual), np.asarray(self.problem.piece)
-        present = np.concatenate([np.pad(f, ((0, 0), (0, 0), (0, residual.shape[2] - f.shape[2]))) for f in
-                                  (np.asarray(one.factor) > 0 for one in self.problem.blocks)])  # fmt: skip
+        present = np.concatenate(
+            [
+                np.pad(f, ((0, 0), (0, 0), (0, residual.shape[2] - f.shape[2])))
+                for f in (np.asarray(one.factor) > 0 for one in self.problem.blocks)
+            ]
+        )
         of = [(piece == i)[..., None] & present for i in range(self.problem.observations)]
         self.groups = [residual[one] for one in of]
         total = sum(float(np.sum(group**2)) for group in self.groups)

@@ -11,5 +11,14 @@ METHODS: dict[str, type[AbstractSearch]] = {
 }
 
 __all__ = [
-    "CMAES", "METHODS", "AbstractSearch", "Budget", "DifferentialEvolution", "Genetic", "History", "MultiStart", "Stop", "Task",
-]  # fmt: skip
+    "CMAES",
+    "METHODS",
+    "AbstractSearch",
+    "Budget",
+    "DifferentialEvolution",
+    "Genetic",
+    "History",
+    "MultiStart",
+    "Stop",
+    "Task",
+]

@@ -94,8 +94,10 @@ class Identifiability:
                 alike = [*(one for one in alike if one not in met), whole]
         for some, gamma in alike:
             index = f"index {number(gamma, 2)}" if math.isfinite(gamma) else "index without bound"
-            said.append(f"{listed([x for x in self.parameters.labels if x in some])} act alike (collinearity {index}, poor "
-                        f"from {COLLINEAR:.0f}): only exact records tell them apart")  # fmt: skip
+            said.append(
+                f"{listed([x for x in self.parameters.labels if x in some])} act alike (collinearity {index}, poor "
+                f"from {COLLINEAR:.0f}): only exact records tell them apart"
+            )
         return tuple(said)
 
 
@@ -125,9 +127,19 @@ def identifiability(
         fix, left = _best_fix(labels, left, open_ or list(direction.movement))
         fixes.append(fix)
     return Identifiability(
-        parameters, information, covariance, source, spectrum, axes, covariance / np.outer(d, d),
-        tuple(sorted(groups, key=lambda g: (-g.gamma, len(g.labels)))), weak, tuple(fixes), untouched, tuple(at_bound),
-    )  # fmt: skip
+        parameters,
+        information,
+        covariance,
+        source,
+        spectrum,
+        axes,
+        covariance / np.outer(d, d),
+        tuple(sorted(groups, key=lambda g: (-g.gamma, len(g.labels)))),
+        weak,
+        tuple(fixes),
+        untouched,
+        tuple(at_bound),
+    )
 
 
 def weak_directions(parameters: Parameters, information: np.ndarray, active: Sequence[int]) -> tuple[Direction, ...]:
@@ -189,9 +201,7 @@ def active_of(parameters: Parameters, information: np.ndarray, at_bound: Sequenc
     return seen, tuple(parameters.labels[i] for i in free if i not in seen)
 
 
-def _combination(
-    parameters: Parameters, core: np.ndarray, active: Sequence[int], mine: Sequence[int]
-) -> Combination | None:
+def _combination(parameters: Parameters, core: np.ndarray, active: Sequence[int], mine: Sequence[int]) -> Combination | None:
     """The best known combination of some parameters, whatever the others are; None if it is not known to CLEAR."""
     rest = [i for i in range(len(core)) if i not in mine]
     across = core[np.ix_(rest, mine)]

@@ -119,8 +119,12 @@ def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[Colour
     tall = [float(x.max() / v) for x, v in zip(share, variance, strict=True)]
     at = int(np.argmax(tall))
     top, place = max(tall[at], 2 * floor), max(float(found[at].frequency[int(np.argmax(share[at]))]), first)
-    limits = [(np.log(floor) - 7, 3.0), (np.log(floor) - 12, np.log(top) + 5), (np.log(0.05 * first), np.log(last)),
-              (np.log(0.3 * first), np.log(last))]  # fmt: skip
+    limits = [
+        (np.log(floor) - 7, 3.0),
+        (np.log(floor) - 12, np.log(top) + 5),
+        (np.log(0.05 * first), np.log(last)),
+        (np.log(0.3 * first), np.log(last)),
+    ]
     starts = [(place, 2 * first), (place, 0.3 * place), (0.1 * first, first), (0.1 * first, 0.1 * last)]
     tried = [minimize(misfit, np.log([floor, top, *start]), method="L-BFGS-B", bounds=limits) for start in starts]
     best, white = min(tried, key=lambda one: one.fun), Colour(1.0, 0.0, 0.0, float(first))

@@ -8,6 +8,7 @@ from calibration.identifiability.information import inverse
 
 ROUNDING = 1e-14  # of the largest eigenvalue of a scaled matrix: a weak prior that is all there is of a coordinate is more
 
+
 class Spread(NamedTuple):
     """Covariance of the coordinates of all unknowns: the shared parameters first, then every record's own."""
 

@@ -40,8 +40,9 @@ class Combination(NamedTuple):
         if self.product:
             powers = " ".join(f"{label}^{weight:.2f}" for label, weight in self.weights.items() if abs(weight) >= SMALL)
             return f"the product {powers} is known to {percent(self.standard_deviation)}"
-        terms = " ".join(f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}" for label, w in self.weights.items()
-                         if abs(w) >= SMALL)  # fmt: skip
+        terms = " ".join(
+            f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}" for label, w in self.weights.items() if abs(w) >= SMALL
+        )
         unit = f" {readable_unit(self.unit)}".rstrip()
         value = with_deviation(self.value, self.standard_deviation)
         return f"their weighted sum {terms.removeprefix('+ ')} = {value}{unit} is known"
@@ -89,5 +90,3 @@ class Collinear(NamedTuple):
 
     labels: tuple[str, ...]
     gamma: float
-
-

@@ -42,8 +42,10 @@ def figures(calibration: Calibration) -> Iterator[tuple[str, str, Figure]]:
 
 _PARAMETERS = "Where every parameter started and where it ended, with two standard deviations."
 _DECAY = "Decays in {dof}: logarithmic decrement per cycle and period against amplitude; triangles lie beyond the edge."
-_TEST = ("Test {id}: measured and simulated {channel}; their difference over a grey band of two standard deviations of "
-         "the noise; the other channels.")
+_TEST = (
+    "Test {id}: measured and simulated {channel}; their difference over a grey band of two standard deviations of "
+    "the noise; the other channels."
+)
 
 
 _SPECTRA = "Test {id}: spectra of the motions, measured and simulated before and after calibration; bands shaded."
@@ -99,15 +101,15 @@ def _axis(channel: str, between: str = " ") -> str:
     return f"{channel.capitalize()}{between}({unit_of(channel)})"
 
 
-def _compare(
-    ax: Axes, time: np.ndarray, series: Series, before: np.ndarray | None, width: float = 1.0
-) -> dict[str, Artist]:
+def _compare(ax: Axes, time: np.ndarray, series: Series, before: np.ndarray | None, width: float = 1.0) -> dict[str, Artist]:
     name = series.channel
     rows = [("measured", series.measured, MEASURED, 1.5, 3.0), ("calibrated", series.simulated, SIMULATED, 0.8, 4.0)]
     if before is not None:
         rows.append(("before", before, BEFORE, 0.8, 2.0))
-    return {label: ax.plot(time, for_people(name, values), color=colour, lw=width * size, zorder=order)[0]
-            for label, values, colour, size, order in rows}
+    return {
+        label: ax.plot(time, for_people(name, values), color=colour, lw=width * size, zorder=order)[0]
+        for label, values, colour, size, order in rows
+    }
 
 
 class Decay(NamedTuple):
@@ -131,9 +133,12 @@ class Decay(NamedTuple):
             return found._replace(amplitude=for_people(main.channel, found.amplitude))
 
         return cls(
-            cycles(main.measured), cycles(main.simulated), cycles(test.start.get(main.channel)),
-            CLEAR * float(for_people(main.channel, main.noise)), test.use != "fit",
-        )  # fmt: skip
+            cycles(main.measured),
+            cycles(main.simulated),
+            cycles(test.start.get(main.channel)),
+            CLEAR * float(for_people(main.channel, main.noise)),
+            test.use != "fit",
+        )
 
     def well_seen(self, cycles: Cycles, quantity: str) -> np.ndarray:
         """A quantity of the cycles that are clear of the noise; of the largest ones where none is."""

@@ -55,12 +55,18 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
 
 _BEFORE_AFTER = "RMSE over the motion's standard deviation of every test, without what was missing and with it, both fitted."
 _ANATOMY = "The residual over the noise by test and frequency, before and after; held-out tests below the line."
-_EFFECT = ("With {title}, test {id}: the measured motion, and what the model leaves of it without what was missing and with "
-           "it. Grey: two standard deviations of the noise.")  # fmt: skip
-_SCORES = ("How much better the fitted tests are with every candidate, in −2 ln L: at first order (bars) and refitted (dots), "
-           "the best of every round.")  # fmt: skip
-_LATENT = ("Test {id}: the force in {motion} that would have to act on the model for it to follow the record, the law of few "
-           "terms that explains it, if there is one, and what may drive it.")  # fmt: skip
+_EFFECT = (
+    "With {title}, test {id}: the measured motion, and what the model leaves of it without what was missing and with "
+    "it. Grey: two standard deviations of the noise."
+)
+_SCORES = (
+    "How much better the fitted tests are with every candidate, in −2 ln L: at first order (bars) and refitted (dots), "
+    "the best of every round."
+)
+_LATENT = (
+    "Test {id}: the force in {motion} that would have to act on the model for it to follow the record, the law of few "
+    "terms that explains it, if there is one, and what may drive it."
+)
 _SPECTRA = "Test {id}: spectra of the motions, measured and simulated without what was missing and with it; bands shaded."
 
 
@@ -112,8 +118,15 @@ def before_after_figure(rows: list[Row]) -> Figure:
     for column, colour, shift in ((0, BEFORE, -0.2), (1, SIMULATED, 0.2)):
         ax.barh(np.array(places) + shift, 100 * errors[:, column], height=0.37, color=colour)
         for place, error in zip(places, errors[:, column]):
-            ax.annotate(percent(error), (100 * error, place + shift), (2, 0), textcoords="offset points", va="center",
-                        fontsize=6.5, color="#555a62")  # fmt: skip
+            ax.annotate(
+                percent(error),
+                (100 * error, place + shift),
+                (2, 0),
+                textcoords="offset points",
+                va="center",
+                fontsize=6.5,
+                color="#555a62",
+            )
     for place, text in heads:
         ax.text(0.0, place, f" {text}", fontweight="bold", va="center")
     ax.set_yticks(places, labels)

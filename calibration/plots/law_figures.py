@@ -30,9 +30,17 @@ def coefficient(found: SeaLaws, label: str) -> Figure:
         name = "one sea alone" if sea.use == "fit" else "one sea alone, held out"
         face = MEASURED if sea.use == "fit" else "white"
         artists[name] = ax.errorbar(
-            sea.state.significant_height, one.value, yerr=None if np.isnan(relative) else bars, fmt="o", color=MEASURED,
-            mfc=face, ms=4, lw=0.9, capsize=2, zorder=4,
-        )[0]  # fmt: skip
+            sea.state.significant_height,
+            one.value,
+            yerr=None if np.isnan(relative) else bars,
+            fmt="o",
+            color=MEASURED,
+            mfc=face,
+            ms=4,
+            lw=0.9,
+            capsize=2,
+            zorder=4,
+        )[0]
     grid = np.geomspace(0.85 * heights.min(), 1.15 * heights.max(), 60)
     shown = [found.laws[0]] + ([found.chosen] if found.chosen is not found.laws[0] else [])
     for law, colour in zip(shown, COLOURS):

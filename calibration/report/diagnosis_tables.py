@@ -114,11 +114,18 @@ def anatomy(saved: SavedDiagnosis) -> Rows:
     rows = []
     for one in sorted(saved.anatomy.before, key=lambda one: -(one.over_noise or 0.0)):
         now = after.get((one.test, one.channel))
-        rows.append((
-            one.test, USE.get(one.use, one.use), one.channel, one.words,
-            f"{number(one.rms, 2)} {one.unit}", percent(one.relative if (one.relative or 0.0) < STILL else None),
-            number(one.over_noise, 2), number(now.over_noise if now else None, 2),
-        ))  # fmt: skip
+        rows.append(
+            (
+                one.test,
+                USE.get(one.use, one.use),
+                one.channel,
+                one.words,
+                f"{number(one.rms, 2)} {one.unit}",
+                percent(one.relative if (one.relative or 0.0) < STILL else None),
+                number(one.over_noise, 2),
+                number(now.over_noise if now else None, 2),
+            )
+        )
     return ("Test", "Use", "Motion", "What is left", "Residual", "Of motion", "Over noise", "Over noise, after"), rows
 
 

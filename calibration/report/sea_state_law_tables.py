@@ -11,9 +11,15 @@ from jaxhydro.waves.sea_state import SeaState
 def laws_table(found: SeaLaws) -> Rows:
     """Errors of every law, the chosen one marked."""
     rows = [
-        (LAW_NAMES[law.name], str(len(law.added())), number(law.fitted, 3), number(law.held_out, 3),
-         "chosen" if law is found.chosen else "") for law in found.laws
-    ]  # fmt: skip
+        (
+            LAW_NAMES[law.name],
+            str(len(law.added())),
+            number(law.fitted, 3),
+            number(law.held_out, 3),
+            "chosen" if law is found.chosen else "",
+        )
+        for law in found.laws
+    ]
     judged = "left out in turn" if found.left_out else "held out"
     return ("Coefficients", "Added", "Error, fitted", f"Error, {judged}", ""), rows
 

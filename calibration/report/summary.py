@@ -79,9 +79,7 @@ def summary_of(saved: Saved, source: str) -> CalibrationSummary:
     )
     parameters = saved.baseline.parameters
     determined = tuple(label for label, one in parameters.items() if _is_determined(one))
-    return CalibrationSummary(
-        saved.baseline.converged, lost, far, agreements, determined, *_others(parameters, determined)
-    )
+    return CalibrationSummary(saved.baseline.converged, lost, far, agreements, determined, *_others(parameters, determined))
 
 
 def _is_determined(one: Parameter) -> bool:

@@ -126,9 +126,10 @@ class SweepSummary(NamedTuple):
 def summary_of(saved: SavedSweep) -> SweepSummary:
     """The summary of a sweep.json."""
     extremes = {
-        channel: (one.minimum, one.maximum, one.unit) for channel, one in saved.lifetime.items()
+        channel: (one.minimum, one.maximum, one.unit)
+        for channel, one in saved.lifetime.items()
         if channel in DOFS and one.minimum is not None and one.maximum is not None
-    }  # fmt: skip
+    }
     return SweepSummary(saved.runs.total, saved.runs.done, extremes)
 
 
@@ -188,8 +189,9 @@ def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
     yield "Cases, a sea state from a heading", f"{saved.cases}"
     yield "Seeds", f"{seeds}" if seeds > 8 else f"{seeds}: {', '.join(map(str, saved.seeds))}"
     yield "Duration", f"{how.duration:g} s, of which the first {how.start:g} s are left out"
-    yield "Waves", (
-        f"{how.spectrum.replace('_', ' ')}, {how.amplitudes} amplitudes, {how.low:g} to {how.cutoff:g} Hz, order {how.order}"
+    yield (
+        "Waves",
+        (f"{how.spectrum.replace('_', ' ')}, {how.amplitudes} amplitudes, {how.low:g} to {how.cutoff:g} Hz, order {how.order}"),
     )
     yield "Wave stretching, diffraction", f"{how.stretching}, {how.diffraction.replace('_', ' ')}"
     yield "Records every, steps of at most", f"{how.time_step:g} s, {number(how.step, 3)} s"
@@ -197,8 +199,17 @@ def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
 
 def _lifetimes(saved: SavedSweep) -> Iterator[str]:
     """Statistics of every channel, then its equivalent ranges: as two tables, since one would be wider than a page."""
-    heads = ["Channel", "Mean", "Standard deviation", "Spread of it", "Maximum of a seed", "Spread of that",
-             "Minimum of a seed", "Maximum of all", "Minimum of all"]  # fmt: skip
+    heads = [
+        "Channel",
+        "Mean",
+        "Standard deviation",
+        "Spread of it",
+        "Maximum of a seed",
+        "Spread of that",
+        "Minimum of a seed",
+        "Maximum of all",
+        "Minimum of all",
+    ]
     rows = []
     for channel, one in saved.lifetime.items():
         values = [one.mean, one.standard_deviation, one.standard_deviation_spread, one.maximum_of_seed, one.maximum_spread]

@@ -90,9 +90,10 @@ def linear_quadratic(saved: Saved) -> Rows:
     for id, about in saved.tests.items():
         if (one := about.linear_quadratic) is not None:
             values = [
-                text for term in (one.linear, one.quadratic)
+                text
+                for term in (one.linear, one.quadratic)
                 for text in (with_deviation(term.measured, term.half_width), number(term.simulated, 3))
-            ]  # fmt: skip
+            ]
             rows.append((id, number(one.period, 4), *values, f"1/{one.unit}"))
     heads = ("Test", "Period (s)", "p measured ± 95 % (1/s)", "p simulated (1/s)", "q measured ± 95 %", "q simulated")
     return (*heads, "Unit of q"), rows
@@ -102,8 +103,10 @@ def bands(saved: Saved, source: str) -> Rows:
     """Errors of energy in bands, of tests in irregular waves."""
     rows = [
         (id, _use(saved, id), channel, BANDS.get(band, band.replace("_", " ")), *map(_signed, both))
-        for id, channels in saved.bands(source).items() for channel, row in channels.items() for band, both in row.items()
-    ]  # fmt: skip
+        for id, channels in saved.bands(source).items()
+        for channel, row in channels.items()
+        for band, both in row.items()
+    ]
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 

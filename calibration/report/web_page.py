@@ -22,8 +22,11 @@ UNCONVERGED = "The fit did not converge: what follows is where it stopped, not {
 def framed(title: str, by: str, body: Iterable[str], version: str) -> str:
     """A whole page around its parts, which are HTML."""
     return _PAGE.substitute(
-        generator=f'{GENERATOR} {escape(version)}">', title=escape(title), by=escape(by), body="\n".join(filter(None, body)),
-    )  # fmt: skip
+        generator=f'{GENERATOR} {escape(version)}">',
+        title=escape(title),
+        by=escape(by),
+        body="\n".join(filter(None, body)),
+    )
 
 
 def result_box(text: str) -> str:

@@ -142,16 +142,12 @@ class Problem(eqx.Module):
         q = rest.at[dofs].set(base[dofs] + position)
         rates = jnp.zeros(6).at[dofs].set(rate * record.pace)
         state = State(q, model.body_velocity(q, rates), model.rest().memory)
-        grid = integrate(
-            model, StillWater(), state, record.time[0], record.step, record.capacity, count=record.count
-        )
+        grid = integrate(model, StillWater(), state, record.time[0], record.step, record.capacity, count=record.count)
         if not model.senses:  # three motions cost less than six
             return (grid.at(record.time, record.dofs)[0] - base[dofs] + offset).T
         return (observe(model, grid, record.time, base, in_waves=False)[:, dofs] + offset).T
 
-    def products(
-        self, unknowns: Unknowns, until: Float[Array, " r"]
-    ) -> Float[Array, "r c k k"]:
+    def products(self, unknowns: Unknowns, until: Float[Array, " r"]) -> Float[Array, "r c k k"]:
         """For every record and channel [J r]^T [J r] over the samples up to `until` (s), k the unknowns and one."""
 
         def of_record(inputs):

@@ -80,7 +80,7 @@ def unusual(options: Options, asked: Collection[str] = ()) -> str:
         "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",
         "highest_difference": f"differences up to {options.highest_difference or 0:.3g} Hz",
         "acting": f"bound waves act {options.acting}",
-    }  # fmt: skip
+    }
     for name in (field.name for field in dataclasses.fields(options) if field.name not in asked):
         if (value := getattr(options, name)) != getattr(usual, name) and (options.order == 2 or name not in of_second):
             words.append(of_second.get(name, f"{name}: {value:.3g} Hz" if isinstance(value, float) else f"{name}: {value}"))
@@ -129,24 +129,42 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     """The sea of a run's whole record. Raises InputError where the band or the record do not do."""
     inside = share_within(run.wave, run.step, options.low, options.cutoff)
     try:
-        found = separated_record(run.time, run.wave, environment, position=run.position, heading=run.heading,
-                                 low=options.low, cutoff=options.cutoff, order=options.order, kinds=options.kinds,
-                                 highest_difference=options.highest_difference)  # fmt: skip
+        found = separated_record(
+            run.time,
+            run.wave,
+            environment,
+            position=run.position,
+            heading=run.heading,
+            low=options.low,
+            cutoff=options.cutoff,
+            order=options.order,
+            kinds=options.kinds,
+            highest_difference=options.highest_difference,
+        )
     except ValueError as error:
         expected = f"a wave record for first-order waves from {options.low:g} to {options.cutoff:g} Hz"
         raise InputError(run.file, [Problem(f"{run.file}, channel {WAVE}", expected, str(error))]) from None
     sea = IrregularSea(
-        found.waves, environment, options.order, options.stretching, kinds=options.kinds,
-        highest_difference=options.highest_difference, acting=options.acting,
-    )  # fmt: skip
+        found.waves,
+        environment,
+        options.order,
+        options.stretching,
+        kinds=options.kinds,
+        highest_difference=options.highest_difference,
+        acting=options.acting,
+    )
     notes = []
     band = f"{options.low:g} to {options.cutoff:g} Hz"
     if found.mismatch > MISMATCH:
-        notes.append(f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
-                     "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it")  # fmt: skip
+        notes.append(
+            f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
+            "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it"
+        )
     if inside < INSIDE:
-        notes.append(f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}; "
-                     "`wave_band` in campaign.yaml sets another band")  # fmt: skip
+        notes.append(
+            f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}; "
+            "`wave_band` in campaign.yaml sets another band"
+        )
     return RunSea(sea, found.mismatch, found.rounds, inside, tuple(notes))
 
 
@@ -250,8 +268,9 @@ def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale:
     at, whole = run.samples(record), window(run, record)
     series = tuple(
         Series(dof, np.interp(whole, at, record.values[dof]), motion[whole, DOFS.index(dof)], 0.0, record.noise[dof], False)
-        for dof in DOFS if dof in record.values
-    )  # fmt: skip
+        for dof in DOFS
+        if dof in record.values
+    )
     test, time, measured = record.test, run.time[whole], run.wave[whole]
     height = test.significant_wave_height if record.kind == "irregular" else test.wave_height
     fit = TestFit(record.id, record.use, record.kind, None, time, series, {}, record.file)

@@ -79,9 +79,7 @@ def pose_offsets(model: Model, records: Sequence[Record], space: ParameterSpace,
             measured[i, DOFS.index(name)] = float(np.mean(values))
             compared += [(i, DOFS.index(name))] if DOFS.index(name) != dof else []
         unit[i] = max(abs(measured[i, dof]) * lengths[dof], 1e-3) / lengths
-    return OffsetProblem(
-        model, jnp.asarray(measured), jnp.asarray(unit), tuple(held), tuple(compared), space, from_rest
-    )  # fmt: skip
+    return OffsetProblem(model, jnp.asarray(measured), jnp.asarray(unit), tuple(held), tuple(compared), space, from_rest)
 
 
 class PeriodProblem(eqx.Module):

@@ -50,9 +50,7 @@ def sea_state(run: Run, record: Record, low: float, cutoff: float) -> SeaState:
     return SeaState(4 * variance**0.5, peak_period(frequency, density))
 
 
-def stretches(
-    run: Run, records: Sequence[Record], model: Model, low: float, cutoff: float
-) -> tuple[Stretch, ...]:
+def stretches(run: Run, records: Sequence[Record], model: Model, low: float, cutoff: float) -> tuple[Stretch, ...]:
     """One for every test of a run, from its first sample (the first one's from the run's) at least to the next one's; where the
     model does not depend on the sea state, one for all. Waves are from `low` to `cutoff` (Hz)."""
     records = sorted(records, key=lambda record: record.time[0])

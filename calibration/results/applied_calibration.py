@@ -18,9 +18,19 @@ from jaxhydro.platform.drag_laws import DragLaw, drag_laws_of, plain_drag, with_
 from jaxhydro.waves.sea_state import SeaState
 
 OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in one basin, not to the hull
-    "mooring.", "stiffness.", "mooring_nonlinearity.", "umbilical.", "current.", "static_offset.", "mass_properties.",
-    "guided_masses.", "sensor_reference.", "sensor_lag.", "wave_gauge_position.", "wave_reflection.",
-)  # fmt: skip
+    "mooring.",
+    "stiffness.",
+    "mooring_nonlinearity.",
+    "umbilical.",
+    "current.",
+    "static_offset.",
+    "mass_properties.",
+    "guided_masses.",
+    "sensor_reference.",
+    "sensor_lag.",
+    "wave_gauge_position.",
+    "wave_reflection.",
+)
 
 
 class Applied(NamedTuple):
@@ -127,6 +137,7 @@ def _silent(law: DragLaw) -> bool:
 
 def _alike(one: DragLaw, other: DragLaw) -> bool:
     """Whether laws differ in nothing but parameters, which are the calibration's."""
+
     def constants(law: DragLaw) -> dict[str, Any]:
         return law.model_dump(include={"law", "reference", "window"})
 

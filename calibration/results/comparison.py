@@ -15,26 +15,40 @@ from jaxhydro.units import for_people, unit_of
 
 def document(found: Compared, options: Options, about: dict[str, Any], applied: Applied | None) -> dict[str, Any]:
     """The content of comparison.json; `error` is the contract's."""
-    coefficients = {"source": "platform", "values": {}, "not_identifiable": [], "left_out": []} if applied is None else {
-        "source": f"calibration of {applied.campaign}", "values": applied.values, "not_identifiable": list(applied.vague),
-        "left_out": list(applied.left),
-        **({} if applied.strips is None else {"strips": applied.strips.model_dump()})}  # fmt: skip
+    coefficients = (
+        {"source": "platform", "values": {}, "not_identifiable": [], "left_out": []}
+        if applied is None
+        else {
+            "source": f"calibration of {applied.campaign}",
+            "values": applied.values,
+            "not_identifiable": list(applied.vague),
+            "left_out": list(applied.left),
+            **({} if applied.strips is None else {"strips": applied.strips.model_dump()}),
+        }
+    )
     return {
         **about,
         "jaxhydro": jaxhydro.__version__,
         "options": {**dataclasses.asdict(options), "step": found.step, "spectra": WELCH},
         "coefficients": coefficients,
         "seas": [
-            {"file": run.file, "tests": [record.id for record in run.records], "duration": float(run.time[-1] - run.time[0]),
-             "components": int(made.sea.components.omega.size), "gauge": list(run.position),
-             "heading": math.degrees(run.heading), "mismatch": made.mismatch, "rounds": made.rounds,
-             "variance_in_band": made.inside}
+            {
+                "file": run.file,
+                "tests": [record.id for record in run.records],
+                "duration": float(run.time[-1] - run.time[0]),
+                "components": int(made.sea.components.omega.size),
+                "gauge": list(run.position),
+                "heading": math.degrees(run.heading),
+                "mismatch": made.mismatch,
+                "rounds": made.rounds,
+                "variance_in_band": made.inside,
+            }
             for run, made in found.seas
         ],
         "error": {test.fit.id: _errors(test) for test in found.tests},
         "tests": {test.fit.id: _about(test) for test in found.tests},
         "warnings": list(found.notes),
-    }  # fmt: skip
+    }
 
 
 def _errors(test: SeaTest) -> dict[str, Any]:
@@ -52,15 +66,22 @@ def _about(test: SeaTest) -> dict[str, Any]:
     """What the sea was, and what errors are made of, in m and deg."""
     both = channels(test)
     about: dict[str, Any] = {
-        "kind": test.fit.kind, "file": test.fit.file, "start": float(test.fit.time[0]), "end": float(test.fit.time[-1]),
-        "peak_period": test.peak_period, "stated_height": test.stated_height, "heading": math.degrees(test.heading),
+        "kind": test.fit.kind,
+        "file": test.fit.file,
+        "start": float(test.fit.time[0]),
+        "end": float(test.fit.time[-1]),
+        "peak_period": test.peak_period,
+        "stated_height": test.stated_height,
+        "heading": math.degrees(test.heading),
         "statistics": {
             name: {"unit": unit_of(name)}
-            | {key: {"mean": float(x.mean()), "standard_deviation": float(x.std())}
-               for key, x in zip(("measured", "simulated"), pair)}
+            | {
+                key: {"mean": float(x.mean()), "standard_deviation": float(x.std())}
+                for key, x in zip(("measured", "simulated"), pair)
+            }
             for name, pair in both.items()
         },
-    }  # fmt: skip
+    }
     if test.fit.kind == "irregular":
         heights = {key: wave_height(x, irregular=True) for key, x in zip(("measured", "simulated"), both["wave"])}
         about["significant_wave_height"] = heights
@@ -73,5 +94,3 @@ def _about(test: SeaTest) -> dict[str, Any]:
             name: dict(zip(("measured", "simulated"), (amplitude(test, x) for x in pair))) for name, pair in both.items()
         }
     return about
-
-

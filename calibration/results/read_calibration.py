@@ -176,11 +176,13 @@ class Saved(Open):
         """Test -> channel -> error of the baseline or the augmented model. Raises InputError for what is none."""
         fitted: Fitted = getattr(self, key)
         return {
-            id: {name: validate(Error, value, f"{source}: {key}.error.{id}.{name}")
-                 for name, value in row.items() if name not in ("use", "bands", "bands_before")}
+            id: {
+                name: validate(Error, value, f"{source}: {key}.error.{id}.{name}")
+                for name, value in row.items()
+                if name not in ("use", "bands", "bands_before")
+            }
             for id, row in fitted.error.items()
-        }  # fmt: skip
-
+        }
 
     def bands(self, source: str) -> dict[str, dict[str, dict[str, tuple[float | None, float]]]]:
         """Test -> motion -> band -> error of its energy before and after. Raises InputError for what is none."""

@@ -114,8 +114,10 @@ def _errors(test: TestFit) -> dict[str, Any]:
 
 def _bands(test: TestFit, key: str, name: str) -> dict[str, Any]:
     """Band errors of one model under `key`, where there are any that are finite."""
-    each = {channel: {k: v for k, one in row.items() if math.isfinite(v := float(getattr(one, name)))}
-            for channel, row in test.bands.items()}  # fmt: skip
+    each = {
+        channel: {k: v for k, one in row.items() if math.isfinite(v := float(getattr(one, name)))}
+        for channel, row in test.bands.items()
+    }
     return {key: {channel: row for channel, row in each.items() if row}} if any(each.values()) else {}
 
 
@@ -216,12 +218,15 @@ def dataset(calibration: Calibration) -> xr.Dataset:
         "channel": ("channel", np.array(channels, dtype=object), {"long_name": "motion"}),
         "unit": ("channel", np.array(units, dtype=object), {"long_name": "unit of the channel"}),
         "start_time": (
-            "test", np.array([float(test.time[0]) for test in tests]),
+            "test",
+            np.array([float(test.time[0]) for test in tests]),
             {"units": "s", "long_name": "start of the test on its file's time axis, at full scale"},
         ),
-        **{name: ("test", np.array([getattr(test, name) or "" for test in tests], dtype=object), {"long_name": words})
-           for name, words in text.items()},
-    }  # fmt: skip
+        **{
+            name: ("test", np.array([getattr(test, name) or "" for test in tests], dtype=object), {"long_name": words})
+            for name, words in text.items()
+        },
+    }
     about = {
         "title": f"Calibration of {calibration.campaign}",
         "source": f"jaxhydro {jaxhydro.__version__}",

@@ -17,9 +17,7 @@ from jaxhydro.files import staged
 from jaxhydro.units import unit_of
 
 
-def write_comparison(
-    found: Compared, content: dict[str, Any], folder: str | PathLike[str], figures: bool = True
-) -> Path:
+def write_comparison(found: Compared, content: dict[str, Any], folder: str | PathLike[str], figures: bool = True) -> Path:
     """Write all results into `folder` (made where absent); gives the folder. Those of an earlier comparison there are replaced
     when the new ones are complete. Raises InputError where the folder cannot be written."""
     folder = Path(folder)
@@ -48,8 +46,11 @@ def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:
         for name, pair in channels(test).items():
             for key, values in zip(("measured", "simulated"), pair):
                 row = wave[key][i] if name == "wave" else motion[key][i, names.index(name)]
-                row[:] = np.pad(values, (0, len(axis) - len(time)), constant_values=np.nan) if alike else np.interp(
-                    axis, time, values, left=np.nan, right=np.nan)  # fmt: skip
+                row[:] = (
+                    np.pad(values, (0, len(axis) - len(time)), constant_values=np.nan)
+                    if alike
+                    else np.interp(axis, time, values, left=np.nan, right=np.nan)
+                )
     both = {"units": "m; deg for roll, pitch and yaw"}
     words = {"measured": "measured motion of the reference point, still water at zero", "simulated": "motion of the model"}
     at = {"measured": "measured elevation at the gauge", "simulated": "elevation of the simulated sea at the gauge"}

@@ -173,9 +173,7 @@ def _finding(one: Finding) -> dict[str, Any]:
         "rms": or_null(float(for_people(one.channel, one.rms))),
         "noise": or_null(float(for_people(one.channel, one.noise))),
         "relative": or_null(one.relative),
-        "bands": [
-            {"low": float(low), "high": float(high), "rms_over_noise": or_null(ratio)} for low, high, ratio in one.bands
-        ],
+        "bands": [{"low": float(low), "high": float(high), "rms_over_noise": or_null(ratio)} for low, high, ratio in one.bands],
         "words": one.words,
     }
 
@@ -188,11 +186,14 @@ def paired(diagnosis: Diagnosis) -> Calibration:
 
 
 def _paired(before: TestFit, after: TestFit) -> TestFit:
-    return replace(after, start=dict(_motions(before.series, after.series)), bands={
-        channel: {
-            band: one._replace(before=_band(before, channel, band, one)) for band, one in row.items()
-        } for channel, row in after.bands.items()
-    })  # fmt: skip
+    return replace(
+        after,
+        start=dict(_motions(before.series, after.series)),
+        bands={
+            channel: {band: one._replace(before=_band(before, channel, band, one)) for band, one in row.items()}
+            for channel, row in after.bands.items()
+        },
+    )
 
 
 def _motions(before: Iterable[Series], after: Iterable[Series]) -> Iterable[tuple[str, np.ndarray]]:

@@ -38,17 +38,21 @@ def document(found: SeaLaws) -> dict[str, Any]:
     for law in found.laws:
         reference = reference_of(law.calibration.model.loads)
         laws[law.name] = {
-            "fitted_error": law.fitted, "held_out_error": law.held_out,
+            "fitted_error": law.fitted,
+            "held_out_error": law.held_out,
             "reference": None if reference is None else reference._asdict(),
             "drag_laws": drag_laws(law.calibration.model),
             "parameters": _parameters(law.calibration),
-        }  # fmt: skip
-    seas = {
-        sea.id: {"use": sea.use, **sea.state._asdict(), "parameters": _parameters(sea.calibration)} for sea in found.seas
+        }
+    seas = {sea.id: {"use": sea.use, **sea.state._asdict(), "parameters": _parameters(sea.calibration)} for sea in found.seas}
+    return {
+        "finished": found.finished,
+        "chosen": found.chosen.name,
+        "judged_by": list(found.judged_by),
+        "left_out_one_by_one": found.left_out,
+        "laws": laws,
+        "sea_states": seas,
     }
-    return {"finished": found.finished, "chosen": found.chosen.name,
-            "judged_by": list(found.judged_by), "left_out_one_by_one": found.left_out,
-            "laws": laws, "sea_states": seas}  # fmt: skip
 
 
 def _parameters(calibration: Calibration) -> dict[str, Any]:
@@ -76,5 +80,3 @@ def table_text(found: SeaLaws) -> str:
                 height, period = (f"{x:.4g}" for x in sea.state)
                 writer.writerow((sea.id, sea.use, height, period, label, alone.unit, source, f"{value:.6g}", known))
     return text.getvalue()
-
-

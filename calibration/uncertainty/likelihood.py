@@ -211,9 +211,7 @@ def likelihood_of(fit: Fit) -> Likelihood:
     scatters = [assemble(blocks, shared), assemble(flat, shared)]
     covariance, white = (back @ (scatter + np.diag(prior[1])) @ back for scatter in scatters)
     spectra = {(i, j): one for group in seen.values() for i, j, one in group}
-    return Likelihood(
-        fit, slope, residual, information, scatters[0], (prior[0], prior[1]), covariance, white, colour, spectra
-    )
+    return Likelihood(fit, slope, residual, information, scatters[0], (prior[0], prior[1]), covariance, white, colour, spectra)
 
 
 def step_of(time: np.ndarray) -> float:

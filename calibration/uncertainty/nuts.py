@@ -23,6 +23,7 @@ DEEPEST = 6  # a tree of 63 steps: where the density bends, deeper ones take hou
 LEAST = 50  # draws of every chain that are worth keeping where it is stopped
 EVERY = 0.5  # s between looks at the chains
 
+
 @dataclass(frozen=True, eq=False)
 class Samples:
     """Draws of the free parameters: `coordinate` and `value` (chain, draw, p), values in the parameters' units.

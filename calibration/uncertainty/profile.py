@@ -125,9 +125,18 @@ def profile(likelihood: Likelihood, label: str, level: float = LEVEL) -> Profile
     lower, upper = (None if end is None else likelihood.value(label, end) for end in ends)
     about = likelihood.fit.problem.model.about(label)
     return Profile(
-        label, about.unit, likelihood.value(label, at), np.array([likelihood.value(label, c) for c in x]), x, drop,
-        lower, upper, level, likelihood.interval(label, level), refit.nu,
-    )  # fmt: skip
+        label,
+        about.unit,
+        likelihood.value(label, at),
+        np.array([likelihood.value(label, c) for c in x]),
+        x,
+        drop,
+        lower,
+        upper,
+        level,
+        likelihood.interval(label, level),
+        refit.nu,
+    )
 
 
 def _outward(

@@ -15,6 +15,15 @@ from jaxhydro.analysis.spectral import (
 )
 
 __all__ = [
-    "Exceedance", "PowerSpectrum", "Statistics", "TransferFunction", "band_integral", "band_pass", "bands", "exceedance",
-    "power_spectrum", "statistics", "transfer_function",
-]  # fmt: skip
+    "Exceedance",
+    "PowerSpectrum",
+    "Statistics",
+    "TransferFunction",
+    "band_integral",
+    "band_pass",
+    "bands",
+    "exceedance",
+    "power_spectrum",
+    "statistics",
+    "transfer_function",
+]

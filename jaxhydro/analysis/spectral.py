@@ -71,9 +71,7 @@ def band_integral(spectrum: PowerSpectrum, low: float, high: float) -> float:
     return float(np.interp(high, edges, total) - np.interp(low, edges, total))
 
 
-def band_pass(
-    time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"], low: float, high: float
-) -> Float[np.ndarray, " t"]:
+def band_pass(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"], low: float, high: float) -> Float[np.ndarray, " t"]:
     """What of a record is from `low` to `high` (Hz), both included: its Fourier lines in the band, the others left out, so that
     no phase is changed; the record is taken to repeat itself. From 0 Hz on the mean is kept.
 
@@ -107,8 +105,13 @@ class BandWeights(NamedTuple):
 
 
 def band_weights(
-    count: int, step: float, low: float, high: float,
-    segment: float | None = None, overlap: float = 0.5, window: str = "hann",
+    count: int,
+    step: float,
+    low: float,
+    high: float,
+    segment: float | None = None,
+    overlap: float = 0.5,
+    window: str = "hann",
 ) -> BandWeights:
     """For records of `count` samples every `step` (s) and the band from `low` to `high` (Hz); options of `power_spectrum`.
 

@@ -19,10 +19,18 @@ BAD_INPUT, NOT_CONVERGED, STOPPED = 2, 3, 130
 NOTHING = "stopped; nothing was written"
 DEMO = "volturnus-s-decays"
 TRUTH = {  # what the records of the demo were made with: Table 1 of the paper this package started from
-    "column.Ca_t": 1.50, "column.Ca_z": 0.12, "column.Cd_t": 2.09, "column.Cd_z": 2.23,
-    "pontoon.Ca_t": 0.11, "pontoon.Ca_z": 1.87, "pontoon.Cd_t": 1.84, "pontoon.Cd_z": 4.96,
-    "linear_damping.B11": 4.4e4, "linear_damping.B33": 1.6e5, "linear_damping.B55": 3.63e8,
-}  # fmt: skip
+    "column.Ca_t": 1.50,
+    "column.Ca_z": 0.12,
+    "column.Cd_t": 2.09,
+    "column.Cd_z": 2.23,
+    "pontoon.Ca_t": 0.11,
+    "pontoon.Ca_z": 1.87,
+    "pontoon.Cd_t": 1.84,
+    "pontoon.Cd_z": 4.96,
+    "linear_damping.B11": 4.4e4,
+    "linear_damping.B33": 1.6e5,
+    "linear_damping.B55": 3.63e8,
+}
 
 
 class Guarded(TyperGroup):
@@ -55,9 +63,14 @@ class Guarded(TyperGroup):
 
 
 app = typer.Typer(
-    cls=Guarded, help=arguments.HELP, epilog=arguments.EPILOG, no_args_is_help=True,
-    rich_markup_mode="rich", pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
-)  # fmt: skip
+    cls=Guarded,
+    help=arguments.HELP,
+    epilog=arguments.EPILOG,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 OUT = "Folder for the results; made where absent."
 Out = Annotated[Path, typer.Option("--out", help=OUT, show_default=False)]
 
@@ -77,9 +90,7 @@ def _version(wanted: bool) -> None:
 
 @app.callback()
 def _options(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
 ) -> None:
     pass
 
@@ -299,9 +310,7 @@ def _calibrate(
         raise typer.Exit(NOT_CONVERGED)
 
 
-def _simulate_campaign(
-    campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any], figures: bool
-) -> None:
+def _simulate_campaign(campaign: Path, out: Path, calibration: Path | None, asked: dict[str, Any], figures: bool) -> None:
     out = options.results_folder(out, "comparison.json")
     from calibration.commands.calibrate_command import simulate_campaign
 

@@ -17,78 +17,93 @@ HELP = (
     "A platform is one YAML file: hull members, mass, mooring, starting coefficients. A campaign is a folder: that "
     "file, a campaign.yaml that says what was measured in which columns, and one data file per test."
 )
-EPILOG = "\n\n".join((
-    "[bold]Examples[/bold]",
-    "jaxhydro demo --out demo",
-    "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --out sea",
-    "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
-    "jaxhydro sweep sweep.yaml --out life",
-    "jaxhydro calibrate my-campaign --out results",
-    "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
-    "jaxhydro diagnose my-campaign --out diagnosis",
-    "[bold]Formats[/bold]",
-    "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
-    "example to copy: `jaxhydro demo` prints where they are.",
-    "Exit status: 0 done; 2 the input is wrong; 3 not converged, or runs of a sweep failed, with what was reached written and "
-    "marked so, or a motion that grew beyond all bounds, with nothing written; 130 stopped.",
-))  # fmt: skip
-EXAMPLES = "\n\n".join((
-    "[bold]Examples[/bold]",
-    "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --duration 3600 --out sea",
-    "jaxhydro simulate volturnus-s --wave tank.csv --wave-column probe1 --wave-position -100 0 --out tank",
-    "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
-    "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
-    "jaxhydro simulate my-campaign --calibration results/calibration.json --out seas",
-))  # fmt: skip
+EPILOG = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro demo --out demo",
+        "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --out sea",
+        "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
+        "jaxhydro sweep sweep.yaml --out life",
+        "jaxhydro calibrate my-campaign --out results",
+        "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
+        "jaxhydro diagnose my-campaign --out diagnosis",
+        "[bold]Formats[/bold]",
+        "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
+        "example to copy: `jaxhydro demo` prints where they are.",
+        "Exit status: 0 done; 2 the input is wrong; 3 not converged, or runs of a sweep failed, with what "
+        "was reached written and "
+        "marked so, or a motion that grew beyond all bounds, with nothing written; 130 stopped.",
+    )
+)
+EXAMPLES = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --duration 3600 --out sea",
+        "jaxhydro simulate volturnus-s --wave tank.csv --wave-column probe1 --wave-position -100 0 --out tank",
+        "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
+        "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
+        "jaxhydro simulate my-campaign --calibration results/calibration.json --out seas",
+    )
+)
 
-FITTING = "\n\n".join((
-    "[bold]Examples[/bold]",
-    "jaxhydro calibrate my-campaign --out results",
-    "jaxhydro calibrate my-campaign --tests waves --start results/calibration.json --out tuned",
-    "jaxhydro calibrate my-campaign --tests waves --law choose --out laws",
-    "jaxhydro calibrate my-campaign --tests all --out joint",
-    "jaxhydro report results",
-    "[bold]What it writes[/bold]",
-    "calibration.json (docs/formats.md), simulated.nc, figures. Exit status: 0 done; 2 the input is wrong; 3 not converged or "
-    "stopped, or a record is not followed, with what was reached written and marked so; 130 stopped, nothing was written.",
-))  # fmt: skip
+FITTING = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro calibrate my-campaign --out results",
+        "jaxhydro calibrate my-campaign --tests waves --start results/calibration.json --out tuned",
+        "jaxhydro calibrate my-campaign --tests waves --law choose --out laws",
+        "jaxhydro calibrate my-campaign --tests all --out joint",
+        "jaxhydro report results",
+        "[bold]What it writes[/bold]",
+        "calibration.json (docs/formats.md), simulated.nc, figures. Exit status: 0 done; 2 the input is wrong; 3 not "
+        "converged or "
+        "stopped, or a record is not followed, with what was reached written and marked so; 130 stopped, nothing was written.",
+    )
+)
 
-DIAGNOSING = "\n\n".join((
-    "[bold]Examples[/bold]",
-    "jaxhydro diagnose my-campaign --out diagnosis",
-    "jaxhydro report diagnosis",
-    "jaxhydro simulate my-campaign --calibration diagnosis/diagnosis.json --out seas",
-    "[bold]What makes a good campaign[/bold]",
-    "Tests of one kind from small and large amplitudes: effects differ by how they grow. At least one test of every kind "
-    "marked `use: holdout`: without one blocks of the fitted tests are left out in turn. Decays say nothing of what acts in "
-    "waves only.",
-    "[bold]What it writes[/bold]",
-    "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "
-    "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so; "
-    "130 stopped, and the same command goes on.",
-))  # fmt: skip
+DIAGNOSING = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro diagnose my-campaign --out diagnosis",
+        "jaxhydro report diagnosis",
+        "jaxhydro simulate my-campaign --calibration diagnosis/diagnosis.json --out seas",
+        "[bold]What makes a good campaign[/bold]",
+        "Tests of one kind from small and large amplitudes: effects differ by how they grow. At least one test of every kind "
+        "marked `use: holdout`: without one blocks of the fitted tests are left out in turn. Decays say nothing of "
+        "what acts in "
+        "waves only.",
+        "[bold]What it writes[/bold]",
+        "diagnosis.json (docs/formats.md), simulated.nc, figures. `jaxhydro report` makes one page of them to hand on. "
+        "Exit status: 0 done; 2 the input is wrong; 3 not converged or stopped, with what was reached written and marked so; "
+        "130 stopped, and the same command goes on.",
+    )
+)
 
-QUANTIFYING = "\n\n".join((
-    "[bold]Examples[/bold]",
-    "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
-    "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile column.Cd_t --bootstrap 200",
-    "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile '*' --nuts",
-    "jaxhydro report uncertainty",
-    "[bold]What it writes[/bold]",
-    "uncertainty.json (docs/formats.md), figures. `jaxhydro report` makes one page of them to hand on. "
-    "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so; 130 stopped, "
-    "nothing was written.",
-))  # fmt: skip
+QUANTIFYING = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
+        "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile column.Cd_t --bootstrap 200",
+        "jaxhydro uncertainty my-campaign --calibration results --out uncertainty --profile '*' --nuts",
+        "jaxhydro report uncertainty",
+        "[bold]What it writes[/bold]",
+        "uncertainty.json (docs/formats.md), figures. `jaxhydro report` makes one page of them to hand on. "
+        "Exit status: 0 done; 2 the input is wrong; 3 not converged, with what was reached written and marked so; 130 stopped, "
+        "nothing was written.",
+    )
+)
 
-SWEEPING = "\n\n".join((
-    "[bold]A sweep file[/bold]",
-    "platform: volturnus-s",
-    "scatter: scatter.csv           # columns Hs,Tp,probability",
-    "headings: [0, 30]              # deg",
-    "seeds: 6",
-    "All keys, and what it writes: docs/guide/sweeps.md.",
-    "Exit status: 0 done; 2 the input is wrong; 3 runs failed, each with its reason in sweep.json; 130 stopped.",
-))  # fmt: skip
+SWEEPING = "\n\n".join(
+    (
+        "[bold]A sweep file[/bold]",
+        "platform: volturnus-s",
+        "scatter: scatter.csv           # columns Hs,Tp,probability",
+        "headings: [0, 30]              # deg",
+        "seeds: 6",
+        "All keys, and what it writes: docs/guide/sweeps.md.",
+        "Exit status: 0 done; 2 the input is wrong; 3 runs failed, each with its reason in sweep.json; 130 stopped.",
+    )
+)
 
 
 class Spectrum(StrEnum):
@@ -244,9 +259,7 @@ Calibrated = Annotated[
         "campaign seas, too.",
     ),
 ]
-Step = Annotated[
-    float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")
-]
+Step = Annotated[float | None, typer.Option(help="Largest internal time step, s.", show_default="0.25 in a sea, else chosen")]
 Tests = Annotated[
     Fitted | None,
     typer.Option(

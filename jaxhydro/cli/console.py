@@ -126,9 +126,13 @@ def progress() -> Iterator[Callable[[Any], None]]:
         yield note
         return
     columns = (
-        TextColumn("{task.description}"), BarColumn(bar_width=24), TextColumn("{task.fields[state]}"),
-        TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
-    )  # fmt: skip
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        TextColumn("{task.fields[state]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=shown, transient=True) as bar:
         task = bar.add_task("preparing", total=1.0, state="")
         furthest = 0.0
@@ -166,9 +170,13 @@ def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], 
         yield note
         return
     columns = (
-        TextColumn("{task.completed:.0f} of {task.total:.0f} {task.description}"), BarColumn(bar_width=24),
-        TextColumn("{task.fields[remark]}"), TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
-    )  # fmt: skip
+        TextColumn("{task.completed:.0f} of {task.total:.0f} {task.description}"),
+        BarColumn(bar_width=24),
+        TextColumn("{task.fields[remark]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=shown, transient=True) as bar:
         task = bar.add_task(what, total=total, completed=done, remark="compiling")
         yield lambda now, remark: bar.update(task, completed=now, remark=remark)

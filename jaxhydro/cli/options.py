@@ -72,9 +72,13 @@ def releases(given: list[str]) -> dict[str, float]:
 
 
 RESULTS = {
-    "motion.csv": "a simulation", "calibration.json": "a calibration", "diagnosis.json": "a diagnosis",
-    "comparison.json": "a campaign's seas", "uncertainty.json": "an uncertainty", "sweep.json": "a sweep",
-}  # fmt: skip
+    "motion.csv": "a simulation",
+    "calibration.json": "a calibration",
+    "diagnosis.json": "a diagnosis",
+    "comparison.json": "a campaign's seas",
+    "uncertainty.json": "an uncertainty",
+    "sweep.json": "a sweep",
+}
 
 
 def results_folder(out: Path, mine: str) -> Path:

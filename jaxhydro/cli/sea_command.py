@@ -70,9 +70,17 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
 
 
 UNITS = {
-    "significant_wave_height": "m", "significant_wave_height_of_components": "m", "peak_period": "s", "lowest_frequency": "Hz",
-    "cutoff": "Hz", "repeat_period": "s", "heading": "deg", "transient": "s", "step_at_most": "s", "wave_position": "m",
-}  # fmt: skip
+    "significant_wave_height": "m",
+    "significant_wave_height_of_components": "m",
+    "peak_period": "s",
+    "lowest_frequency": "Hz",
+    "cutoff": "Hz",
+    "repeat_period": "s",
+    "heading": "deg",
+    "transient": "s",
+    "step_at_most": "s",
+    "wave_position": "m",
+}
 
 
 def _about(about: dict[str, Any]) -> list[tuple[str, str]]:

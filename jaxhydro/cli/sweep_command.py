@@ -59,9 +59,15 @@ def _kept(out: Path) -> str:
 
 
 def _sweep(
-    made: Prepared, out: Path, workers: int | None, batch: int | None, restart: bool, retry_failed: bool, scheduler: str | None,
+    made: Prepared,
+    out: Path,
+    workers: int | None,
+    batch: int | None,
+    restart: bool,
+    retry_failed: bool,
+    scheduler: str | None,
     workers_there: int,
-) -> bool:  # fmt: skip
+) -> bool:
     print_remarks(made.remarks)
     resumed = opened(out, made, restart)
     numbers = to_do(out, retry_failed)

@@ -71,9 +71,7 @@ def _rate_of(unravel: Callable[[Array], State]) -> runge_kutta.Rate:
     return rate
 
 
-def _by_loop(
-    method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint
-) -> Motion:
+def _by_loop(method: Method, model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
     """A scheme as one of this package's own loops: positions and body velocities at the ends of the steps."""
     y, unravel = ravel_pytree(state)
     loop = adams_bashforth if method == "ab4" else runge_kutta
@@ -135,9 +133,7 @@ def integrate(
 
 
 @eqx.filter_jit
-def states(
-    model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], count: int
-) -> State:
+def states(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], count: int) -> State:
     """Whole states, memories included, after 0, 1 ... `count` steps by "ab4" of `integrate`: stacked."""
     y, unravel = ravel_pytree(state)
     path = adams_bashforth.direct(

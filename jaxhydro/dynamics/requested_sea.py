@@ -162,9 +162,15 @@ def _from_spectrum(
 
     try:
         waves = spectrum_components(
-            spectrum, duration, model.environment, low=low, cutoff=cutoff, seed=asked.seed,
-            amplitudes=asked.amplitudes, heading=math.radians(asked.heading),
-        )  # fmt: skip
+            spectrum,
+            duration,
+            model.environment,
+            low=low,
+            cutoff=cutoff,
+            seed=asked.seed,
+            amplitudes=asked.amplitudes,
+            heading=math.radians(asked.heading),
+        )
     except ValueError as error:
         if "break" in str(error):
             raise InputError("--hs", [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
@@ -176,9 +182,13 @@ def _from_spectrum(
     if share < CUT:
         notes.append(f"{share:.1%} of the spectrum lies from {low:g} to {cutoff:g} Hz: see --low and --cutoff")
     about = {
-        "spectrum": asked.spectrum, "significant_wave_height": hs, "peak_period": asked.tp, "peak_enhancement": gamma,
-        "seed": asked.seed, "amplitudes": asked.amplitudes,
-    }  # fmt: skip
+        "spectrum": asked.spectrum,
+        "significant_wave_height": hs,
+        "peak_period": asked.tp,
+        "peak_enhancement": gamma,
+        "seed": asked.seed,
+        "amplitudes": asked.amplitudes,
+    }
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
 
 
@@ -186,9 +196,15 @@ def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -
     low, cutoff = asked.band(float(model.pace))
     try:
         found = separated_record(
-            record.times, record.elevation, model.environment, position=record.position,
-            heading=math.radians(asked.heading), low=low, cutoff=cutoff, order=asked.order,
-        )  # fmt: skip
+            record.times,
+            record.elevation,
+            model.environment,
+            position=record.position,
+            heading=math.radians(asked.heading),
+            low=low,
+            cutoff=cutoff,
+            order=asked.order,
+        )
     except ValueError as error:
         option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
         raise impossible(option, error) from None
@@ -199,10 +215,13 @@ def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -
     inside = (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
     peak = spectrum.frequency[inside][np.argmax(spectrum.density[inside])] if inside.any() else cutoff
     return found.waves, {
-        "record": record.source, "record_column": record.column, "wave_position": list(record.position),
-        "significant_wave_height": 4 * float(np.std(record.elevation)), "peak_period": 1 / float(peak),
+        "record": record.source,
+        "record_column": record.column,
+        "wave_position": list(record.position),
+        "significant_wave_height": 4 * float(np.std(record.elevation)),
+        "peak_period": 1 / float(peak),
         "mismatch": found.mismatch,
-    }  # fmt: skip
+    }
 
 
 def impossible(option: str, error: ValueError) -> InputError:

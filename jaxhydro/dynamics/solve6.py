@@ -25,9 +25,7 @@ def inverse6(matrix: Float[Array, "6 6"]) -> Float[Array, "6 6"]:
     iab = ia @ b
     schur = _inverse3(d - b.T @ iab)
     corner = -iab @ schur
-    return jnp.concatenate(
-        [jnp.concatenate([ia - corner @ iab.T, corner], axis=1), jnp.concatenate([corner.T, schur], axis=1)]
-    )
+    return jnp.concatenate([jnp.concatenate([ia - corner @ iab.T, corner], axis=1), jnp.concatenate([corner.T, schur], axis=1)])
 
 
 def solve6(matrix: Float[Array, "6 6"], vector: Float[Array, "6"]) -> Float[Array, "6"]:

@@ -90,9 +90,7 @@ class Hull(eqx.Module):
         """The inverse of `split`."""
         return jnp.concatenate([strips.reshape(-1), ends])
 
-    def masses(
-        self, elements: Float[Array, "2 e"], ends: Float[Array, " m"], wetted: Wetted
-    ) -> Float[Array, " k"]:
+    def masses(self, elements: Float[Array, "2 e"], ends: Float[Array, " m"], wetted: Wetted) -> Float[Array, " k"]:
         """What `moments` is to be multiplied by for the added mass matrix (kg, kg m, kg m2) in body axes.
 
         `elements` (kg/m3) is added mass per displaced volume by direction and element, `ends` (kg) that of the ends. Equal to
@@ -157,9 +155,7 @@ def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tu
 def _centripetal(direction: Float[Array, "3 l"], point: Float[Array, "3 l"]) -> Float[Array, "6 l"]:
     """omega (omega . r) - omega^2 r along d, by product of angular velocities."""
     (dx, dy, dz), (x, y, z) = direction, point
-    return jnp.stack(
-        [-dy * y - dz * z, -dx * x - dz * z, -dx * x - dy * y, dx * y + dy * x, dx * z + dz * x, dy * z + dz * y]
-    )
+    return jnp.stack([-dy * y - dz * z, -dx * x - dz * z, -dx * x - dy * y, dx * y + dy * x, dx * z + dz * x, dy * z + dz * y])
 
 
 def _moments(

@@ -89,8 +89,9 @@ def open_capytaine(path: str | PathLike[str], needed: tuple[str, ...], body: str
     if body is None and len(names) > 1:
         raise wrong("", "the name of a body in `body`", "none", f"The dataset has {', '.join(names)}.")
     if body is not None and body not in names:
-        raise wrong("body", f"one of {', '.join(names) or 'a body without a name: leave `body` out'}", shown(body),
-                    suggest(body, names))  # fmt: skip
+        raise wrong(
+            "body", f"one of {', '.join(names) or 'a body without a name: leave `body` out'}", shown(body), suggest(body, names)
+        )
     body = body or (names[0] if names else "")
     notes = []
     for dim in BODY:
@@ -205,8 +206,12 @@ def computed(one: Dataset, variables: dict[str, tuple[np.ndarray, np.ndarray]]) 
         partly = missing.any(axis=1) & ~whole
         if partly.any():
             count = int(missing[partly].sum())
-            raise one.wrong(name, "finite numbers", f"{count} that are not, at omega {listed(omega[partly])} rad/s",
-                            "Where all of a frequency is NaN, it is left out.")  # fmt: skip
+            raise one.wrong(
+                name,
+                "finite numbers",
+                f"{count} that are not, at omega {listed(omega[partly])} rad/s",
+                "Where all of a frequency is NaN, it is left out.",
+            )
         lost |= dict.fromkeys(omega[whole].tolist())
         kept |= dict.fromkeys(omega[~whole].tolist())
     if mixed := [w for w in lost if w in kept and np.isfinite(w) and w > 0]:
@@ -215,8 +220,9 @@ def computed(one: Dataset, variables: dict[str, tuple[np.ndarray, np.ndarray]]) 
     finite = np.array(sorted(w for w in lost if np.isfinite(w) and w > 0))
     if finite.size:
         many = "frequencies" if finite.size > 1 else "frequency"
-        one.notes.append(f"{one.source}: {finite.size} {many} left out, at which nothing was computed (NaN): omega "
-                         f"{listed(finite)} rad/s")  # fmt: skip
+        one.notes.append(
+            f"{one.source}: {finite.size} {many} left out, at which nothing was computed (NaN): omega {listed(finite)} rad/s"
+        )
     return np.array([w for w in kept if w not in lost])
 
 

@@ -165,5 +165,3 @@ def read_capytaine_hydrostatics(
     if notes is not None:
         notes += one.notes
     return FileHydrostatics(scale * one.shift.T @ matrix @ one.shift, volume, None if centre is None else float(centre[2]))
-
-

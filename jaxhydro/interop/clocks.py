@@ -8,12 +8,12 @@ from datetime import datetime
 
 import numpy as np
 
-DAY = 86400.0                                    # s
+DAY = 86400.0  # s
 EXPECTED = "a time such as 2024-01-31T10:22:33.5 or 10:22:33.5"
 _OF_DAY = r"(\d{1,4}):([0-5]\d):([0-5]\d(?:[.,]\d+)?)(?:\s*([AaPp][Mm]))?"
 _ZONE = r"\s?(?:Z|[+-]\d\d(?::?\d\d)?)"
 _TIME = re.compile(rf"(?:(\d{{4}}[-/]\d\d[-/]\d\d|\d{{8}}|\d{{1,2}}[-/.]\d{{1,2}}[-/.]\d{{4}})[T\s]\s*)?{_OF_DAY}({_ZONE})?")
-_SHORT = re.compile(r"\d{1,4}:[0-5]\d([.,]\d+)?")   # minutes and seconds where these have decimals, else perhaps hours
+_SHORT = re.compile(r"\d{1,4}:[0-5]\d([.,]\d+)?")  # minutes and seconds where these have decimals, else perhaps hours
 
 
 def is_time(cell: str) -> bool:
@@ -58,13 +58,16 @@ def seconds(cells: Sequence[str | None]) -> tuple[np.ndarray, dict[int, str]]:
     elif len(known) and stamped[known[0]]:
         dates = {day: _date(day) for day in dict.fromkeys(days) if day is not None}
         if len(dates) > 1:
-            wrong |= {i: "a date in the order year-month-day, since the dates differ" for i in map(int, known)
-                      if dates[str(days[i])] is None}  # fmt: skip
+            wrong |= {
+                i: "a date in the order year-month-day, since the dates differ"
+                for i in map(int, known)
+                if dates[str(days[i])] is None
+            }
             numbers = {day: 0.0 if date is None else date for day, date in dates.items()}
             first = numbers[str(days[known[0]])]
             values[known] += DAY * np.array([numbers[str(days[i])] - first for i in known])
         values -= values[known[0]] if not wrong else 0.0
-    elif len(known):                             # midnight: a step back by more than half a day
+    elif len(known):  # midnight: a step back by more than half a day
         values[known[1:]] += DAY * np.cumsum(np.diff(values[known]) < -DAY / 2)
     return values, wrong
 

@@ -38,7 +38,7 @@ def read_table(path: str | Path) -> pd.DataFrame:
     path = Path(path)
     try:
         table = _reader(path)(path)
-    except (OSError, ValueError) as error:       # ValueError: a null character in the name
+    except (OSError, ValueError) as error:  # ValueError: a null character in the name
         raise wrong(path, "file", "a file that can be read", reason(error)) from error
     except (csv.Error, MemoryError) as error:
         raise wrong(path, "file", "a table of a sensible size", reason(error)) from error
@@ -77,15 +77,17 @@ def _text(path: Path) -> pd.DataFrame:
 def _netcdf(path: Path) -> pd.DataFrame:
     """The one-dimensional variables along the dimension that has most of them."""
     import xarray as xr
-    with path.open("rb") as file:                # a missing file is told as such
+
+    with path.open("rb") as file:  # a missing file is told as such
         hdf5 = file.read(8) == b"\x89HDF\r\n\x1a\n"
     try:
         if hdf5:
             import h5py
-            with h5py.File(path) as file5:       # a damaged one is refused here: h5netcdf would leave a traceback
+
+            with h5py.File(path) as file5:  # a damaged one is refused here: h5netcdf would leave a traceback
                 scales = [name for name, item in file5.items() if item.attrs.get("CLASS") == b"DIMENSION_SCALE"]
                 if not scales and "_NCProperties" not in file5.attrs:
-                    return mat73(path)           # HDF5 of another kind
+                    return mat73(path)  # HDF5 of another kind
         with xr.open_dataset(path, engine="h5netcdf" if hdf5 else "scipy", decode_times=False) as data:
             flat = {str(name): v for name, v in data.variables.items() if v.ndim == 1 and v.dtype.kind in "iufb"}
             along = [name for name, _ in Counter(item.dims[0] for item in flat.values()).most_common(1)]
@@ -94,10 +96,10 @@ def _netcdf(path: Path) -> pd.DataFrame:
             held = [str(name) for name in data.variables]
     except InputError:
         raise
-    except Exception as error:                   # each of xarray's engines has its own
+    except Exception as error:  # each of xarray's engines has its own
         raise wrong(path, "file", "a NetCDF file", reason(error)) from error
     times = [name for name, unit in units.items() if name in found and _SINCE.fullmatch(unit)]
-    for name in times:                           # a date in the unit: seconds from the first row
+    for name in times:  # a date in the unit: seconds from the first row
         moments = np.asarray(found[name] - found[name][:1], float)
         match = _SINCE.fullmatch(units.pop(name))
         found[name] = moments * _CF_UNITS[match[1][:3].lower()] if match else moments
@@ -106,7 +108,7 @@ def _netcdf(path: Path) -> pd.DataFrame:
     return table
 
 
-_CF_UNITS = {"nan": 1e-9, "mic": 1e-6, "mil": 1e-3, "sec": 1.0, "min": 60.0, "hou": 3600.0, "day": 86400.0}      # s
+_CF_UNITS = {"nan": 1e-9, "mic": 1e-6, "mil": 1e-3, "sec": 1.0, "min": 60.0, "hou": 3600.0, "day": 86400.0}  # s
 _SINCE = re.compile(r"((?:nano|micro|milli)?seconds?|minutes?|hours?|days?) since .*", re.IGNORECASE)
 
 
@@ -115,16 +117,27 @@ def _openfast_reader(name: str, path: Path) -> Callable[..., Any]:
     try:
         module = import_module("openfast_io.FAST_output_reader")
     except ImportError as error:
-        raise wrong(path, "file", "the library openfast_io, which reads OpenFAST outputs", "it is not installed",
-                    'pip install "jaxhydro[openfast]"') from error
+        raise wrong(
+            path,
+            "file",
+            "the library openfast_io, which reads OpenFAST outputs",
+            "it is not installed",
+            'pip install "jaxhydro[openfast]"',
+        ) from error
     return getattr(module, name)  # type: ignore[no-any-return]
 
 
 def _openfast_text(path: Path) -> pd.DataFrame:
     lines = decoded(path).split("\n")
-    units = next((i for i, line in enumerate(lines[:20]) if i and line.split()
-                  and all(cell[0] == "(" and cell[-1] == ")" for cell in line.split())), None)
-    if units is None:                            # another program's
+    units = next(
+        (
+            i
+            for i, line in enumerate(lines[:20])
+            if i and line.split() and all(cell[0] == "(" and cell[-1] == ")" for cell in line.split())
+        ),
+        None,
+    )
+    if units is None:  # another program's
         table = parse(path, lines)
         if any(kind.kind == "f" for kind in table.dtypes):
             return table
@@ -134,7 +147,7 @@ def _openfast_text(path: Path) -> pd.DataFrame:
         data, info = load(str(path), headerLines=units + 1, descriptionLine=0, attributeLine=units - 1, unitLine=units)
         return _with_units(pd.DataFrame(data, columns=info["attribute_names"], dtype=float), info)
     except Exception:
-        return parse(path, lines[units - 1:], first=units)        # which says what is wrong, and in which row
+        return parse(path, lines[units - 1 :], first=units)  # which says what is wrong, and in which row
 
 
 def _with_units(table: pd.DataFrame, info: Mapping[str, Any]) -> pd.DataFrame:
@@ -145,11 +158,15 @@ def _with_units(table: pd.DataFrame, info: Mapping[str, Any]) -> pd.DataFrame:
 def _openfast_binary(path: Path) -> pd.DataFrame:
     load = _openfast_reader("load_binary_output", path)
     found, expected = path.stat().st_size, _outb_size(path)
-    if found < expected or not expected:         # the library would reserve whatever memory the header asks for
-        raise wrong(path, "file", "a whole OpenFAST binary output (.outb)",
-                    f"{found} bytes" + (f" where {expected} are announced" if expected else " that are not one"))
+    if found < expected or not expected:  # the library would reserve whatever memory the header asks for
+        raise wrong(
+            path,
+            "file",
+            "a whole OpenFAST binary output (.outb)",
+            f"{found} bytes" + (f" where {expected} are announced" if expected else " that are not one"),
+        )
     try:
-        with np.errstate(all="ignore"):          # a constant channel may have a scale of zero
+        with np.errstate(all="ignore"):  # a constant channel may have a scale of zero
             data, info, _ = load(str(path))
         return _with_units(pd.DataFrame(data, columns=info["attribute_names"], dtype=float), info)
     except Exception as error:
@@ -159,8 +176,10 @@ def _openfast_binary(path: Path) -> pd.DataFrame:
 def _outb_size(path: Path) -> int:
     """What an .outb file's header says its size is, in bytes; 0 for a header that cannot be."""
     with path.open("rb") as file:
+
         def integer(kind: str) -> int:
             return int(struct.unpack(kind, file.read(struct.calcsize(kind)).ljust(struct.calcsize(kind), b"\0"))[0])
+
         kind = integer("<h")
         width = integer("<h") if kind == 4 else 10
         channels, samples = integer("<i"), integer("<i")
@@ -169,13 +188,19 @@ def _outb_size(path: Path) -> int:
         file.seek(16 + (0 if kind == 3 else 8 * channels), 1)
         description = integer("<i")
         names, clock = 2 * width * (channels + 1), 4 * samples * (kind == 1)
-        return file.tell() + description + names + clock + channels * samples * (8 if kind == 3 else 2) \
-            if description >= 0 else 0
+        return (
+            file.tell() + description + names + clock + channels * samples * (8 if kind == 3 else 2) if description >= 0 else 0
+        )
 
 
 _DATA = "a data file: text (.csv, .txt, .dat, ...), .mat, .nc, .xlsx, .out or .outb"
 _NO_DATA = {".yaml", ".yml", ".json", ".toml", ".py", ".m", ".md", ".html", ".xml", ".pdf", ".docx", ".png", ".jpg", ".zip"}
 _STARTS = {b"MATLAB ": matlab, b"CDF\x01": _netcdf, b"CDF\x02": _netcdf, b"CDF\x05": _netcdf, b"PK\x03\x04": workbook}
 _READERS: dict[str, Callable[[Path], pd.DataFrame]] = {
-    ".mat": matlab, ".nc": _netcdf, ".xlsx": workbook, ".xlsm": workbook, ".outb": _openfast_binary, ".out": _openfast_text,
+    ".mat": matlab,
+    ".nc": _netcdf,
+    ".xlsx": workbook,
+    ".xlsm": workbook,
+    ".outb": _openfast_binary,
+    ".out": _openfast_text,
 }

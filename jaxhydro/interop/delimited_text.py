@@ -23,7 +23,7 @@ from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.clocks import is_time, seconds
 from jaxhydro.interop.text_header import COMMENTS, WHITESPACE, layout, plain, split, widths
 
-_SHOWN = 5               # of one kind of mistake
+_SHOWN = 5  # of one kind of mistake
 
 
 def wrong(path: Path, where: str, expected: str, found: str, hint: str = "") -> InputError:
@@ -50,7 +50,7 @@ def decoded(path: Path) -> str:
     try:
         text = raw.decode(encoding)
     except UnicodeDecodeError:
-        text = raw.decode("latin-1")             # degree signs and names from older loggers
+        text = raw.decode("latin-1")  # degree signs and names from older loggers
     controls = sum(text.count(chr(code)) for code in range(32) if code not in (9, 10, 12, 13, 26))
     if controls:
         raise wrong(path, "file", "text with delimiters", f"binary content ({controls} control characters)")
@@ -83,15 +83,26 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
     width = len(stated) if stated and len(stated) in counts else Counter(counts).most_common(1)[0][0]
     torn = [i for i, count in enumerate(counts) if count != width]
     if torn:
-        raise InputError(str(path), [Problem(f"row {numbers[i]}", f"{width} columns", f"{counts[i]} columns",
-                                             "a line cut short" if i == len(body) - 1 else "") for i in torn[:_SHOWN]])
-    misfit = wrong(path, "header", f"{width} names, one for each column",
-                   f"{len(stated or ())}: " + ", ".join((stated or [])[:10]))
+        raise InputError(
+            str(path),
+            [
+                Problem(
+                    f"row {numbers[i]}",
+                    f"{width} columns",
+                    f"{counts[i]} columns",
+                    "a line cut short" if i == len(body) - 1 else "",
+                )
+                for i in torn[:_SHOWN]
+            ],
+        )
+    misfit = wrong(
+        path, "header", f"{width} names, one for each column", f"{len(stated or ())}: " + ", ".join((stated or [])[:10])
+    )
     if found.misfit is not None or len(found.names or ()) > width:
         raise misfit
     names = [str(i) for i in range(width)] if found.names is None else found.names
     table = _numbers(path, body, numbers, found.delimiter, names + [""] * (width - len(names)))
-    if not table.columns[-1] and table.iloc[:, -1].isna().all():                # every line ends with the delimiter
+    if not table.columns[-1] and table.iloc[:, -1].isna().all():  # every line ends with the delimiter
         table = table.iloc[:, :-1]
     if found.names is not None and len(names) < len(table.columns):
         raise misfit
@@ -102,11 +113,21 @@ def parse(path: Path, lines: list[str], first: int = 1) -> pd.DataFrame:
 def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | None, names: list[str]) -> pd.DataFrame:
     """The body as float columns; a column that is text throughout stays text, one that is partly text is a mistake."""
     body = "\n".join(lines)
-    options: dict[str, Any] = {"sep": r"\s+" if delimiter is WHITESPACE else delimiter,
-                               "decimal": "," if delimiter != "," and "," in body else "."}
+    options: dict[str, Any] = {
+        "sep": r"\s+" if delimiter is WHITESPACE else delimiter,
+        "decimal": "," if delimiter != "," and "," in body else ".",
+    }
     try:
-        raw = pd.read_csv(io.StringIO(body), header=None, names=range(len(names)), index_col=False, low_memory=False,
-                          skip_blank_lines=False, skipinitialspace=True, **options)
+        raw = pd.read_csv(
+            io.StringIO(body),
+            header=None,
+            names=range(len(names)),
+            index_col=False,
+            low_memory=False,
+            skip_blank_lines=False,
+            skipinitialspace=True,
+            **options,
+        )
     except (ValueError, OverflowError) as error:
         raise wrong(path, "file", "a delimited table", " ".join(str(error).split())) from error
     if len(raw) != len(lines):
@@ -134,8 +155,10 @@ def _numbers(path: Path, lines: list[str], rows: list[int], delimiter: str | Non
                 columns.append(cells.astype(object))
                 continue
         more = f"{len(expected)} such cells in this column" if len(expected) > _SHOWN else ""
-        problems += [Problem(f"row {rows[row]}, column {name or i}", what, repr(cells.iloc[row]), more)
-                     for row, what in sorted(expected.items())[:_SHOWN]]
+        problems += [
+            Problem(f"row {rows[row]}, column {name or i}", what, repr(cells.iloc[row]), more)
+            for row, what in sorted(expected.items())[:_SHOWN]
+        ]
         columns.append(values)
     if problems:
         raise InputError(str(path), problems)

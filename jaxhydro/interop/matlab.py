@@ -16,7 +16,7 @@ from jaxhydro.interop.delimited_text import reason, wrong
 
 _MATRIX, _COMPRESSED = 14, 15
 _ELEMENTS = {1, 2, 3, 4, 5, 6, 7, 9, 12, 13, _MATRIX, _COMPRESSED, 16, 17, 18}
-_OPAQUE = 17             # a class of its own layout
+_OPAQUE = 17  # a class of its own layout
 
 
 def matlab(path: Path) -> pd.DataFrame:
@@ -26,15 +26,17 @@ def matlab(path: Path) -> pd.DataFrame:
     if b"MATLAB 7.3" in start or start[:8] == b"\x89HDF\r\n\x1a\n":
         return mat73(path)
     from scipy.io import loadmat
+
     try:
         if not _sound(path.read_bytes()):
             raise ValueError("damaged, or cut short")
         content = loadmat(path, squeeze_me=True, struct_as_record=False)
-    except Exception as error:                   # scipy raises whatever the rubbish leads it to
+    except Exception as error:  # scipy raises whatever the rubbish leads it to
         raise wrong(path, "file", "a MATLAB .mat file", reason(error)) from error
     content = {name: item for name, item in content.items() if not name.startswith("__")}
-    structs = [{field: getattr(item, field) for field in item._fieldnames}
-               for item in content.values() if hasattr(item, "_fieldnames")]
+    structs = [
+        {field: getattr(item, field) for field in item._fieldnames} for item in content.values() if hasattr(item, "_fieldnames")
+    ]
     found: dict[str, np.ndarray] = {}
     for group in (content, *structs):
         found |= {name: values for name, values in _vectors(group).items() if name not in found}
@@ -60,6 +62,7 @@ def _vectors(group: Mapping[str, Any]) -> dict[str, np.ndarray]:
 def mat73(path: Path) -> pd.DataFrame:
     """Version 7.3 is HDF5: vectors at the top, or in one level of groups (a struct)."""
     import h5py
+
     found: dict[str, np.ndarray] = {}
     try:
         with h5py.File(path) as file:
@@ -80,12 +83,18 @@ def side_by_side(path: Path, series: Mapping[str, np.ndarray], held: Iterable[st
     """Vectors of the longest length, put side by side; much shorter ones are constants of the file and left out."""
     length = max((len(values) for values in series.values()), default=0)
     if length < 2:
-        raise wrong(path, "file", "numeric vectors of equal length, time among them",
-                    "none; it holds " + (", ".join(list(held)[:10]) or "nothing"))
+        raise wrong(
+            path,
+            "file",
+            "numeric vectors of equal length, time among them",
+            "none; it holds " + (", ".join(list(held)[:10]) or "nothing"),
+        )
     odd = [(name, len(values)) for name, values in series.items() if length / 2 <= len(values) < length]
     if odd:
-        raise InputError(str(path), [Problem(f"variable {name}", f"{length} values, as the longest has", f"{found}", "")
-                                     for name, found in odd[:5]])
+        raise InputError(
+            str(path),
+            [Problem(f"variable {name}", f"{length} values, as the longest has", f"{found}", "") for name, found in odd[:5]],
+        )
     return pd.DataFrame({name: np.asarray(v, float) for name, v in series.items() if len(v) == length})
 
 
@@ -103,7 +112,7 @@ def _nested(data: bytes, order: str, depth: int = 0) -> bool:
     at = 0
     while at + 8 <= len(data):
         kind, size = struct.unpack_from(order + "2I", data, at)
-        if kind >> 16:                           # a small element: its size and its four bytes are in the tag
+        if kind >> 16:  # a small element: its size and its four bytes are in the tag
             kind, size, start, at = kind & 0xFFFF, kind >> 16, at + 4, at + 8
             inside = size <= 4
         else:
@@ -111,7 +120,7 @@ def _nested(data: bytes, order: str, depth: int = 0) -> bool:
             inside = start + size <= len(data)
         if kind not in _ELEMENTS or not inside or depth > 20:
             return False
-        content = data[start: start + size]
+        content = data[start : start + size]
         if kind == _COMPRESSED:
             content = zlib.decompress(content)
         deeper = depth + 1 if kind == _MATRIX else 0
@@ -132,19 +141,20 @@ def _matrix(children: list[tuple[int, bytes]], order: str) -> bool:
     count, parts = int(np.prod(sizes, dtype=float)), children[3:]
     if min(sizes) < 0 or count > 1e9:
         return False
-    if sort in (2, 3):                           # a struct, an object: the length of a field's name, the names
-        parts = parts[sort - 2:]
+    if sort in (2, 3):  # a struct, an object: the length of a field's name, the names
+        parts = parts[sort - 2 :]
         length = int.from_bytes(parts[0][1], "little" if order == "<" else "big") if parts else 0
         if len(parts) < 2 or not 0 < length <= 1000:
             return False
         count, parts = count * (len(parts[1][1]) // length), parts[2:]
-    if sort == 16:                               # a function: one matrix, whatever the dimensions
+    if sort == 16:  # a function: one matrix, whatever the dimensions
         count = len(parts)
     if sort in (1, 2, 3, 16):
         return len(parts) == count and all(kind == _MATRIX for kind, _ in parts)
-    if sort == 4 or sort >= 6:                   # text, numbers
+    if sort == 4 or sort >= 6:  # text, numbers
         return len(parts) == 1 + bool(flags & 8) and all(
-            kind not in (_MATRIX, _COMPRESSED) and (len(content) >= count or sort == 4) for kind, content in parts)
+            kind not in (_MATRIX, _COMPRESSED) and (len(content) >= count or sort == 4) for kind, content in parts
+        )
     return True
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 
 from jaxhydro.interop.delimited_text import parse, reason, wrong
 
-_LEAST = 2               # numbers in a column, from which on a sheet has a table
+_LEAST = 2  # numbers in a column, from which on a sheet has a table
 
 
 def workbook(path: Path) -> pd.DataFrame:
@@ -19,21 +19,31 @@ def workbook(path: Path) -> pd.DataFrame:
     Raises:
         InputError: openpyxl is not installed, the file is damaged, or not exactly one sheet has numbers.
     """
-    with path.open("rb"):                        # a missing file is told as such
+    with path.open("rb"):  # a missing file is told as such
         pass
     try:
         import openpyxl  # noqa: F401
     except ImportError as error:
-        raise wrong(path, "file", "the library openpyxl, which reads Excel workbooks", "it is not installed",
-                    'pip install "jaxhydro[excel]", or save the sheet as CSV.') from error
+        raise wrong(
+            path,
+            "file",
+            "the library openpyxl, which reads Excel workbooks",
+            "it is not installed",
+            'pip install "jaxhydro[excel]", or save the sheet as CSV.',
+        ) from error
     try:
         sheets = pd.read_excel(path, sheet_name=None, header=None, dtype=object, engine="openpyxl")
-    except Exception as error:                   # openpyxl has many
+    except Exception as error:  # openpyxl has many
         raise wrong(path, "file", "an Excel workbook (.xlsx)", reason(error)) from error
     full = {str(name): sheet for name, sheet in sheets.items() if _has_numbers(sheet)}
     if len(full) != 1:
-        raise wrong(path, "file", "one sheet with numbers", ", ".join(full) or f"none in {', '.join(map(str, sheets))}",
-                    "Save the sheet of this test as CSV." if full else "")
+        raise wrong(
+            path,
+            "file",
+            "one sheet with numbers",
+            ", ".join(full) or f"none in {', '.join(map(str, sheets))}",
+            "Save the sheet of this test as CSV." if full else "",
+        )
     (sheet,) = full.values()
     return parse(path, ["\t".join(map(_written, row)) for row in sheet.itertuples(index=False)])
 

@@ -7,9 +7,24 @@ from collections.abc import Mapping
 
 from jaxhydro.units import SI
 
-_SAME = {"second": "s", "sec": "s", "msec": "ms", "minute": "min", "meter": "m", "metre": "m", "feet": "ft", "foot": "ft",
-         "degree": "deg", "°": "deg", "radian": "rad", "millimeter": "mm", "millimetre": "mm", "centimeter": "cm",
-         "centimetre": "cm", "millisecond": "ms"}  # fmt: skip
+_SAME = {
+    "second": "s",
+    "sec": "s",
+    "msec": "ms",
+    "minute": "min",
+    "meter": "m",
+    "metre": "m",
+    "feet": "ft",
+    "foot": "ft",
+    "degree": "deg",
+    "°": "deg",
+    "radian": "rad",
+    "millimeter": "mm",
+    "millimetre": "mm",
+    "centimeter": "cm",
+    "centimetre": "cm",
+    "millisecond": "ms",
+}
 _KNOWN = {unit for units in SI.values() for unit in units}
 _IN_BRACKETS = re.compile(r"[(\[{<]\s*([^()\[\]{}<>]+?)\s*[)\]}>]\s*$")
 _AFTER = re.compile(r"(?:_|\s+in\s+|,\s*|/\s*)([A-Za-z°]+)$")

@@ -9,18 +9,18 @@ from dataclasses import dataclass
 
 from jaxhydro.interop.clocks import is_time
 
-Row = tuple[int, str]                            # its number in the file, as an editor counts, and its text
+Row = tuple[int, str]  # its number in the file, as an editor counts, and its text
 WHITESPACE = None
 DELIMITERS = (";", "\t", ",", WHITESPACE)
 COMMENTS = ("#", "%")
-_SAMPLE = 200                                    # rows, by which delimiter and columns are judged
-_WIDE = re.compile(r"\t|\s{2,}")                 # between names that have single spaces in them
+_SAMPLE = 200  # rows, by which delimiter and columns are judged
+_WIDE = re.compile(r"\t|\s{2,}")  # between names that have single spaces in them
 _TIMES, _ANGLES = "s sec secs second seconds ms msec min h hr", "deg degs degree degrees rad radian radians mrad °"
 _LENGTHS = "m meter meters metre metres cm mm km ft feet in"
 _OTHERS = "n kn mn nm n-m n*m kn-m kn*m nmm hz rad/s deg/s m/s m/s2 m/s^2 mm/s rpm v mv pa kpa bar kg g t 1 % none"
 _UNIT_WORDS = frozenset(f"{_TIMES} {_ANGLES} {_LENGTHS} {_OTHERS}".split())
 _BRACKETED = re.compile(r"[(\[{<].*[)\]}>]")
-_EXPONENT = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")   # Fortran's
+_EXPONENT = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")  # Fortran's
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Layout:
     names: list[str] | None
     units: list[str] | None
     body: list[Row]
-    misfit: str | None = None                    # the line above the body, where it does not name every column
+    misfit: str | None = None  # the line above the body, where it does not name every column
 
 
 def plain(cell: str) -> str:
@@ -65,9 +65,9 @@ def widths(lines: list[str], delimiter: str | None) -> list[int]:
 def layout(rows: list[Row]) -> Layout:
     """Find the table in the lines of a file that are not empty, comments among them; one line at least is none."""
     kept = [(number, line) for number, line in rows if not line.lstrip().startswith(COMMENTS)]
-    delimiter = _delimiter([line for _, line in kept[len(kept) // 2:][:_SAMPLE]])
+    delimiter = _delimiter([line for _, line in kept[len(kept) // 2 :][:_SAMPLE]])
     found = _layout(rows, kept, delimiter)
-    if delimiter is WHITESPACE and found.names is None:      # a date and a time of day under one name
+    if delimiter is WHITESPACE and found.names is None:  # a date and a time of day under one name
         stamp = re.compile(r"(\d{4}[-/]\d\d[-/]\d\d|\d{1,2}[-/.]\d{1,2}[-/.]\d{4})\s+(?=\d{1,2}:\d\d:\d\d)")
         joined = [(number, stamp.sub(r"\1T", line)) for number, line in rows]
         if joined != rows:
@@ -80,7 +80,7 @@ def _layout(rows: list[Row], kept: list[Row], delimiter: str | None) -> Layout:
     lines = [line for _, line in kept]
     width = Counter(widths(lines, delimiter)).most_common(1)[0][0]
     numeric = _numeric_columns(lines, delimiter, width)
-    if not numeric:                              # text alone: nothing tells header from body
+    if not numeric:  # text alone: nothing tells header from body
         names = names_of(lines[0], delimiter, width)
         return Layout(delimiter, names, None, kept[1:] if names else kept, None if names else lines[0])
 
@@ -92,14 +92,14 @@ def _layout(rows: list[Row], kept: list[Row], delimiter: str | None) -> Layout:
     first = next((i for i, line in enumerate(lines) if measured(line)), 0)
     last = max((i for i, line in enumerate(lines) if measured(line)), default=len(lines) - 1)
     while last + 1 < len(lines) and not _is_sentence(lines[last + 1], delimiter, numeric):
-        last += 1                                # a damaged row, which is told
-    if any(not _is_sentence(line, delimiter, numeric) for line in lines[last + 1:]):
+        last += 1  # a damaged row, which is told
+    if any(not _is_sentence(line, delimiter, numeric) for line in lines[last + 1 :]):
         last = len(lines) - 1
-    top, body = kept[:first], kept[first: last + 1]
+    top, body = kept[:first], kept[first : last + 1]
     at = next((i for i in reversed(range(len(top))) if names_of(top[i][1], delimiter, width)), None)
     if at is not None:
         names, units = names_of(top[at][1], delimiter, width) or [], None
-        between = top[at + 1:]
+        between = top[at + 1 :]
         above = names_of(top[at - 1][1], delimiter, width) if at else None
         cells = delimiter is not WHITESPACE and all(len(split(top[i][1], delimiter)) == width for i in (at - 1, at))
         if above and _are_units(names, cells) and sum(map(bool, above)) >= sum(map(bool, names)):
@@ -138,7 +138,7 @@ def names_of(line: str, delimiter: str | None, width: int) -> list[str] | None:
         names = [cell.strip().strip('"') for cell in cells]
         if len(names) == width and any(names) and not any(is_number(name) for name in names):
             return names
-    short = delimiter is not WHITESPACE and width - len(own) == 1      # every row ends with the delimiter
+    short = delimiter is not WHITESPACE and width - len(own) == 1  # every row ends with the delimiter
     return own if short and len(own) > 1 and not any(map(is_number, own)) else None
 
 
@@ -170,8 +170,11 @@ def _has_values(line: str, delimiter: str | None, width: int) -> bool:
     """Whether a line is a damaged row of the table: as wide and with a number, or numbers alone."""
     cells = split(line, delimiter)
     values = [_is_value(cell, delimiter) for cell in cells]
-    return (len(cells) == width > 2 and sum(values) > 1) or (len(cells) == width <= 2 and values[0]) or \
-        (len(cells) > 1 and all(values))
+    return (
+        (len(cells) == width > 2 and sum(values) > 1)
+        or (len(cells) == width <= 2 and values[0])
+        or (len(cells) > 1 and all(values))
+    )
 
 
 def _is_sentence(line: str, delimiter: str | None, numeric: list[int]) -> bool:
@@ -184,7 +187,7 @@ def _is_sentence(line: str, delimiter: str | None, numeric: list[int]) -> bool:
 
 def _numeric_columns(lines: list[str], delimiter: str | None, width: int) -> list[int]:
     """The columns of which most cells are numbers or times, judged in the middle of the file."""
-    whole = [cells for line in lines[len(lines) // 2:][:_SAMPLE] if len(cells := split(line, delimiter)) == width]
+    whole = [cells for line in lines[len(lines) // 2 :][:_SAMPLE] if len(cells := split(line, delimiter)) == width]
     whole = whole or [cells for line in lines[:_SAMPLE] if len(cells := split(line, delimiter)) == width]
     return [i for i in range(width) if sum(_is_value(row[i], delimiter) for row in whole) > len(whole) / 2]
 

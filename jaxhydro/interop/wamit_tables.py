@@ -33,9 +33,14 @@ def quantity(by: str) -> str:
 
 
 def table_of(
-    path: str | PathLike[str], ending: str, columns: str, periods: slice, mode: int, by: str = "period",
+    path: str | PathLike[str],
+    ending: str,
+    columns: str,
+    periods: slice,
+    mode: int,
+    by: str = "period",
     body: int | None = None,
-) -> Float[np.ndarray, "r c"]:  # fmt: skip
+) -> Float[np.ndarray, "r c"]:
     """Read the rows of a WAMIT file whose `columns` are named; a first line of words (NUMHDR = 1) is passed over.
 
     Args:
@@ -130,7 +135,7 @@ def of_heading(
     """The rows for waves of one heading (deg). Raises InputError where there are none."""
     mine = rows[same_heading(rows[:, headings], heading).all(axis=1)]
     if not len(mine):
-        same = (np.ptp(rows[:, headings], axis=1) < SAME)
+        same = np.ptp(rows[:, headings], axis=1) < SAME
         known = ", ".join(f"{beta:g}" for beta in np.unique(rows[same, headings.start]))
         raise InputError(str(path), [Problem("BETA", f"waves of heading {heading:g} deg", f"{known} deg")])
     return mine

@@ -60,9 +60,7 @@ class Buoyancy(AbstractLoad):
         weight_density = now.environment.density * now.environment.gravity
         return Action(body_force=self.force(now.position, now.rotation, weight_density))
 
-    def geometry(
-        self, heave: Float[Array, ""], vertical: Float[Array, "3"]
-    ) -> tuple[Float[Array, " p"], Float[Array, "3 p"]]:
+    def geometry(self, heave: Float[Array, ""], vertical: Float[Array, "3"]) -> tuple[Float[Array, " p"], Float[Array, "3 p"]]:
         """Wetted volume (m3) of every piece and its first moment about the reference point (m4, body axes).
 
         `vertical` is the vertical in body axes, `heave` (m) that of the reference point.
@@ -88,9 +86,7 @@ class Buoyancy(AbstractLoad):
         moment = volume * self.lower + along * self.axis - (self.directions * second).sum(axis=1)
         return volume, moment
 
-    def _tubes(
-        self, heave: Float[Array, ""], vertical: Float[Array, "3"]
-    ) -> tuple[Float[Array, " t"], Float[Array, "3 t"]]:
+    def _tubes(self, heave: Float[Array, ""], vertical: Float[Array, "3"]) -> tuple[Float[Array, " t"], Float[Array, "3 t"]]:
         """Wet volume (m3) of slices of cylinders, and its first moment (m4): segments of circles."""
         depth = -(heave + vertical @ self.tube)
         upward = jnp.einsum("i,idt->dt", vertical, self.tube_across)

@@ -56,9 +56,7 @@ def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> Stati
     return StaticsOfFile(declared.model_copy(update=given), found.stiffness, told)
 
 
-def _values(
-    declared: schema.Hydrostatics, found: FileHydrostatics, water: schema.Water
-) -> tuple[dict[str, float], list[str]]:
+def _values(declared: schema.Hydrostatics, found: FileHydrostatics, water: schema.Water) -> tuple[dict[str, float], list[str]]:
     """Keys of `hydrostatics` and their values by a file, and notes."""
     values: dict[str, float] = {"C33": float(found.stiffness[2, 2])}
     if found.volume is not None:
@@ -126,8 +124,10 @@ def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.n
     other = "excluded" if taken == "included" else "included"
     if missed[taken] < CLEARLY * missed[other] or missed[taken] < 0.05 * abs(own[3, 3]):
         return []
-    return [f"{declared.file}: C44 {stiffness[3, 3]:.4g} N m/rad fits the members with the weight {other}, not {taken}: see "
-            "`hydrostatics.weight`"]  # fmt: skip
+    return [
+        f"{declared.file}: C44 {stiffness[3, 3]:.4g} N m/rad fits the members with the weight {other}, not {taken}: see "
+        "`hydrostatics.weight`"
+    ]
 
 
 def coupling_of(stiffness: np.ndarray, own: np.ndarray) -> tuple[HydrostaticCoupling, ...]:

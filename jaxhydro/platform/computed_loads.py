@@ -87,17 +87,28 @@ def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[Com
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
         table = read_excitation(
-            declared.file, water.density, water.gravity, length=declared.length or 1.0, heading=declared.heading,
-            by=declared.by, body=declared.body, warnings=doubts,
-        )  # fmt: skip
+            declared.file,
+            water.density,
+            water.gravity,
+            length=declared.length or 1.0,
+            heading=declared.heading,
+            by=declared.by,
+            body=declared.body,
+            warnings=doubts,
+        )
         if declared.body is not None:
             notes.append(f"{declared.file}: phases of body {declared.body} are those of waves at the file's own origin")
     else:
         assert not isinstance(declared.body, int)
         table = read_capytaine_excitation(
-            declared.file, heading=declared.heading, body=declared.body, density=water.density, gravity=water.gravity,
-            depth=water.depth, notes=notes,
-        )  # fmt: skip
+            declared.file,
+            heading=declared.heading,
+            body=declared.body,
+            density=water.density,
+            gravity=water.gravity,
+            depth=water.depth,
+            notes=notes,
+        )
     load = ComputedExcitation.of(table, share=float(declared.use == "load"))
     return load, (*as_warnings(doubts), *map(Remark, notes))
 
@@ -106,9 +117,16 @@ def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer
     """The slow drift that a platform file declares, and what is to be known of it. Raises InputError."""
     doubts: list[str] = []
     transfer = read_transfer(
-        declared.file, water.density, water.gravity, length=declared.length, heading=declared.heading,
-        newman=declared.approximation == "newman", by=declared.by, body=declared.body, warnings=doubts,
-    )  # fmt: skip
+        declared.file,
+        water.density,
+        water.gravity,
+        length=declared.length,
+        heading=declared.heading,
+        newman=declared.approximation == "newman",
+        by=declared.by,
+        body=declared.body,
+        warnings=doubts,
+    )
     return DriftTransfer.of(transfer, share=float(declared.use == "load")), as_warnings(doubts)
 
 

@@ -404,5 +404,5 @@ def load_platform(path_or_name: str | PathLike[str]) -> Platform:
     beside = {
         key: getattr(platform, key).model_copy(update={"file": str(folder / getattr(platform, key).file)})
         for key in platform.files()
-    }  # fmt: skip
+    }
     return platform.model_copy(update=beside) if beside else platform

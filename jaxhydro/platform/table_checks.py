@@ -63,8 +63,11 @@ def excitation_column(
     turned = heave < NO_HEAVE and ALL_HEAVE[0] < shortest < ALL_HEAVE[1]
     if not turned and (surge is None or NO_SURGE[0] < surge < NO_SURGE[1]):
         return []
-    fits = [kind for kind, (lift, push, _) in seen.items() if kind != by and LONG_HEAVE[0] < lift < LONG_HEAVE[1]
-            and (push is None or LONG_SURGE[0] < push < LONG_SURGE[1])]  # fmt: skip
+    fits = [
+        kind
+        for kind, (lift, push, _) in seen.items()
+        if kind != by and LONG_HEAVE[0] < lift < LONG_HEAVE[1] and (push is None or LONG_SURGE[0] < push < LONG_SURGE[1])
+    ]
     if not fits:
         return []
     said = f"read by {by}, its longest wave lifts {heave:.2g} of rho g A"

@@ -26,9 +26,7 @@ class Moved(NamedTuple):
     bound: Complex[np.ndarray, " b"] | None
 
 
-def in_halves(
-    model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float
-) -> list[Moved | None]:
+def in_halves(model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float) -> list[Moved | None]:
     """`together`, half as many at once where the memory does not hold all."""
     if not seas:
         return []
@@ -73,9 +71,7 @@ def power_of_two(count: int) -> int:
     return 1 << (count - 1).bit_length()
 
 
-def shared_by(
-    model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
-) -> tuple[Preparation, float, int]:
+def shared_by(model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float) -> tuple[Preparation, float, int]:
     """What all seas like this one share for the model's hull, and the steps as in `prepared_for`."""
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     instants = clock("ab4", float(times[0]), step, steps)

@@ -163,9 +163,7 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
     if twice:
         more = f" and {len(twice) - 1} more are" if len(twice) > 1 else " is"
         notes.append(f"{named(next(iter(twice)))}{more} in the table more than once: run once, and its probabilities add up")
-    every = [
-        Case(*state, one.heading, share * one.probability) for state, share in shares.items() for one in sweep.towards
-    ]
+    every = [Case(*state, one.heading, share * one.probability) for state, share in shares.items() for one in sweep.towards]
     total = sum(case.probability for case in every)
     if not total > 0:
         key = "headings" if any(share > 0 for share in shares.values()) else "scatter"
@@ -174,8 +172,19 @@ def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[st
     if left_out := len(every) - len(cases):
         notes.append(f"{left_out} case{'s' * (left_out > 1)} of probability 0 {'are' if left_out > 1 else 'is'} left out")
     seeds = tuple(range(sweep.seeds)) if isinstance(sweep.seeds, int) else sweep.seeds
-    same: tuple[str, ...] = ("spectrum", "amplitudes", "duration", "start", "time_step", "step", "order", "stretching",
-    "diffraction", "motions", "time_series")  # fmt: skip
+    same: tuple[str, ...] = (
+        "spectrum",
+        "amplitudes",
+        "duration",
+        "start",
+        "time_step",
+        "step",
+        "order",
+        "stretching",
+        "diffraction",
+        "motions",
+        "time_series",
+    )
     usual = of_spectra([case.tp for case in cases], pace, [case.probability * case.hs**2 for case in cases])
     low, cutoff = (found if given is None else given for given, found in zip((sweep.low, sweep.cutoff), usual))
     if not cutoff > low:

@@ -27,9 +27,14 @@ class Worker:
         # a session of its own: a key pressed in the terminal stops this process only, which ends the others
         self.words = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")  # noqa: SIM115
         return subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.words, text=True,
-            env=environment(self.device), start_new_session=True,
-        )  # fmt: skip
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.words,
+            text=True,
+            env=environment(self.device),
+            start_new_session=True,
+        )
 
     def ask(self, numbers: Sequence[int]) -> Found:
         """Have runs simulated and written; a killed process is replaced, and its runs are done again."""

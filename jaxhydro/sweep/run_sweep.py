@@ -130,9 +130,13 @@ def to_do(folder: Path, retry_failed: bool = False) -> list[int]:
 
 
 def run_all(
-    folder: Path, made: Prepared, numbers: list[int], how: Chosen, scheduler: str | None = None,
+    folder: Path,
+    made: Prepared,
+    numbers: list[int],
+    how: Chosen,
+    scheduler: str | None = None,
     progress: Callable[[Progress], None] = lambda now: None,
-) -> Ran:  # fmt: skip
+) -> Ran:
     """Simulate runs, each written as it is done."""
     if how.devices:  # what is simulated at once has one heading
         numbers = sorted(numbers, key=lambda number: made.inputs.plan.run(number).case.heading)

@@ -208,17 +208,27 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, 
         said: dict[str, Any] = {"long_name": "why a run failed"}
         for name, dtype, fill, about in (("status", "u1", TO_DO, flags), ("reason", "string", "", said)):
             group.create_array(
-                name, shape=runs, chunks=(1, 1), dtype=dtype, fill_value=fill, dimension_names=("case", "seed"),
+                name,
+                shape=runs,
+                chunks=(1, 1),
+                dtype=dtype,
+                fill_value=fill,
+                dimension_names=("case", "seed"),
                 attributes=about,
-            )  # fmt: skip
+            )
         for name, (dims, text) in KEPT.items():
             if name == "series" and not plan.time_series:
                 continue
             shape = tuple(len(sizes[dim]) for dim in dims)
             group.create_array(
-                name, shape=runs + shape, chunks=(1, 1, *shape), dtype="f8", fill_value=np.nan,
-                dimension_names=("case", "seed", *dims), attributes={"long_name": text},
-            )  # fmt: skip
+                name,
+                shape=runs + shape,
+                chunks=(1, 1, *shape),
+                dtype="f8",
+                fill_value=np.nan,
+                dimension_names=("case", "seed", *dims),
+                attributes={"long_name": text},
+            )
         zarr.consolidate_metadata(group.store)
 
 
@@ -227,9 +237,13 @@ def _coordinate(group: zarr.Group, name: str, dims: tuple[str, ...], values: Any
     data = np.array(list(values), dtype=np.dtypes.StringDType()) if text else values
     about: dict[str, Any] = {"units": units} if units else {}
     array = group.create_array(
-        name, shape=data.shape, chunks=data.shape, dtype="string" if text else data.dtype, dimension_names=dims,
+        name,
+        shape=data.shape,
+        chunks=data.shape,
+        dtype="string" if text else data.dtype,
+        dimension_names=dims,
         attributes=about,
-    )  # fmt: skip
+    )
     array[...] = data
 
 
@@ -238,13 +252,16 @@ def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
     options = {name: value for name, value in plan.items() if name not in ("cases", "seeds") and value is not None}
     about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.diffraction}
     coordinates = "hs tp gamma heading probability spectrum_share unit band_limits"
-    return options | about | {
-        "source": f"jaxhydro {jaxhydro.__version__}",
-        "fingerprint": inputs.fingerprint,
-        "fingerprint_platform": content_hash(inputs.platform)[:SHORT],
-        "fingerprint_calibration": content_hash(inputs.calibration)[:SHORT] if inputs.calibration is not None else "",
-        "computed_with": computed_with(),
-        "units": "m, s, Hz, deg, N",
-        "coordinates": coordinates,
-    }  # fmt: skip
-
+    return (
+        options
+        | about
+        | {
+            "source": f"jaxhydro {jaxhydro.__version__}",
+            "fingerprint": inputs.fingerprint,
+            "fingerprint_platform": content_hash(inputs.platform)[:SHORT],
+            "fingerprint_calibration": content_hash(inputs.calibration)[:SHORT] if inputs.calibration is not None else "",
+            "computed_with": computed_with(),
+            "units": "m, s, Hz, deg, N",
+            "coordinates": coordinates,
+        }
+    )

@@ -41,9 +41,16 @@ def scatter_figure(
     order = np.argsort(-size)
     order = order[solid[order]]
     marks = ax.scatter(
-        states[order, 1], states[order, 0], s=size[order], c=colour[order], cmap=COLOURS, lw=0.4, edgecolors="white", zorder=2,
+        states[order, 1],
+        states[order, 0],
+        s=size[order],
+        c=colour[order],
+        cmap=COLOURS,
+        lw=0.4,
+        edgecolors="white",
+        zorder=2,
         clip_on=False,
-    )  # fmt: skip
+    )
     if not solid.all():
         at = states[~solid]
         ax.scatter(at[:, 1], at[:, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3, clip_on=False)
@@ -51,9 +58,14 @@ def scatter_figure(
         for (height, period), one, area in zip(states, share, size):
             said = "100" if one > 0.995 else f"{100 * one:.2g}"
             ax.annotate(
-                f"{said} %", (period, height), textcoords="offset points", xytext=(0, np.sqrt(area / np.pi) + 2),
-                ha="center", fontsize=6.5, color=MEASURED,
-            )  # fmt: skip
+                f"{said} %",
+                (period, height),
+                textcoords="offset points",
+                xytext=(0, np.sqrt(area / np.pi) + 2),
+                ha="center",
+                fontsize=6.5,
+                color=MEASURED,
+            )
     ax.margins(0.16)
     ax.set_ylim(0, ax.get_ylim()[1])
     ax.set_xlabel("Peak period (s)")
@@ -99,9 +111,13 @@ def exceedance_figure(
         ax.set_xlabel(f"Minimum and maximum of {name}")
         ax.set_ylabel("Probability beyond")
     legend = figure.legend(
-        list(artists.values()), list(artists), loc="outside upper left", ncols=2, alignment="left",
+        list(artists.values()),
+        list(artists),
+        loc="outside upper left",
+        ncols=2,
+        alignment="left",
         title=f"{title}, runs of {duration:g} s after the transient",
-    )  # fmt: skip
+    )
     legend.get_title().set_fontweight("bold")
     return figure
 

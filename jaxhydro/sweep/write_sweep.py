@@ -21,9 +21,19 @@ from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
 PANELS = ("surge", "heave", "pitch")  # whose maxima are drawn, where they move
 FAILURES = 1000  # listed in sweep.json; all are in the store
 OPTIONS = (
-    "duration", "start", "time_step", "step", "spectrum", "amplitudes", "low", "cutoff", "order", "stretching", "diffraction",
+    "duration",
+    "start",
+    "time_step",
+    "step",
+    "spectrum",
+    "amplitudes",
+    "low",
+    "cutoff",
+    "order",
+    "stretching",
+    "diffraction",
     "equivalent_frequency",
-)  # fmt: skip
+)
 STILL = 1e-6  # m, deg
 
 
@@ -118,13 +128,18 @@ def _document(data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> str:
     for heading, share in zip(data.heading.values.tolist(), data.probability.values.tolist()):
         headings[heading] = headings.get(heading, 0.0) + share
     document = about | {
-        "source": f"jaxhydro {jaxhydro.__version__}", "fingerprint": data.attrs["fingerprint"], "runs": runs,
-        "sea_states": len(set(_states(data))), "cases": data.sizes["case"],
+        "source": f"jaxhydro {jaxhydro.__version__}",
+        "fingerprint": data.attrs["fingerprint"],
+        "runs": runs,
+        "sea_states": len(set(_states(data))),
+        "cases": data.sizes["case"],
         "headings": [{"heading": heading, "probability": float(f"{share:.12g}")} for heading, share in headings.items()],
-        "seeds": data.seed.values.tolist(), "options": {name: data.attrs[name] for name in OPTIONS if name in data.attrs},
-        "probability_without_runs": summary.missing, "lifetime": lifetimes,
+        "seeds": data.seed.values.tolist(),
+        "options": {name: data.attrs[name] for name in OPTIONS if name in data.attrs},
+        "probability_without_runs": summary.missing,
+        "lifetime": lifetimes,
         "failures": [one._asdict() for one in summary.failures[:FAILURES]],
-    }  # fmt: skip
+    }
     return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 

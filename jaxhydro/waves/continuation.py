@@ -11,9 +11,7 @@ NEAR = 3.0  # of the shortest waves: how far from an end a record rings most
 RINGS = 2.0  # times what the components of a continued record miss there: a record whose own miss more is continued
 
 
-def continued(
-    record: Float[np.ndarray, " t"], step: float, low: float, cutoff: float, length: int
-) -> Float[np.ndarray, " n"]:
+def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: float, length: int) -> Float[np.ndarray, " n"]:
     """A record (m) at even steps (s), of mean 0, and what most likely follows until it begins anew after `length` steps; the
     record alone where its end meets its start: where what it has above the band is no larger there than in between, or its
     components follow its ends no better for it.
@@ -35,9 +33,9 @@ def continued(
         return jnp.fft.irfft(inside * jnp.fft.rfft(whole), length)[count:]
 
     none, nothing = jnp.zeros(length - count), jnp.zeros(count)
-    found = cg(
-        lambda p: (1 + RIDGE) * p - passed(p, nothing), passed(none, jnp.asarray(record)), tol=ACCURACY, maxiter=ROUNDS
-    )[0]
+    found = cg(lambda p: (1 + RIDGE) * p - passed(p, nothing), passed(none, jnp.asarray(record)), tol=ACCURACY, maxiter=ROUNDS)[
+        0
+    ]
     whole = np.concatenate([record, np.asarray(found)])
     near = min(int(np.ceil(NEAR / (cutoff * step))), count // 2)
     ends = np.r_[:near, count - near : count]

@@ -6,9 +6,7 @@ from jaxtyping import Array, Float
 
 
 @jax.custom_jvp
-def wavenumber(
-    omega: Float[Array, "..."], depth: Float[Array, "..."], gravity: Float[Array, "..."]
-) -> Float[Array, "..."]:
+def wavenumber(omega: Float[Array, "..."], depth: Float[Array, "..."], gravity: Float[Array, "..."]) -> Float[Array, "..."]:
     """Wavenumber k (rad/m) of angular frequency omega >= 0 (rad/s) in water of depth h (m), to rounding.
 
     Newton's iteration from the explicit formula of Guo (2002), Coastal Engineering 45, 71-74. Derivatives are implicit.

@@ -108,9 +108,12 @@ class WaveSea(AbstractSea):
             return found
         other = self._of(self.bound, time, points, level, above, cylinders)
         if cylinders is not None and not cylinders.bound:
-            other = Flow(other.velocity, other.acceleration, other.pressure, *(
-                None if x is None else jnp.zeros_like(x) for x in (other.diffracted, other.tuned)
-            ))
+            other = Flow(
+                other.velocity,
+                other.acceleration,
+                other.pressure,
+                *(None if x is None else jnp.zeros_like(x) for x in (other.diffracted, other.tuned)),
+            )
         return jax.tree.map(jnp.add, found, other)
 
     def _of(self, waves: PlaneWaves, time, points, level, above, cylinders: Cylinders | None) -> Flow:
@@ -239,9 +242,7 @@ def regular_wave(
     """
     if not (period > 0 and height >= 0):
         raise ValueError(f"a regular wave needs period > 0 s and height >= 0 m, found {period} s and {height} m")
-    one = components(
-        jnp.array([0.5 * height]), jnp.array([2 * math.pi / period]), environment, heading=heading, phase=phase
-    )
+    one = components(jnp.array([0.5 * height]), jnp.array([2 * math.pi / period]), environment, heading=heading, phase=phase)
     k = float(one.wavenumber[0])
     limit = 0.142 * 2 * math.pi / k * math.tanh(k * float(environment.depth))
     if height > limit:

@@ -30,9 +30,7 @@ class Box(NamedTuple):
     depth: float
 
     @classmethod
-    def of(
-        cls, points: Float[np.ndarray, "3 p"], heading: float, depth: float, excursion: float
-    ) -> "tuple[float, Box]":
+    def of(cls, points: Float[np.ndarray, "3 p"], heading: float, depth: float, excursion: float) -> "tuple[float, Box]":
         """Middle (m), along waves that travel to `heading` (rad), of where points of a hull may be that moves by up to
         `excursion` (m), and the box about it. It is a little larger, by shares of the excursion, so that hulls and
         headings nearly alike have the same."""
@@ -101,9 +99,7 @@ def _fields(k: np.ndarray, x: np.ndarray, z: np.ndarray, depth: float) -> np.nda
     kd = np.maximum(k * depth, 1e-9)
     sinh = np.where(k * depth > 1e-6, (down - up) / -np.expm1(-2 * kd), 1 + z[:, None] / depth)
     waves = (np.cos(phase), np.sin(phase))
-    return np.concatenate(
-        [(wave[:, None] * profile[None]).reshape(-1, k.size) for wave in waves for profile in (cosh, sinh)]
-    )
+    return np.concatenate([(wave[:, None] * profile[None]).reshape(-1, k.size) for wave in waves for profile in (cosh, sinh)])
 
 
 def weights(table: Float[Array, "g r"], spacing: float, k: Float[Array, " n"]) -> Float[Array, "n r"]:

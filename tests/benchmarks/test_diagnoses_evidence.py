@@ -9,11 +9,18 @@ from calibration.discovery.acceptance import Verdict
 def said(effects, error, alike=None, verdict="found", sources="now", motions=None, tried=None):
     """What is kept of one diagnosis."""
     return {
-        "verdict": verdict, "effects": effects, "motions": motions or [None] * len(effects),
-        "alike": alike or [[] for _ in effects], "error": [0.5, error], "sources": sources, "seconds": 1.0,
-        "tried": {words: Verdict(bic, 0.5, True, net, 5.0, 2.0, "" if in_it else "no")._asdict()
-                  for words, (bic, net, in_it) in (tried or {}).items()},
-    }  # fmt: skip
+        "verdict": verdict,
+        "effects": effects,
+        "motions": motions or [None] * len(effects),
+        "alike": alike or [[] for _ in effects],
+        "error": [0.5, error],
+        "sources": sources,
+        "seconds": 1.0,
+        "tried": {
+            words: Verdict(bic, 0.5, True, net, 5.0, 2.0, "" if in_it else "no")._asdict()
+            for words, (bic, net, in_it) in (tried or {}).items()
+        },
+    }
 
 
 RESULTS = {
@@ -50,15 +57,27 @@ def test_outcomes_are_counted_by_what_is_in_the_tank():
     outcomes = {case: outcome(case, result) for case, result in RESULTS.items()}
     tally = Tally.of(RESULTS, outcomes, factors(RESULTS))
     assert tally == Tally(
-        named=Share(3, 6), listed=Share(4, 6), near=Share(2, 6), told=Share(3, 6), alarms=Share(2, 3), both=Share(1, 2),
-        in_sets=Share(1, 2), unexplained=Share(1, 2), lower=Share(1, 2),
-    )  # fmt: skip
+        named=Share(3, 6),
+        listed=Share(4, 6),
+        near=Share(2, 6),
+        told=Share(3, 6),
+        alarms=Share(2, 3),
+        both=Share(1, 2),
+        in_sets=Share(1, 2),
+        unexplained=Share(1, 2),
+        lower=Share(1, 2),
+    )
 
 
 def test_a_page_of_them_says_what_falls_short():
     section = conclude(RESULTS, 0, Path("none.png"))
-    for words in ("named first in 3 of 6", "missing in 2 of 6; in 3 of 6", "named [current] 2.00", "static_offset or it 1.00",
-                  "Of 1 weak effects: 1 unexplained."):  # fmt: skip
+    for words in (
+        "named first in 3 of 6",
+        "missing in 2 of 6; in 3 of 6",
+        "named [current] 2.00",
+        "static_offset or it 1.00",
+        "Of 1 weak effects: 1 unexplained.",
+    ):
         assert words in section.text, words
     assert [line.split(",")[0] for line in section.short] == [
         "diagnosis: named first in 3 of 6",
@@ -72,9 +91,13 @@ def test_a_page_of_them_says_what_falls_short():
 
 def test_errors_are_over_those_with_nothing_missing_of_their_time():
     """A campaign with nothing missing is run again by other sources; of two effects one is, too."""
-    before = {"nothing-1": said([], 0.2, sources="then"), "nothing-2": said([], 0.3, sources="then"),
-              "current-2-1": said(["current"], 0.3, sources="then"), "umbilical-2-1": said(["umbilical"], 0.3, sources="then"),
-              "umbilical-2-2": said(["umbilical"], 0.3, sources="then")}  # fmt: skip
+    before = {
+        "nothing-1": said([], 0.2, sources="then"),
+        "nothing-2": said([], 0.3, sources="then"),
+        "current-2-1": said(["current"], 0.3, sources="then"),
+        "umbilical-2-1": said(["umbilical"], 0.3, sources="then"),
+        "umbilical-2-2": said(["umbilical"], 0.3, sources="then"),
+    }
     after = merged(merged(before, {"nothing-1": said([], 0.1)}), {"current-2-1": said(["current"], 0.15)})
     assert {name for name, one in after.items() if "floor" in one} == {"umbilical-2-1"} and merged(after, after) == after
     ratio = factors({Case.of(name): one for name, one in after.items()})

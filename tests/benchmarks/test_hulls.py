@@ -68,9 +68,7 @@ def test_natural_periods(name: str) -> None:
         assert found[dof] == pytest.approx(POTENTIAL[name]["periods"][dof], rel=within)
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=() if name == "iti-barge" else pytest.mark.slow) for name in CASES]
-)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name == "iti-barge" else pytest.mark.slow) for name in CASES])
 def test_a_small_regular_wave(name: str) -> None:
     """A strip afloat takes the waves as linear across its section, which shows in the ship section's roll."""
     case = CASES[name]

@@ -18,8 +18,10 @@ from benchmarks.reference_model import ReferenceModel, matrix_of, motions_of, st
 
 ROOT = Path(__file__).resolve().parents[2]
 RHO, G = 1025.0, 9.80665
-RADII, XY = np.array([5.0, 6.25, 6.25, 6.25]), np.array([[0.0, 0.0], *(
-    51.75 * np.array([np.cos(a), np.sin(a)]) for a in np.deg2rad([60, 180, 300]))])
+RADII, XY = (
+    np.array([5.0, 6.25, 6.25, 6.25]),
+    np.array([[0.0, 0.0], *(51.75 * np.array([np.cos(a), np.sin(a)]) for a in np.deg2rad([60, 180, 300]))]),
+)
 AREAS, PONTOONS = np.pi * RADII**2, 3 * 40.5 * 12.5 * 7.0
 VOLUME = 20 * AREAS.sum() + PONTOONS
 MASS_OF_ENDS = RHO * 2 / 3 * np.pi * (RADII**3).sum()
@@ -63,16 +65,19 @@ def states(model, y0, times):
 def test_shares_nothing_with_the_packages():
     for name in ("reference_model.py", "make_demo_campaign.py"):
         for node in ast.walk(ast.parse((ROOT / "benchmarks" / name).read_text())):
-            imported = [alias.name for alias in node.names] if isinstance(node, ast.Import) else (
-                [node.module or ""] if isinstance(node, ast.ImportFrom) else [])
+            imported = (
+                [alias.name for alias in node.names]
+                if isinstance(node, ast.Import)
+                else ([node.module or ""] if isinstance(node, ast.ImportFrom) else [])
+            )
             assert not {module.split(".")[0] for module in imported} & {"jaxhydro", "calibration", "jax"}
 
 
 def test_angles():
     q = np.array([1.0, 2.0, 3.0, 0.2, -0.3, 0.4])
     assert_allclose(motions_of(state_of(q)[None])[0], q, rtol=1e-13)
-    assert matrix_of(state_of([0, 0, 0, 0, 0.1, 0])[3:7])[0, 2] == pytest.approx(np.sin(0.1))     # leans to +x
-    turn = Rotation.from_euler("xyz", q[3:]).as_matrix()                                          # extrinsic: Rz Ry Rx
+    assert matrix_of(state_of([0, 0, 0, 0, 0.1, 0])[3:7])[0, 2] == pytest.approx(np.sin(0.1))  # leans to +x
+    turn = Rotation.from_euler("xyz", q[3:]).as_matrix()  # extrinsic: Rz Ry Rx
     assert_allclose(matrix_of(state_of(q)[3:7]), turn, atol=1e-14)
 
 
@@ -83,19 +88,21 @@ def test_hydrostatics_closed_form():
     assert found["displaced_volume"] == pytest.approx(VOLUME, rel=1e-12)
     assert found["C33"] == pytest.approx(RHO * G * AREAS.sum(), rel=1e-12)
     for k, dof, name in ((1, 3, "C44"), (0, 4, "C55")):
-        buoyancy = RHO * G * ((AREAS * XY[:, k]**2 + np.pi * RADII**4 / 4).sum() + VOLUME * z_b)
+        buoyancy = RHO * G * ((AREAS * XY[:, k] ** 2 + np.pi * RADII**4 / 4).sum() + VOLUME * z_b)
         assert found[name + "_buoyancy"] == pytest.approx(buoyancy, rel=1e-12)
         assert found[name] == pytest.approx(buoyancy + demo.MASS * G * 2.4, rel=1e-12)
-        assert stiffness(model, dof) == pytest.approx(found[name], rel=1e-6)                      # of the moment itself
+        assert stiffness(model, dof) == pytest.approx(found[name], rel=1e-6)  # of the moment itself
     assert stiffness(model, 2) == pytest.approx(found["C33"], rel=1e-9)
 
 
 def test_inclined_and_rectangular_waterplanes():
-    members = [{"name": "leg", "group": "column", "shape": "circ", "d": 6.0, "rA": [10, 2, -20], "rB": [20, 4, 12]},
-               {"name": "box", "group": "column", "shape": "rect", "d": [8.0, 5.0],
-                "rA": [-9, 0, -15], "rB": [-9, 1, 9]}]
-    model = model_of(members=members, rigid_body={"mass": 1e5, "centre_of_mass": [0, 0, -5],
-                                                  "inertia": {"Ixx": 1e9, "Iyy": 1e9, "Izz": 1e9}})
+    members = [
+        {"name": "leg", "group": "column", "shape": "circ", "d": 6.0, "rA": [10, 2, -20], "rB": [20, 4, 12]},
+        {"name": "box", "group": "column", "shape": "rect", "d": [8.0, 5.0], "rA": [-9, 0, -15], "rB": [-9, 1, 9]},
+    ]
+    model = model_of(
+        members=members, rigid_body={"mass": 1e5, "centre_of_mass": [0, 0, -5], "inertia": {"Ixx": 1e9, "Iyy": 1e9, "Izz": 1e9}}
+    )
     found = model.geometry_hydrostatics()
     weight = np.array([0, 0, RHO * G * found["displaced_volume"] - 1e5 * G])
     for dof, name in ((2, "C33"), (3, "C44"), (4, "C55")):
@@ -125,7 +132,7 @@ def test_mooring():
     assert stiffness(model, 0) == pytest.approx(horizontal, rel=1e-5)
     assert stiffness(model, 2) - stiffness(free, 2) == pytest.approx(3 * 1.5e6 / span, rel=1e-5)
     assert stiffness(model, 5) == pytest.approx(3 * 1.5e6 * 58.0 * 300.0 / span, rel=1e-5)
-    for line in springs["lines"]:                                                # the same springs said in another way
+    for line in springs["lines"]:  # the same springs said in another way
         length = np.linalg.norm(np.subtract(line["anchor"], line["fairlead"]))
         line["unstretched_length"] = length - line.pop("pretension") / line["stiffness"]
         line["axial_stiffness"] = line.pop("stiffness") * line["unstretched_length"]
@@ -142,7 +149,7 @@ def test_equilibrium_is_at_rest():
     q = model.equilibrium()
     assert q[4] > 0.01 and q[3] < -0.003
     assert np.abs(model.rate(0.0, state_of(q))).max() < 1e-9
-    assert np.abs(ReferenceModel(platform()).equilibrium()).max() < 1e-4         # by symmetry; fairleads are rounded
+    assert np.abs(ReferenceModel(platform()).equilibrium()).max() < 1e-4  # by symmetry; fairleads are rounded
 
 
 def test_heave_is_the_analytic_oscillator():
@@ -155,12 +162,14 @@ def test_heave_is_the_analytic_oscillator():
     assert_allclose(q[:, 2], 2.0 * np.cos(omega * t) - rest, atol=1e-6)
     assert np.abs(np.delete(q, 2, axis=1)).max() < 1e-9
 
-    model = model_of(linear_damping={"B33": 1.6e5}, coefficients=coefficients(
-        pontoon_Ca_z=1.87, column_Ca_z=0.12, pontoon_Cd_z=4.96, column_Cd_z=2.23))
+    model = model_of(
+        linear_damping={"B33": 1.6e5},
+        coefficients=coefficients(pontoon_Ca_z=1.87, column_Ca_z=0.12, pontoon_Cd_z=4.96, column_Cd_z=2.23),
+    )
     drag = 0.5 * RHO * (4.96 * 3 * 40.5 * 12.5 + 2.23 * AREAS.sum())
 
     def oscillator(t, y):
-        return [y[1], -omega**2 * y[0] - (1.6e5 * y[1] + drag * abs(y[1]) * y[1]) / mass]
+        return [y[1], -(omega**2) * y[0] - (1.6e5 * y[1] + drag * abs(y[1]) * y[1]) / mass]
 
     t, q = model.decay([0, 0, 3.0, 0, 0, 0], duration=100.0, tolerance=1e-10)
     exact = solve_ivp(oscillator, (0, 100), [3.0, 0.0], method="DOP853", t_eval=t, rtol=1e-11, atol=1e-11).y[0]
@@ -184,8 +193,11 @@ def test_surge_drag_by_hand():
 
 def test_equations_of_motion_by_momentum():
     """d/dt of linear and angular momentum about the earth's origin = loads, with finite differences of positions."""
-    model = ReferenceModel(platform(coefficients=coefficients(
-        column_Ca_t=1.5, column_Ca_z=0.4, pontoon_Ca_t=0.3, pontoon_Ca_z=1.9), linear_damping={}))
+    model = ReferenceModel(
+        platform(
+            coefficients=coefficients(column_Ca_t=1.5, column_Ca_z=0.4, pontoon_Ca_t=0.3, pontoon_Ca_z=1.9), linear_damping={}
+        )
+    )
     y0, h = state_of([3.0, 1.0, 0.6, 0.05, 0.1, 0.2], [0.5, -0.4, 0.3, 0.05, -0.04, 0.06]), 0.02
     track = [solve_ivp(model.rate, (0, end), y0, "DOP853", rtol=1e-12, atol=1e-12).y[:, -1] for end in (-h, 0, h)]
 
@@ -201,7 +213,7 @@ def test_equations_of_motion_by_momentum():
     load[3:] += np.cross(y0[:3], load[:3])
     body_points = np.hstack([turn.T @ offset, turn.T @ offset, model.end_node])
     before, at, after = (y[:3, None] + matrix_of(y[3:7]) @ body_points for y in track)
-    wet = np.concatenate([share, share, at[2, 2 * share.size:] < 0])
+    wet = np.concatenate([share, share, at[2, 2 * share.size :] < 0])
     acceleration, along = (before - 2 * at + after) / h**2, turn @ model.directions
     force = -model.direction_mass * wet * (along * acceleration).sum(axis=0) * along
     load += np.hstack([force.sum(axis=1), np.cross(at.T, force.T).sum(axis=0)])
@@ -225,8 +237,8 @@ def test_energy_is_conserved():
         for line in lines:
             slack = np.linalg.norm(np.subtract(line["anchor"], line["fairlead"])) - 1.5e6 / 45000.0
             span = np.linalg.norm(line["anchor"] - position - turn @ line["fairlead"])
-            total += 0.5 * 45000.0 * (span - slack)**2
-        for (x, y_), radius, area in zip(XY, RADII, AREAS):              # -rho g times the integral of z, slanted top
+            total += 0.5 * 45000.0 * (span - slack) ** 2
+        for (x, y_), radius, area in zip(XY, RADII, AREAS):  # -rho g times the integral of z, slanted top
             bottom, lean = (position + turn @ [x, y_, -20.0])[2], turn[2, 2]
             total += RHO * G * (area * bottom**2 / (2 * lean) + np.pi * radius**4 / 8 * (1 - lean**2) / lean)
         for x, y_ in XY[1:]:
@@ -245,16 +257,20 @@ def test_pitch_amplitude_is_kept_with_added_mass():
     model = ReferenceModel(platform(coefficients=masses_only, linear_damping={}))
     t, q = model.decay([0, 0, 0, 0, np.deg2rad(3.0), 0], duration=300.0, tolerance=1e-9)
     early, late = np.ptp(q[t < 150.0][:, [0, 4]], axis=0), np.ptp(q[t > 150.0][:, [0, 4]], axis=0)
-    assert_allclose(late, early, rtol=0.01)                              # both halves hold cycles of both modes
+    assert_allclose(late, early, rtol=0.01)  # both halves hold cycles of both modes
 
 
 def test_rk4_is_of_fourth_order():
-    model = ReferenceModel(platform(coefficients=coefficients(pontoon_Ca_z=1.87, pontoon_Ca_t=0.1),
-                                    linear_damping=demo.TRUE_DAMPING), strip=5.0, pontoon_strip=10.0)
+    model = ReferenceModel(
+        platform(coefficients=coefficients(pontoon_Ca_z=1.87, pontoon_Ca_t=0.1), linear_damping=demo.TRUE_DAMPING),
+        strip=5.0,
+        pontoon_strip=10.0,
+    )
     offset = [4.0, 1.0, 1.0, 0.02, 0.05, 0.03]
     exact = model.decay(offset, duration=48.0, dt=4.0, tolerance=1e-13)[1]
-    errors = [np.abs(model.decay(offset, duration=48.0, dt=4.0, method="rk4", step=step)[1] - exact).max()
-              for step in (2.0, 1.0, 0.5)]
+    errors = [
+        np.abs(model.decay(offset, duration=48.0, dt=4.0, method="rk4", step=step)[1] - exact).max() for step in (2.0, 1.0, 0.5)
+    ]
     assert 12 < errors[0] / errors[1] < 22 and 12 < errors[1] / errors[2] < 22
     with pytest.raises(ValueError, match="whole number"):
         model.decay(offset, method="rk4", dt=0.2, step=0.15)
@@ -283,8 +299,7 @@ def test_shipped_campaign_is_what_the_script_makes(tmp_path):
     assert {path.name for path in made} == {path.name for path in demo.FOLDER.iterdir()}
     manifest = YAML(typ="safe").load(demo.FOLDER / "campaign.yaml")
     for test in manifest["tests"]:
-        new, shipped = (np.loadtxt(folder / test["file"], delimiter=",", skiprows=1)
-                        for folder in (tmp_path, demo.FOLDER))
+        new, shipped = (np.loadtxt(folder / test["file"], delimiter=",", skiprows=1) for folder in (tmp_path, demo.FOLDER))
         assert_allclose(new, shipped, atol=1e-4)
         clean = demo.clean_motion(test["degree_of_freedom"], int(test["id"][-1]) - 1, demo.RELEASE_SEED)[1]
         assert_allclose((shipped[:, 1:] - clean).std(axis=0), list(manifest["noise"].values()), rtol=0.1)

@@ -21,18 +21,21 @@ ROOT = Path(__file__).resolve().parents[2]
 OPENFAST = ROOT.parent / "shared" / "reference" / "openfast"
 needs_openfast = pytest.mark.skipif(not OPENFAST.exists(), reason=f"OpenFAST's runs are not at {OPENFAST}")
 RHO, G, DEPTH = 1025.0, 9.81, 200.0
-STANDARD = 9.80665                                                       # physics.md's numbers
-SEA = [[1.2, 0.5, 0.3, 0.4], [0.9, 0.62, -0.5, 1.9], [0.7, 0.62, 0.8, -2.0], [0.5, 0.8, 2.0, 0.7]]   # a, omega, to, phase
+STANDARD = 9.80665  # physics.md's numbers
+SEA = [[1.2, 0.5, 0.3, 0.4], [0.9, 0.62, -0.5, 1.9], [0.7, 0.62, 0.8, -2.0], [0.5, 0.8, 2.0, 0.7]]  # a, omega, to, phase
 
 
 def column(d=1.0, draught=20.0, top=10.0, x=0.0, coefficients=None, **more):
     """One heavy column upright in the water; coefficients Ca_t, Ca_z, Cd_t, Cd_z are zero but for those given."""
     zero = dict.fromkeys(("Ca_t", "Ca_z", "Cd_t", "Cd_z"), 0.0)
-    return {"water": {"density": RHO, "depth": DEPTH, "gravity": G},
-            "rigid_body": {"mass": 1e6, "centre_of_mass": [0, 0, 0], "inertia": {"Ixx": 1e8, "Iyy": 1e8, "Izz": 1e8}},
-            "members": [{"name": "c", "group": "column", "shape": "circ", "d": d, "rA": [x, 0, -draught],
-                         "rB": [x, 0, top]} | more],
-            "coefficients": {"column": zero | (coefficients or {})}}
+    return {
+        "water": {"density": RHO, "depth": DEPTH, "gravity": G},
+        "rigid_body": {"mass": 1e6, "centre_of_mass": [0, 0, 0], "inertia": {"Ixx": 1e8, "Iyy": 1e8, "Izz": 1e8}},
+        "members": [
+            {"name": "c", "group": "column", "shape": "circ", "d": d, "rA": [x, 0, -draught], "rB": [x, 0, top]} | more
+        ],
+        "coefficients": {"column": zero | (coefficients or {})},
+    }
 
 
 def read(path) -> dict:
@@ -45,8 +48,11 @@ def read(path) -> dict:
 
 def test_shares_nothing_with_the_packages():
     for node in ast.walk(ast.parse((ROOT / "benchmarks" / "reference_waves.py").read_text())):
-        imported = [alias.name for alias in node.names] if isinstance(node, ast.Import) else (
-            [node.module or ""] if isinstance(node, ast.ImportFrom) else [])
+        imported = (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else ([node.module or ""] if isinstance(node, ast.ImportFrom) else [])
+        )
         assert not {module.split(".")[0] for module in imported} & {"jaxhydro", "calibration", "jax"}
 
 
@@ -58,8 +64,12 @@ def test_dispersion():
 
 
 # physics.md: elevations per a1 a2 (two components) and per a^2 (one)
-PAIRS = [(10, 12, 200, 0.0341086, -0.0062597), (10, 12, 30, 0.0805185, -0.0495613),
-         (8, 9, 200, 0.0563005, -0.0066768), (8, 9, 30, 0.0749829, -0.0299645)]
+PAIRS = [
+    (10, 12, 200, 0.0341086, -0.0062597),
+    (10, 12, 30, 0.0805185, -0.0495613),
+    (8, 9, 200, 0.0563005, -0.0066768),
+    (8, 9, 30, 0.0749829, -0.0299645),
+]
 
 
 @pytest.mark.parametrize("t1, t2, depth, plus, minus", PAIRS)
@@ -77,10 +87,10 @@ def test_stokes_and_set_down():
         waves = Waves(1.0, 2 * np.pi / 10, depth=depth, gravity=STANDARD, order=2)
         k, kh = waves.k[0], waves.k[0] * depth
         assert waves.elevation[1] == pytest.approx(second, rel=1e-5)
-        assert waves.elevation[1] == pytest.approx(k / 4 * np.cosh(kh) * (2 + np.cosh(2 * kh)) / np.sinh(kh)**3)
+        assert waves.elevation[1] == pytest.approx(k / 4 * np.cosh(kh) * (2 + np.cosh(2 * kh)) / np.sinh(kh) ** 3)
         assert waves.elevation[2] == pytest.approx(-k / (2 * np.sinh(2 * kh)))
         assert down is None or waves.elevation[2] == pytest.approx(down, rel=2e-5)
-        assert waves.potential[1] == pytest.approx(3 / 8 * waves.omega[0] / np.sinh(kh)**4 * np.cosh(2 * kh), abs=1e-12)
+        assert waves.potential[1] == pytest.approx(3 / 8 * waves.omega[0] / np.sinh(kh) ** 4 * np.cosh(2 * kh), abs=1e-12)
         assert waves.potential[2] == 0 and len(Waves(1.0, 0.6, order=2, set_down=False)) == 2
     banded = Waves([1, 1, 1], [0.4, 0.5, 0.9], order=2, set_down=False, sum_band=(0.85, 1.1), difference_band=(0, 0.45))
     assert_allclose(np.sort(banded.omega[banded.bound]), [0.1, 0.4, 0.9, 1.0])
@@ -146,7 +156,7 @@ def test_stretching_profiles():
     k = wavenumber(omega, depth, G)
     points = np.stack([0 * z, 0 * z, z])
 
-    def along(stretching, t=0.0):                                        # t = 0 is the crest
+    def along(stretching, t=0.0):  # t = 0 is the crest
         return Waves(a, omega, depth=depth, gravity=G, stretching=stretching).kinematics(t, points)[0][0]
 
     unit = a * omega / np.sinh(k * depth)
@@ -165,10 +175,10 @@ def test_drag_up_to_the_crest(stretching):
     model = WaveModel(column(coefficients={"Cd_t": 1.2}), Waves(a, omega, gravity=G, depth=DEPTH, stretching=stretching), 0.13)
     squares = {None: (1 - np.exp(-2 * k * draught)) / (2 * k)}
     squares["vertical"] = squares[None] + a
-    squares["extrapolation"] = squares[None] + ((1 + k * a)**3 - 1) / (3 * k)
+    squares["extrapolation"] = squares[None] + ((1 + k * a) ** 3 - 1) / (3 * k)
     m = k * DEPTH / (DEPTH + a)
     squares["wheeler"] = (1 - np.exp(-2 * m * (draught + a))) / (2 * m)
-    assert model.wave_load(0.0)[0] == pytest.approx(0.5 * RHO * 1.2 * (a * omega)**2 * squares[stretching], rel=1e-4)
+    assert model.wave_load(0.0)[0] == pytest.approx(0.5 * RHO * 1.2 * (a * omega) ** 2 * squares[stretching], rel=1e-4)
 
 
 def test_small_cylinder_in_a_long_wave():
@@ -199,9 +209,18 @@ def test_headings_turn_the_load():
 
 
 # physics.md: ka, modulus, lag in degrees
-FACTORS = [(0.05, 2.00654, 0.113), (0.1, 2.01918, 0.453), (0.2, 2.04756, 1.816), (0.3, 2.06423, 4.043),
-           (0.5, 2.00563, 10.298), (0.75, 1.72991, 17.735), (1.0, 1.37162, 20.504), (1.5, 0.84204, 12.013),
-           (2.0, 0.56083, -6.522), (3.0, 0.30773, -54.245)]
+FACTORS = [
+    (0.05, 2.00654, 0.113),
+    (0.1, 2.01918, 0.453),
+    (0.2, 2.04756, 1.816),
+    (0.3, 2.06423, 4.043),
+    (0.5, 2.00563, 10.298),
+    (0.75, 1.72991, 17.735),
+    (1.0, 1.37162, 20.504),
+    (1.5, 0.84204, 12.013),
+    (2.0, 0.56083, -6.522),
+    (3.0, 0.30773, -54.245),
+]
 
 
 def test_diffraction_factor():
@@ -210,13 +229,13 @@ def test_diffraction_factor():
     assert_allclose(np.abs(found), modulus, atol=6e-6)
     assert_allclose(-np.degrees(np.angle(found)), lag, atol=6e-4)
     assert diffraction(0.0) == pytest.approx(2.0, abs=1e-9)
-    angle = np.arange(200) * 2 * np.pi / 200                             # the pressure on the circle by its series
+    angle = np.arange(200) * 2 * np.pi / 200  # the pressure on the circle by its series
     for x, factor in zip(ka, found):
         total = 0.0
         for m in range(25):
             scattered = jv(m, x) - jvp(m, x) / h2vp(m, x) * hankel2(m, x)
-            total = total + (1 if m == 0 else 2) * (-1j)**m * scattered * np.cos(m * angle)
-        push = -(total * np.cos(angle)).mean() * 2 * np.pi               # force over g a0 r, exp(i omega t)
+            total = total + (1 if m == 0 else 2) * (-1j) ** m * scattered * np.cos(m * angle)
+        push = -(total * np.cos(angle)).mean() * 2 * np.pi  # force over g a0 r, exp(i omega t)
         assert push / (np.pi * 1j * x) == pytest.approx(factor, rel=1e-10)
 
 
@@ -249,8 +268,13 @@ def test_no_waves_is_still_water_and_the_order_of_the_steps():
     _, calm = rk4(ReferenceModel(platform, 1.0), q0, v0, 0.1, 3.0)
     for method, atol in (("rk4", 1e-13), ("ab4", 3e-5)):
         assert_allclose(march(WaveModel(platform, flat, 1.0), q0, v0, 0.1, 3.0, method)[1], calm, atol=atol)
-    smooth = WaveModel(column(d=8.0, coefficients={"Ca_t": 0.9, "Ca_z": 0.4}), Waves([0.5, 0.4], [0.7, 1.2], 0.3, depth=DEPTH,
-                                                                              gravity=G), 1.0, wetting="mean", displaced="xy")
+    smooth = WaveModel(
+        column(d=8.0, coefficients={"Ca_t": 0.9, "Ca_z": 0.4}),
+        Waves([0.5, 0.4], [0.7, 1.2], 0.3, depth=DEPTH, gravity=G),
+        1.0,
+        wetting="mean",
+        displaced="xy",
+    )
     exact = march(smooth, q0, v0, 0.0125, 4.0, "rk4")[1][-1]
     for method in ("rk4", "ab4"):
         one, half = (np.abs(march(smooth, q0, v0, step, 4.0, method)[1][-1] - exact).max() for step in (0.1, 0.05))
@@ -275,8 +299,9 @@ def test_wrong_options_are_refused():
 @pytest.mark.parametrize("name", ["reg", "comp"])
 @pytest.mark.parametrize("order", [1, 2])
 def test_sea_state_against_openfast(name, order):
-    omega, amplitude, phase, k = np.loadtxt(OPENFAST / "seastate" / f"{name}_components.csv", delimiter=",", skiprows=1,
-                                            ndmin=2).T
+    omega, amplitude, phase, k = np.loadtxt(
+        OPENFAST / "seastate" / f"{name}_components.csv", delimiter=",", skiprows=1, ndmin=2
+    ).T
     waves = Waves(amplitude, omega, 0.0, np.radians(phase), DEPTH, G, order=order, set_down=False)
     assert_allclose(waves.k[~waves.bound], k, rtol=1e-9)
     for x in (0.0, 50.0):
@@ -286,9 +311,13 @@ def test_sea_state_against_openfast(name, order):
         velocity, acceleration, pressure = (np.array(part) for part in zip(*rows))
         found = {"Wave1Elev": np.array([waves.surface(t, x, 0.0)[0] for t in table["Time"]])}
         for j in range(5):
-            found |= {f"FVel{j + 1}xi": velocity[:, 0, j], f"FVel{j + 1}zi": velocity[:, 2, j],
-                      f"FAcc{j + 1}xi": acceleration[:, 0, j], f"FAcc{j + 1}zi": acceleration[:, 2, j],
-                      f"FDynP{j + 1}": RHO * pressure[:, j]}
+            found |= {
+                f"FVel{j + 1}xi": velocity[:, 0, j],
+                f"FVel{j + 1}zi": velocity[:, 2, j],
+                f"FAcc{j + 1}xi": acceleration[:, 0, j],
+                f"FAcc{j + 1}zi": acceleration[:, 2, j],
+                f"FDynP{j + 1}": RHO * pressure[:, j],
+            }
         for key, series in found.items():
             assert np.abs(series - table[key]).max() < 1e-5 * np.abs(table[key]).max(), key
 
@@ -298,23 +327,41 @@ def volturnus(setup) -> dict:
     round_, around = {"group": "column", "shape": "circ"}, {"heading": [60, 180, 300]}
     return {
         "water": {"density": RHO, "depth": DEPTH, "gravity": G},
-        "rigid_body": {"mass": setup["mass"], "centre_of_mass": [0, 0, setup["zcg"]],
-                       "inertia": {key: setup[key] for key in ("Ixx", "Iyy", "Izz")}},
+        "rigid_body": {
+            "mass": setup["mass"],
+            "centre_of_mass": [0, 0, setup["zcg"]],
+            "inertia": {key: setup[key] for key in ("Ixx", "Iyy", "Izz")},
+        },
         "members": [
             round_ | {"name": "centre", "d": 10.0, "rA": [0, 0, -20], "rB": [0, 0, 15], "maccamy_fuchs": False},
             round_ | around | {"name": "outer", "d": 12.5, "rA": [51.75, 0, -20], "rB": [51.75, 0, 15]},
-            around | {"name": "pontoon", "group": "pontoon", "shape": "rect", "d": [12.5, 7.0],
-                      "rA": [3.778677, 0, -16.5], "rB": [46.721323, 0, -16.5]}],
-        "coefficients": {"column": {"Ca_t": 1.5, "Ca_z": 0.12, "Cd_t": 2.09, "Cd_z": 2.23},
-                         "pontoon": {"Ca_t": 0.11, "Ca_z": 1.87, "Cd_t": 1.84, "Cd_z": 4.96}},
+            around
+            | {
+                "name": "pontoon",
+                "group": "pontoon",
+                "shape": "rect",
+                "d": [12.5, 7.0],
+                "rA": [3.778677, 0, -16.5],
+                "rB": [46.721323, 0, -16.5],
+            },
+        ],
+        "coefficients": {
+            "column": {"Ca_t": 1.5, "Ca_z": 0.12, "Cd_t": 2.09, "Cd_z": 2.23},
+            "pontoon": {"Ca_t": 0.11, "Ca_z": 1.87, "Cd_t": 1.84, "Cd_z": 4.96},
+        },
         "linear_damping": {"B11": 4.4e4, "B22": 4.4e4, "B33": 1.6e5, "B44": 3.63e8, "B55": 3.63e8},
-        "mooring": {"kind": "stiffness_matrix", "stiffness": setup["AddCLin"], "preload": [0, 0, setup["AddF0"][2], 0, 0, 0]}}
+        "mooring": {"kind": "stiffness_matrix", "stiffness": setup["AddCLin"], "preload": [0, 0, setup["AddF0"][2], 0, 0, 0]},
+    }
 
 
 AS_OPENFAST = {"pontoon_ends": True, "diffraction_phase": False, "diffraction_bound": False, "fixed_directions": True}
-CASES = {"c1": ({}, {}), "c2": ({"order": 2}, {}), "c1mcf": ({}, {"maccamy_fuchs": True}),
-         "c1st": ({"stretching": "vertical"}, {}),
-         "c3": ({"order": 2, "stretching": "vertical"}, {"maccamy_fuchs": True})}
+CASES = {
+    "c1": ({}, {}),
+    "c2": ({"order": 2}, {}),
+    "c1mcf": ({}, {"maccamy_fuchs": True}),
+    "c1st": ({"stretching": "vertical"}, {}),
+    "c3": ({"order": 2, "stretching": "vertical"}, {"maccamy_fuchs": True}),
+}
 
 
 def openfast(kind, case, **changes):
@@ -338,7 +385,7 @@ def test_fixed_hull_against_openfast(case):
     found[:, 2] += static
     for dof, channel in ((0, "HydroFxi"), (2, "HydroFzi"), (4, "HydroMyi")):
         series = table[channel][::8]
-        share = np.sqrt(((found[:, dof] - series)**2).mean()) / series.std()
+        share = np.sqrt(((found[:, dof] - series) ** 2).mean()) / series.std()
         print(f"{case} {channel}: {100 * share:.2f} %")
         assert share < 5e-3, channel
 
@@ -349,7 +396,7 @@ def test_the_phase_of_diffraction_matters():
     table, _, model = openfast("fixed", "c1mcf", diffraction_phase=True)
     series = table["HydroFxi"][::20]
     found = [model.wave_load(t)[0] for t in table["Time"][::20]]
-    assert 0.05 < np.sqrt(((found - series)**2).mean()) / series.std() < 0.09
+    assert 0.05 < np.sqrt(((found - series) ** 2).mean()) / series.std() < 0.09
 
 
 @needs_openfast
@@ -362,6 +409,6 @@ def test_free_hull_against_openfast(case):
     limits = (0.04, 0.004, 0.01) if case == "c3" else (0.004, 0.004, 0.006)
     for (dof, channel, unit), limit in zip(((0, "Surge", 1), (2, "Heave", 1), (4, "Pitch", 180 / np.pi)), limits):
         series = table["Ptfm" + channel][::2]
-        share = np.sqrt(((q[:, dof] * unit - series)**2).mean()) / series.std()
+        share = np.sqrt(((q[:, dof] * unit - series) ** 2).mean()) / series.std()
         print(f"{case} {channel}: {100 * share:.2f} %")
         assert share < limit, channel

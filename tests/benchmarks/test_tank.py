@@ -47,8 +47,11 @@ def short(monkeypatch):
 @pytest.mark.parametrize("name", ["tank.py", "tank_effects.py"])
 def test_shares_nothing_with_the_packages(name):
     for node in ast.walk(ast.parse((ROOT / "benchmarks" / name).read_text())):
-        imported = [alias.name for alias in node.names] if isinstance(node, ast.Import) else (
-            [node.module or ""] if isinstance(node, ast.ImportFrom) else [])
+        imported = (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else ([node.module or ""] if isinstance(node, ast.ImportFrom) else [])
+        )
         assert not {module.split(".")[0] for module in imported} & {"jaxhydro", "calibration", "jax"}
 
 
@@ -88,8 +91,11 @@ def test_waves_are_the_reference_models():
 
 
 def test_rests_and_keeps_its_energy():
-    zero = {"column": dict(Ca_t=1.2, Ca_z=0.3, Cd_t=0.0, Cd_z=0.0), "pontoon": dict(Ca_t=0.3, Ca_z=1.8, Cd_t=0.0, Cd_z=0.0),
-            "damping": dict(B11=0.0, B33=0.0, B55=0.0)}
+    zero = {
+        "column": dict(Ca_t=1.2, Ca_z=0.3, Cd_t=0.0, Cd_z=0.0),
+        "pontoon": dict(Ca_t=0.3, Ca_z=1.8, Cd_t=0.0, Cd_z=0.0),
+        "damping": dict(B11=0.0, B33=0.0, B55=0.0),
+    }
     conservative = [None, "hidden_oscillator", "nonlinear_hydrostatics", "parametric_pitch", "mooring_nonlinearity", "end_stop"]
     tanks = [Setup(Spec(effect=effect, strength=1, coefficients=zero, seed=SEED)) for effect in conservative]
     for setup in tanks:
@@ -101,7 +107,7 @@ def test_rests_and_keeps_its_energy():
     y[:, 1] += 3.0
     heave = one.march(y, 200.0)[..., 1] - one.equilibrium[:, None, 1]
     crests = [x[1:-1][(x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])] for x in heave]
-    for crest in crests:                                                 # a sample is at most 0.05 % below its crest
+    for crest in crests:  # a sample is at most 0.05 % below its crest
         assert len(crest) >= 9
         assert_allclose(crest, 3.0, rtol=2e-3)
 
@@ -109,13 +115,18 @@ def test_rests_and_keeps_its_energy():
 @pytest.mark.slow
 def test_campaigns_files(monkeypatch, tmp_path):
     monkeypatch.setattr(tank, "DURATIONS", {"surge": 24.0, "heave": 16.0, "pitch": 20.0, "sea": 30.0})
-    specs = [Spec(tmp_path / "null", None, 2, SEED), Spec(tmp_path / "two", ["umbilical", "coulomb_friction:pitch"], 2, SEED),
-             Spec(tmp_path / "other", "umbilical", 3, SEED), Spec(tmp_path / "lag", "sensor_lag", 3, SEED)]
+    specs = [
+        Spec(tmp_path / "null", None, 2, SEED),
+        Spec(tmp_path / "two", ["umbilical", "coulomb_friction:pitch"], 2, SEED),
+        Spec(tmp_path / "other", "umbilical", 3, SEED),
+        Spec(tmp_path / "lag", "sensor_lag", 3, SEED),
+    ]
     assert len(specs) <= tank.BATCH
     truths = make_campaigns(specs)
     manifest = read(tmp_path / "null" / "campaign.yaml")
     assert sorted(path.name for path in (tmp_path / "null").iterdir()) == sorted(
-        ["campaign.yaml", "platform.yaml", *(test["file"] for test in manifest["tests"])])
+        ["campaign.yaml", "platform.yaml", *(test["file"] for test in manifest["tests"])]
+    )
     for test in manifest["tests"]:
         path = tmp_path / "null" / test["file"]
         sea = test["kind"] == "irregular"
@@ -135,7 +146,7 @@ def test_campaigns_files(monkeypatch, tmp_path):
     names = [word for name in tank_effects.EFFECTS for word in (name, name.split("_")[0] + " ")]
     for path in (tmp_path / "two").iterdir():
         assert not any(name in path.read_text() for name in names)
-    make_campaigns([Spec(tmp_path / "again", "umbilical", 3, SEED)])     # alone or among others
+    make_campaigns([Spec(tmp_path / "again", "umbilical", 3, SEED)])  # alone or among others
     for path in (tmp_path / "other").iterdir():
         assert path.read_bytes() == (tmp_path / "again" / path.name).read_bytes()
 
@@ -210,11 +221,14 @@ def parts(records) -> dict:
 
 @pytest.mark.slow
 def test_every_effect_acts_where_it_should(short):
-    every = {f"{name}:{variant}" if variant else name
-             for name, law in tank_effects.EFFECTS.items() for variant in law.variants()}
+    every = {
+        f"{name}:{variant}" if variant else name for name, law in tank_effects.EFFECTS.items() for variant in law.variants()
+    }
     assert every == set(CHANGES)
-    records = simulate([Setup(Spec(effect=effect, strength=2, seed=SEED)) for effect in (None, *CHANGES)],
-                       ["surge-2", "heave-2", "pitch-2", "sea-2"])
+    records = simulate(
+        [Setup(Spec(effect=effect, strength=2, seed=SEED)) for effect in (None, *CHANGES)],
+        ["surge-2", "heave-2", "pitch-2", "sea-2"],
+    )
     null = parts(records[0])
     for (effect, (changed, same)), record in zip(CHANGES.items(), records[1:]):
         difference = {name: np.abs(series - null[name]).max() for name, series in parts(record).items()}
@@ -225,7 +239,11 @@ def test_every_effect_acts_where_it_should(short):
 
 
 def test_what_cannot_be_made():
-    for effect, strength, word in (("gravity_waves", 2, "have umbilical"), ("umbilical:big", 2, "no variant"),
-                                   (["umbilical", "umbilical"], 1, "twice"), (None, 4, "strength")):
+    for effect, strength, word in (
+        ("gravity_waves", 2, "have umbilical"),
+        ("umbilical:big", 2, "no variant"),
+        (["umbilical", "umbilical"], 1, "twice"),
+        (None, 4, "strength"),
+    ):
         with pytest.raises(ValueError, match=word):
             Setup(Spec(effect=effect, strength=strength))

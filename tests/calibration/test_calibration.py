@@ -31,15 +31,18 @@ UNITS = {"surge": "m", "sway": "m", "heave": "m", "roll": "rad", "pitch": "rad",
 SHIP = {
     "name": "a ship",
     "water": {"density": 1000.0, "depth": 5.0, "gravity": 9.81},
-    "rigid_body": {"mass": 994.0, "centre_of_mass": [0.0, 0.0, -0.0324],
-                   "inertia": {"Ixx": 115.7, "Iyy": 1376.0, "Izz": 1376.0}},
+    "rigid_body": {
+        "mass": 994.0,
+        "centre_of_mass": [0.0, 0.0, -0.0324],
+        "inertia": {"Ixx": 115.7, "Iyy": 1376.0, "Izz": 1376.0},
+    },
     "members": [],
     "added_mass": {"A44": 20.0},
     "linear_damping": {"B44": 3.0},
     "quadratic_damping": {"B44": 15.0},
     "hydrostatics": {"C44": 822.0},
     "mooring": {"kind": "none"},
-}  # fmt: skip
+}
 SHIP_TRUE = {"added_mass.A44": 26.0, "linear_damping.B44": 1.8, "quadratic_damping.B44": 24.0}
 SHIP_NOISE, SHIP_OFFSET = 2e-4, 3e-3  # rad
 # the made campaign's semi-submersible, floating 0.2 m deeper than drawn
@@ -65,8 +68,14 @@ def write(folder: Path, platform: dict | str, tests: dict, scale: float = 1.0, *
     for name, (keys, time, values) in tests.items():
         columns = [time / math.sqrt(scale)]
         columns += [v / (scale if UNITS[c] == "m" else 1.0) for c, v in values.items()]
-        np.savetxt(folder / f"{name}.csv", np.column_stack(columns), fmt="%.12g", delimiter=",", comments="",
-                   header=",".join(["time", *values]))  # fmt: skip
+        np.savetxt(
+            folder / f"{name}.csv",
+            np.column_stack(columns),
+            fmt="%.12g",
+            delimiter=",",
+            comments="",
+            header=",".join(["time", *values]),
+        )
         channels |= {c: {"column": c, "unit": UNITS[c]} for c in values}
         entries.append({"id": name, "file": f"{name}.csv", **keys})
     if isinstance(platform, dict):
@@ -92,8 +101,10 @@ def ship_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Three noisy roll decays: one from a sensor that is off, one held out."""
     random, tests = np.random.default_rng(3), {}
     for name, degrees, offset, use in (
-        ("roll-1", 12.0, 0.0, "fit"), ("roll-2", 6.0, SHIP_OFFSET, "fit"), ("roll-3", 9.0, 0.0, "holdout"),
-    ):  # fmt: skip
+        ("roll-1", 12.0, 0.0, "fit"),
+        ("roll-2", 6.0, SHIP_OFFSET, "fit"),
+        ("roll-3", 9.0, 0.0, "holdout"),
+    ):
         time, roll = roll_decay(degrees)
         noisy = roll + offset + SHIP_NOISE * random.standard_normal(len(time))
         tests[name] = ({"kind": "decay", "degree_of_freedom": "roll", "use": use}, time, {"roll": noisy})
@@ -188,12 +199,12 @@ def test_what_is_declared_as_zero_is_not_free_unless_asked_for() -> None:
 def test_patterns_say_what_is_free_and_what_is_fixed() -> None:
     model = model_of(semi())
     assert set(choose(model, ["surge"], free=["column.Cd_*", "linear_damping.B11"])) == {
-        "column.Cd_t", "column.Cd_z", "linear_damping.B11",
-    }  # fmt: skip
+        "column.Cd_t",
+        "column.Cd_z",
+        "linear_damping.B11",
+    }
     assert "pontoon.Ca_t" not in choose(model, ["surge"], fixed=["pontoon.*"])
-    assert choose(model, ["surge"], free=["mooring.line?.stiffness"]) == tuple(
-        f"mooring.line{i}.stiffness" for i in (1, 2, 3)
-    )
+    assert choose(model, ["surge"], free=["mooring.line?.stiffness"]) == tuple(f"mooring.line{i}.stiffness" for i in (1, 2, 3))
 
 
 def test_bounds_and_priors_of_the_manifest() -> None:
@@ -478,8 +489,7 @@ def heave(tmp_path_factory: pytest.TempPathFactory) -> tuple[Calibration, Calibr
     tests, folder = heave_tests(), tmp_path_factory.mktemp("heave")
     rules = {"zero": {"test": "rest"}, "calibrate": {"free": list(SEMI_TRUE)}}
     twins = [
-        write(folder / str(scale), semi(), tests, scale, noise={"heave": SEMI_NOISE / scale}, **rules)
-        for scale in (1.0, 70.0)
+        write(folder / str(scale), semi(), tests, scale, noise={"heave": SEMI_NOISE / scale}, **rules) for scale in (1.0, 70.0)
     ]
     return calibrate(load_campaign(twins[0])), calibrate(load_campaign(twins[1]))
 
@@ -526,8 +536,7 @@ def test_froude_scaled_records_give_the_same_coefficients(heave) -> None:
 
 @pytest.mark.slow
 def test_one_surge_decay_knows_the_sum_of_two_added_masses_and_neither(tmp_path: Path) -> None:
-    true = {"column.Ca_t": 1.50, "column.Cd_t": 2.09, "pontoon.Ca_t": 0.11, "pontoon.Cd_t": 1.84,
-            "linear_damping.B11": 4.4e4}  # fmt: skip
+    true = {"column.Ca_t": 1.50, "column.Cd_t": 2.09, "pontoon.Ca_t": 0.11, "pontoon.Cd_t": 1.84, "linear_damping.B11": 4.4e4}
     document = YAML(typ="safe").load((DEMO / "platform.yaml").read_text())
     model = model_of(document, true)
     time = np.arange(0.0, 540.0, 2.0)

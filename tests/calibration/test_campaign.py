@@ -44,10 +44,17 @@ NOISE = RNG.normal(size=(4, 4000))
 
 
 def manifest(**changes):
-    return {"name": "made", "platform": "platform.yaml",
-            "channels": {"time": {"column": "t", "unit": "s"}, "surge": {"column": "x", "unit": "m"},
-                         "pitch": {"column": "p", "unit": "deg"}},
-            "tests": [{"id": "d-1", "kind": "decay", "degree_of_freedom": "surge", "file": "d.csv"}], **changes}
+    return {
+        "name": "made",
+        "platform": "platform.yaml",
+        "channels": {
+            "time": {"column": "t", "unit": "s"},
+            "surge": {"column": "x", "unit": "m"},
+            "pitch": {"column": "p", "unit": "deg"},
+        },
+        "tests": [{"id": "d-1", "kind": "decay", "degree_of_freedom": "surge", "file": "d.csv"}],
+        **changes,
+    }
 
 
 def table(t=T, x=SURGE, p=PITCH, header="t,x,p", **more):
@@ -115,7 +122,7 @@ def test_focal_c2_has_three_windows_of_one_file_and_its_wave():
     first, second, third = load_campaign(folder).records
     assert second.time[0] - first.time[-1] < 1 and third.time[0] - second.time[-1] < 1 and third.time[0] > 7134
     assert [4 * r.wave.std() for r in (first, second, third)] == pytest.approx([2.7, 5.9, 7.8], abs=0.1)
-    assert abs(first.values["heave"].mean()) < 0.1           # the raw record sits at -20 m
+    assert abs(first.values["heave"].mean()) < 0.1  # the raw record sits at -20 m
 
 
 def test_estimated_noise_is_what_was_put_into_the_made_campaigns():
@@ -137,15 +144,28 @@ def text(separator, decimal=".", top=("t", "x", "p"), units=None, ending=""):
     return "\n".join(rows)
 
 
-@pytest.mark.parametrize(("name", "content"), {
-    "comma.csv": text(","), "trailing.csv": text(",", ending=","), "semicolon.csv": text(";", ","),
-    "points.csv": text(";"), "tabs.tsv": text("\t"), "decimal.dat": text("\t", ","), "spaces.txt": text("   "),
-    "units.txt": text("  ", units=("(s)", "(m)", "(deg)")), "units.csv": text(",", units=("s", "m", "deg")),
-    "comments.txt": "# a run\n\n" + text(" "), "savetxt.txt": text(" ").replace("t x p", "# t x p"),
-    "bom.csv": "\ufeff" + text(",").replace("\n", "\r\n"), "spaces.dat": text(" ", ","),
-    "quoted.csv": text(",", top=('"t"', '"x"', '"p"')), "zipped.csv.gz": gzip.compress(text(",").encode()),
-    "utf16.csv": text(",").encode("utf-16"), "note.csv": text(",", top=("t", "x", "p", "note"), ending=",ok"),
-}.items())
+@pytest.mark.parametrize(
+    ("name", "content"),
+    {
+        "comma.csv": text(","),
+        "trailing.csv": text(",", ending=","),
+        "semicolon.csv": text(";", ","),
+        "points.csv": text(";"),
+        "tabs.tsv": text("\t"),
+        "decimal.dat": text("\t", ","),
+        "spaces.txt": text("   "),
+        "units.txt": text("  ", units=("(s)", "(m)", "(deg)")),
+        "units.csv": text(",", units=("s", "m", "deg")),
+        "comments.txt": "# a run\n\n" + text(" "),
+        "savetxt.txt": text(" ").replace("t x p", "# t x p"),
+        "bom.csv": "\ufeff" + text(",").replace("\n", "\r\n"),
+        "spaces.dat": text(" ", ","),
+        "quoted.csv": text(",", top=('"t"', '"x"', '"p"')),
+        "zipped.csv.gz": gzip.compress(text(",").encode()),
+        "utf16.csv": text(",").encode("utf-16"),
+        "note.csv": text(",", top=("t", "x", "p", "note"), ending=",ok"),
+    }.items(),
+)
 def test_delimited_text(tmp_path, name, content):
     (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     found = read_table(tmp_path / name)
@@ -154,8 +174,13 @@ def test_delimited_text(tmp_path, name, content):
 
 
 def test_text_without_a_header_has_numbered_columns_and_a_manifest_may_count(tmp_path):
-    document = manifest(channels={"time": {"column": 0, "unit": "s"}, "surge": {"column": 1, "unit": "m"},
-                                  "pitch": {"column": "2", "unit": "deg"}})
+    document = manifest(
+        channels={
+            "time": {"column": 0, "unit": "s"},
+            "surge": {"column": 1, "unit": "m"},
+            "pitch": {"column": "2", "unit": "deg"},
+        }
+    )
     folder = write(tmp_path, document, {"d.csv": table().partition("\n")[2]})
     np.testing.assert_allclose(records(folder)["d-1"].values["surge"], SURGE, atol=6e-6)
 
@@ -165,13 +190,16 @@ def test_missing_cells_are_nan(tmp_path):
     assert np.isnan(read_table(tmp_path / "a.csv")["x"]).tolist() == [False, True, True, False]
 
 
-@pytest.mark.parametrize("content", [
-    {"t": T, "x": SURGE, "p": PITCH, "rate": 10.0, "place": [1.0, 2.0, 3.0], "who": "us"},
-    {"t": T[:, None], "x": SURGE[:, None], "p": PITCH[:, None]},
-    {"run": {"t": T, "x": SURGE, "p": PITCH, "who": "us"}},
-    {"data": np.c_[T, SURGE, PITCH], "names": np.array(["t", "x", "p"], dtype=object)},
-    {"run": {"data": np.c_[T, SURGE, PITCH].T, "names": np.array(["t", "x", "p"], dtype=object)}},
-])
+@pytest.mark.parametrize(
+    "content",
+    [
+        {"t": T, "x": SURGE, "p": PITCH, "rate": 10.0, "place": [1.0, 2.0, 3.0], "who": "us"},
+        {"t": T[:, None], "x": SURGE[:, None], "p": PITCH[:, None]},
+        {"run": {"t": T, "x": SURGE, "p": PITCH, "who": "us"}},
+        {"data": np.c_[T, SURGE, PITCH], "names": np.array(["t", "x", "p"], dtype=object)},
+        {"run": {"data": np.c_[T, SURGE, PITCH].T, "names": np.array(["t", "x", "p"], dtype=object)}},
+    ],
+)
 def test_matlab(tmp_path, content):
     savemat(tmp_path / "a.mat", content)
     np.testing.assert_allclose(read_table(tmp_path / "a.mat")[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH])
@@ -196,8 +224,11 @@ def test_netcdf(tmp_path, engine):
     np.testing.assert_allclose(found[["t", "x", "p"]].to_numpy(), np.c_[T, SURGE, PITCH])
 
 
-OUT = ("\nPredictions were generated on 01-Jan-2026\n\nlinked with modules\n\nDescription from the input file\n\n"
-       + text("\t", top=("Time", "PtfmSurge", "PtfmPitch"), units=("(s)", "(m)", "(deg)")) + "\n")
+OUT = (
+    "\nPredictions were generated on 01-Jan-2026\n\nlinked with modules\n\nDescription from the input file\n\n"
+    + text("\t", top=("Time", "PtfmSurge", "PtfmPitch"), units=("(s)", "(m)", "(deg)"))
+    + "\n"
+)
 
 
 def outb(kind, names=("Time", "PtfmSurge", "PtfmPitch"), units=("(s)", "(m)", "(deg)")):
@@ -228,43 +259,51 @@ def test_openfast_without_its_library_says_what_to_install(tmp_path, monkeypatch
     assert 'pip install "jaxhydro[openfast]"' in failure(read_table, tmp_path / "a.outb")
 
 
-@pytest.mark.parametrize(("name", "content", "words"), [
-    ("a.csv", b"", "empty file"),
-    ("a.csv", b"# only\n# comments\n", "comments only"),
-    ("a.csv", b"t,x\n", "a header only"),
-    ("a.csv", b"t,x\n0,1\n1,2,3\n2,3\n", "row 3: expected 2 columns, found 3"),
-    ("a.csv", b"t,x\n0,1\n1,2\n2\n", "row 4: expected 2 columns, found 1 columns. a line cut short"),
-    ("a.csv", b"t,x\n0,1\n\n1,two\n2,3\n", "row 4, column x: expected a number, found 'two'"),
-    ("a.csv", b"a,b\nthe quick brown fox,jumped\nover the lazy dog,again\n", "only text, in a, b"),
-    ("a.csv", b"t,x,y\n0,1\n1,2\n2,3\n", "expected 2 names, one for each column, found 3: t, x, y"),
-    ("a.csv", bytes(range(256)) * 20, "binary content"),
-    ("a.csv", b't,x\n0,"1\n1,2\n2,3"\n3,4\n', "row"),
-    ("a.csv.gz", b"not gzip", "a whole gzip file"),
-    ("a.csv.gz", gzip.compress(text(",").encode())[:-50], "a whole gzip file"),
-    ("a.mat", b"MATLAB 5.0 MAT-file" + bytes(range(256)), "a MATLAB .mat file"),
-    ("a.mat", b"", "a MATLAB .mat file"),
-    ("a.mat", b"MATLAB 7.3 MAT-file".ljust(600), "a MATLAB 7.3 file"),
-    ("a.nc", b"rubbish" * 50, "a NetCDF file"),
-    ("a.nc", b"\x89HDF\r\n\x1a\n" + b"rubbish" * 50, "a NetCDF file"),
-    ("a.out", b"rubbish\n" * 50, "a row of units"),
-    ("a.out", OUT.replace("\t", " 1e", 5).encode(), "row"),
-    ("a.out", OUT.replace("0.30000\t", "0.30000\tx").encode(), "row 13, column PtfmSurge: expected a number, found 'x"),
-    ("a.outb", b"\x02\x00" + b"\xff" * 40, "OpenFAST binary output"),
-    ("a.outb", outb(2)[:-100], "OpenFAST binary output"),
-    ("a.outb", b"", "OpenFAST binary output"),
-    ("a.yaml", b"t,x\n0,1\n", "a data file: text (.csv, .txt, .dat, ...), .mat, .nc, .xlsx, .out or .outb"),
-    ("a.xls", b"t,x\n0,1\n", "Save it as .xlsx or CSV"),
-    ("a", b"t,x\n", "a header only"),
-])
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.csv", b"", "empty file"),
+        ("a.csv", b"# only\n# comments\n", "comments only"),
+        ("a.csv", b"t,x\n", "a header only"),
+        ("a.csv", b"t,x\n0,1\n1,2,3\n2,3\n", "row 3: expected 2 columns, found 3"),
+        ("a.csv", b"t,x\n0,1\n1,2\n2\n", "row 4: expected 2 columns, found 1 columns. a line cut short"),
+        ("a.csv", b"t,x\n0,1\n\n1,two\n2,3\n", "row 4, column x: expected a number, found 'two'"),
+        ("a.csv", b"a,b\nthe quick brown fox,jumped\nover the lazy dog,again\n", "only text, in a, b"),
+        ("a.csv", b"t,x,y\n0,1\n1,2\n2,3\n", "expected 2 names, one for each column, found 3: t, x, y"),
+        ("a.csv", bytes(range(256)) * 20, "binary content"),
+        ("a.csv", b't,x\n0,"1\n1,2\n2,3"\n3,4\n', "row"),
+        ("a.csv.gz", b"not gzip", "a whole gzip file"),
+        ("a.csv.gz", gzip.compress(text(",").encode())[:-50], "a whole gzip file"),
+        ("a.mat", b"MATLAB 5.0 MAT-file" + bytes(range(256)), "a MATLAB .mat file"),
+        ("a.mat", b"", "a MATLAB .mat file"),
+        ("a.mat", b"MATLAB 7.3 MAT-file".ljust(600), "a MATLAB 7.3 file"),
+        ("a.nc", b"rubbish" * 50, "a NetCDF file"),
+        ("a.nc", b"\x89HDF\r\n\x1a\n" + b"rubbish" * 50, "a NetCDF file"),
+        ("a.out", b"rubbish\n" * 50, "a row of units"),
+        ("a.out", OUT.replace("\t", " 1e", 5).encode(), "row"),
+        ("a.out", OUT.replace("0.30000\t", "0.30000\tx").encode(), "row 13, column PtfmSurge: expected a number, found 'x"),
+        ("a.outb", b"\x02\x00" + b"\xff" * 40, "OpenFAST binary output"),
+        ("a.outb", outb(2)[:-100], "OpenFAST binary output"),
+        ("a.outb", b"", "OpenFAST binary output"),
+        ("a.yaml", b"t,x\n0,1\n", "a data file: text (.csv, .txt, .dat, ...), .mat, .nc, .xlsx, .out or .outb"),
+        ("a.xls", b"t,x\n0,1\n", "Save it as .xlsx or CSV"),
+        ("a", b"t,x\n", "a header only"),
+    ],
+)
 def test_broken_files(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content)
     message = failure(read_table, tmp_path / name)
     assert words in message and str(tmp_path / name) in message
 
 
-@pytest.mark.parametrize(("good", "bad"), [(b"\x09\0\0\0\x80\x0c", b"\xa1\0\0\0\x80\x0c"),      # an unknown type
-                                           (b"\x06\0\0\0\x08\0\0\0\x06\0", b"\x06\0\0\0\x08\0\0\0\x06\x08"),
-                                           (b"\x01\0\0\0\x90\x01\0\0", b"\x01\0\0\0\x90\x01\0\xff")])
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        (b"\x09\0\0\0\x80\x0c", b"\xa1\0\0\0\x80\x0c"),  # an unknown type
+        (b"\x06\0\0\0\x08\0\0\0\x06\0", b"\x06\0\0\0\x08\0\0\0\x06\x08"),
+        (b"\x01\0\0\0\x90\x01\0\0", b"\x01\0\0\0\x90\x01\0\xff"),
+    ],
+)
 def test_a_damaged_matlab_file_does_not_crash_scipy(tmp_path, good, bad):
     assert good in matlab()
     (tmp_path / "a.mat").write_bytes(matlab().replace(good, bad, 1))
@@ -288,11 +327,18 @@ def test_vectors_of_unequal_length(tmp_path):
 
 def test_froude_scaling_units_and_signs(tmp_path):
     document = manifest(
-        scale=49.0, noise={"surge": 2.0}, wave_channel={"column": "w", "unit": "cm", "position": [-2.0, 0.5]},
-        channels={"time": {"column": "t", "unit": "ms"}, "surge": {"column": "x", "unit": "mm", "sign": -1},
-                  "pitch": {"column": "p", "unit": "deg", "sign": -1}})
-    document["tests"] = [{"id": "sea", "kind": "regular", "file": "d.csv", "window": [10.0, 30.0], "transient": 5.0,
-                          "wave_height": 0.06}]
+        scale=49.0,
+        noise={"surge": 2.0},
+        wave_channel={"column": "w", "unit": "cm", "position": [-2.0, 0.5]},
+        channels={
+            "time": {"column": "t", "unit": "ms"},
+            "surge": {"column": "x", "unit": "mm", "sign": -1},
+            "pitch": {"column": "p", "unit": "deg", "sign": -1},
+        },
+    )
+    document["tests"] = [
+        {"id": "sea", "kind": "regular", "file": "d.csv", "window": [10.0, 30.0], "transient": 5.0, "wave_height": 0.06}
+    ]
     wave = 3 * np.cos(2 * np.pi * T / 3)
     folder = write(tmp_path, document, {"d.csv": table(w=wave)})
     record = records(folder)["sea"]
@@ -304,9 +350,11 @@ def test_froude_scaling_units_and_signs(tmp_path):
     assert record.wave_position == (-98.0, 24.5) and record.transient == pytest.approx(0.035)
     assert record.noise["surge"] == pytest.approx(0.098) and not record.noise_declared
     assert not [message for message in messages(folder) if "wave_height" in message]
-    document["tests"][0]["wave_height"] = 2.9                # at full scale: not what the contract says
-    assert "wave_height is stated as 2.9 m, and recorded as 0.06" in messages(write(tmp_path, document, {
-        "d.csv": table(w=wave)}))[0]
+    document["tests"][0]["wave_height"] = 2.9  # at full scale: not what the contract says
+    assert (
+        "wave_height is stated as 2.9 m, and recorded as 0.06"
+        in messages(write(tmp_path, document, {"d.csv": table(w=wave)}))[0]
+    )
 
 
 def test_a_sea_of_few_waves_is_told(tmp_path):
@@ -323,7 +371,7 @@ def test_a_sea_of_few_waves_is_told(tmp_path):
 
 
 def test_zero_by_a_window_of_the_same_file(tmp_path):
-    quiet = (T < 8)
+    quiet = T < 8
     values = [np.where(quiet, 0.0, column) + offset for column, offset in ((SURGE, 5.0), (PITCH, -3.0))]
     document = manifest(zero={"window": [0.0, 7.9]})
     document["tests"][0]["window"] = [8.0, 39.0]
@@ -335,9 +383,16 @@ def test_zero_by_a_window_of_the_same_file(tmp_path):
 def test_zero_by_a_test_in_its_own_units(tmp_path):
     document = manifest(scale=4.0, zero={"test": "rest"}, wave_channel={"column": "w", "unit": "m", "position": [0, 0]})
     document["tests"] += [
-        {"id": "rest", "kind": "static", "file": "r.csv", "use": "ignore", "window": [0, 20],
-         "channels": {"surge": {"column": "x_mm", "unit": "mm", "sign": -1}}},
-        {"id": "sea", "kind": "regular", "file": "s.csv"}]
+        {
+            "id": "rest",
+            "kind": "static",
+            "file": "r.csv",
+            "use": "ignore",
+            "window": [0, 20],
+            "channels": {"surge": {"column": "x_mm", "unit": "mm", "sign": -1}},
+        },
+        {"id": "sea", "kind": "regular", "file": "s.csv"},
+    ]
     still = table(T, -500 + NOISE[0, :400], 0.5 + 0.01 * NOISE[1, :400], "t,x_mm,p", w=0.2 + 0.001 * NOISE[2, :400])
     wave = np.cos(2 * np.pi * T / 3)
     folder = write(tmp_path, document, {"r.csv": still, "d.csv": table(x=SURGE + 0.5), "s.csv": table(w=wave + 0.2)})
@@ -375,10 +430,10 @@ def test_noise_level_of_white_noise_on_a_slow_decay(seed):
     slow = 5 * np.exp(-0.01 * t) * np.cos(2 * np.pi * t / 8)
     noise = 0.01 * rng.normal(size=len(t))
     assert noise_level(t, slow + noise) == pytest.approx(0.01, rel=0.15)
-    jittered = t + 0.02 * rng.uniform(-1, 1, len(t))                       # truly uneven, and recorded so
+    jittered = t + 0.02 * rng.uniform(-1, 1, len(t))  # truly uneven, and recorded so
     at_jittered = 5 * np.exp(-0.01 * jittered) * np.cos(2 * np.pi * jittered / 8)
     assert noise_level(jittered, at_jittered + noise) == pytest.approx(0.01, rel=0.15)
-    assert noise_level(np.round(t * 1.003, 1), slow + noise) == pytest.approx(0.01, rel=0.15)    # even, times rounded
+    assert noise_level(np.round(t * 1.003, 1), slow + noise) == pytest.approx(0.01, rel=0.15)  # even, times rounded
     spiked = slow + noise
     spiked[::97] += 3.0
     assert noise_level(t, spiked) == pytest.approx(0.01, rel=0.25)
@@ -395,9 +450,12 @@ def test_one_column_for_one_test_and_none_for_another(tmp_path):
 
 def test_a_numeric_id_is_a_name_and_each_file_is_read_once(tmp_path, monkeypatch):
     from calibration.campaign import records as module
+
     document = manifest()
-    document["tests"] = [{**document["tests"][0], "id": 21337, "window": [0, 20]},
-                         {**document["tests"][0], "id": "b", "window": [20, 40], "repeat_of": 21337}]
+    document["tests"] = [
+        {**document["tests"][0], "id": 21337, "window": [0, 20]},
+        {**document["tests"][0], "id": "b", "window": [20, 40], "repeat_of": 21337},
+    ]
     folder = write(tmp_path, document)
     count = []
     monkeypatch.setattr(module, "read_table", lambda path: count.append(path) or read_table(path))
@@ -417,24 +475,30 @@ def spoilt(**changes):
     return table(**columns)
 
 
-@pytest.mark.parametrize(("csv", "words"), [
-    (spoilt(t={(200, 400): T[200:] + 4.0}), "channel time: a gap of 4.1 s after 19.9 s"),
-    (spoilt(t={(100, 101): T[99]}), "channel time: 1 times that repeat, the first 9.9 s: these rows are dropped"),
-    (spoilt(x={(50, 53): np.nan}), "surge: 3 values missing or infinite, the first near 5 s: these rows are dropped"),
-    (spoilt(x={(50, 53): np.inf}), "channel surge: 3 values missing or infinite"),
-    (spoilt(x={(50, 53): 1e30}), "channel surge: 3 values missing or infinite"),
-    (spoilt(x={(50, 53): -9999}), "surge: 3 values missing, as -9999 seems to say, the first near 5 s: these rows are dropped"),
-    (spoilt(t={(50, 52): np.nan}), "channel time: 2 values missing or infinite, the first near 4.9 s"),
-    (spoilt(x={(100, 140): SURGE[100]}), "channel surge: frozen from 10 s to 13.9 s, 40 samples"),
-    (table(x=np.clip(SURGE, -9, 2.2)), "channel surge: clipped: "),
-    (table(x=np.clip(SURGE, -2.2, 9)), "at its lowest value, -2.2"),
-    (spoilt(x={(77, 78): 4.0}), "channel surge: a spike at 7.7 s, 4 between"),
-    (table(x=SURGE + 0.05 * T), "channel surge: its mean drifts by"),
-    (spoilt(p={(0, 400): 1.5}), "channel pitch: one value throughout, 1.5: left out"),
-    (table(*(column[:60] for column in (T, SURGE, PITCH))), "channel surge: only 1.2 cycles"),
-    (table(*(column[::5] for column in (T, SURGE, PITCH))), "channel surge: only 11.9 samples per cycle"),
-    (table(t=np.round(T * 0.837, 2)), "channel time: times are written to 0.01 s, where steps are 0.0837"),
-])
+@pytest.mark.parametrize(
+    ("csv", "words"),
+    [
+        (spoilt(t={(200, 400): T[200:] + 4.0}), "channel time: a gap of 4.1 s after 19.9 s"),
+        (spoilt(t={(100, 101): T[99]}), "channel time: 1 times that repeat, the first 9.9 s: these rows are dropped"),
+        (spoilt(x={(50, 53): np.nan}), "surge: 3 values missing or infinite, the first near 5 s: these rows are dropped"),
+        (spoilt(x={(50, 53): np.inf}), "channel surge: 3 values missing or infinite"),
+        (spoilt(x={(50, 53): 1e30}), "channel surge: 3 values missing or infinite"),
+        (
+            spoilt(x={(50, 53): -9999}),
+            "surge: 3 values missing, as -9999 seems to say, the first near 5 s: these rows are dropped",
+        ),
+        (spoilt(t={(50, 52): np.nan}), "channel time: 2 values missing or infinite, the first near 4.9 s"),
+        (spoilt(x={(100, 140): SURGE[100]}), "channel surge: frozen from 10 s to 13.9 s, 40 samples"),
+        (table(x=np.clip(SURGE, -9, 2.2)), "channel surge: clipped: "),
+        (table(x=np.clip(SURGE, -2.2, 9)), "at its lowest value, -2.2"),
+        (spoilt(x={(77, 78): 4.0}), "channel surge: a spike at 7.7 s, 4 between"),
+        (table(x=SURGE + 0.05 * T), "channel surge: its mean drifts by"),
+        (spoilt(p={(0, 400): 1.5}), "channel pitch: one value throughout, 1.5: left out"),
+        (table(*(column[:60] for column in (T, SURGE, PITCH))), "channel surge: only 1.2 cycles"),
+        (table(*(column[::5] for column in (T, SURGE, PITCH))), "channel surge: only 11.9 samples per cycle"),
+        (table(t=np.round(T * 0.837, 2)), "channel time: times are written to 0.01 s, where steps are 0.0837"),
+    ],
+)
 def test_warnings(tmp_path, csv, words):
     campaign = load_campaign(write(tmp_path, files={"d.csv": csv}))
     found = [str(finding) for finding in campaign.findings]
@@ -452,13 +516,16 @@ def test_what_is_held_out_is_not_fitted_too(tmp_path):
         assert any("held out, and the fitted test a has samples of it" in message for message in found) == said
 
 
-@pytest.mark.parametrize("csv", [
-    table(),
-    table(x=np.round(SURGE, 1)),                                                  # coarse, and not clipped
-    table(x=np.round(SURGE * np.exp(-0.2 * T), 3)),                               # comes to rest
-    table(x=SURGE + 0.05 * NOISE[0, :400], p=np.round(0.01 * NOISE[1, :400], 2)),
-    table(t=T + 0.03 * NOISE[2, :400].clip(-1, 1)),
-])
+@pytest.mark.parametrize(
+    "csv",
+    [
+        table(),
+        table(x=np.round(SURGE, 1)),  # coarse, and not clipped
+        table(x=np.round(SURGE * np.exp(-0.2 * T), 3)),  # comes to rest
+        table(x=SURGE + 0.05 * NOISE[0, :400], p=np.round(0.01 * NOISE[1, :400], 2)),
+        table(t=T + 0.03 * NOISE[2, :400].clip(-1, 1)),
+    ],
+)
 def test_no_false_alarm(tmp_path, csv):
     assert messages(write(tmp_path, files={"d.csv": csv})) == []
 
@@ -492,68 +559,71 @@ WORDS = {
 D2 = {"id": "d-2", "kind": "decay", "degree_of_freedom": "pitch", "file": "d.csv"}
 
 
-@pytest.mark.parametrize(("path", "value", "words"), [
-    (("name",), ..., "name: expected"),
-    (("tests",), [], "tests: expected one test at least"),
-    (("tests",), ..., "tests: expected"),
-    (("test",), [], "'test'. Did you mean 'tests'?"),
-    (("scale",), 0, "scale: expected a number > 0"),
-    (("scale",), "70", "scale: expected a number"),
-    (("density_ratio",), -1.0, "density_ratio"),
-    (("channels", "time"), ..., "channels: expected the channel time"),
-    (("channels", "surge"), "x", "channels.surge: expected"),
-    (("channels",), {"time": {"column": "t", "unit": "s"}}, "a motion beside time"),
-    (("channels", "Heave"), {"column": "p", "unit": "m"}, "found 'Heave'. Did you mean 'heave'?"),
-    (("channels", "wave"), {"column": "x", "unit": "m"}, "wave_channel"),
-    (("channels", "surge", "unit"), "inch", WORDS["unit"]),
-    (("channels", "surge", "unit"), "deg", "a unit of length"),
-    (("channels", "pitch", "unit"), "m", "a unit of angle: rad, mrad, deg"),
-    (("channels", "surge", "sign"), 2, "channels.surge.sign: expected one of 1, -1, found 2"),
-    (("channels", "surge", "column"), -1, "channels.surge.column"),
-    (("channels", "surge", "column"), 1.5, "a column's name, or its number"),
-    (("channels", "surge", "column"), "xx", "channel surge of test d-1: expected a column 'xx', found t, x, p"),
-    (("channels", "surge", "column"), 7, "a column 7"),
-    (("channels", "surge", "colum"), "x", "Did you mean 'column'?"),
-    (("noise",), {"heave": 0.1}, "noise: expected a declared channel: pitch, surge, found 'heave'"),
-    (("noise",), {"surge": -0.1}, "noise.surge: expected a number > 0"),
-    (("zero",), {"test": "d1"}, "zero.test: expected the id of a test: d-1, found 'd1'. Did you mean 'd-1'?"),
-    (("zero",), {}, "either a window or a test"),
-    (("zero",), {"window": [0, 1], "test": "d-1"}, "either a window or a test, found both"),
-    (("zero",), {"window": [5, 1]}, "zero.window: expected two numbers, the first less than the second"),
-    (("zero",), {"window": [-9, -5]}, "in zero.window, found 0 in [-9.0, -5.0], of a file from 0 s to 39.9 s"),
-    (("tests", 0, "kind"), "decai", WORDS["kind"]),
-    (("tests", 0, "use"), "fitt", "Did you mean 'fit'?"),
-    (("tests", 0, "degree_of_freedom"), ..., "tests[0].degree_of_freedom: expected the motion that was released"),
-    (("tests", 0, "degree_of_freedom"), "heave", "a motion that has a channel: surge, pitch, found 'heave'"),
-    (("tests", 0, "kind"), "irregular", "expected a wave_channel"),
-    (("tests", 0, "file"), "e.csv", "tests[0].file: expected a file in"),
-    (("tests", 0, "file"), "d\0.csv", "tests[0].file: expected a file in"),
-    (("tests", 0, "file"), "", "tests[0].file"),
-    (("tests", 0, "file"), "campaign.yaml", "expected a data file"),
-    (("tests", 0, "id"), "a/b", "tests[0].id: expected a name that can be a file's"),
-    (("tests", 0, "id"), "..", "a name that can be a file's"),
-    (("tests", 0, "window"), [3, 1], "tests[0].window: expected two numbers, the first less"),
-    (("tests", 0, "window"), [3], "tests[0].window: expected a list of 2 numbers, found [3]"),
-    (("tests", 0, "window"), [0, float("inf")], "tests[0].window"),
-    (("tests", 0, "window"), [0, 100], WORDS["window"]),
-    (("tests", 0, "window"), [1, 2], "expected 20 samples or more in the window, found 11 samples"),
-    (("tests", 0, "transient"), 39.0, WORDS["left"]),
-    (("tests", 0, "transient"), -1, "tests[0].transient"),
-    (("tests", 0, "repeat_of"), "d-1", "tests[0].repeat_of: expected the id of another test"),
-    (("tests", 0, "channels"), {"heave": {"unit": "m"}}, "tests[0].channels: expected a declared channel"),
-    (("tests", 0, "channels"), {"surge": {"unit": "deg"}}, "tests[0].channels.surge.unit: expected a unit of length"),
-    (("tests", 0, "channels"), {"time": None}, "tests[0].channels.time: expected a column"),
-    (("tests", 0, "channels"), {"surge": None, "pitch": None}, "one motion at least"),
-    (("tests",), [D2, D2], "tests[1].id: expected an id that no other test has, found 'd-2'"),
-    (("tests",), [D2, {**D2, "id": "D-2"}], "Upper and lower case are alike"),
-    (("tests",), [D2, {**D2, "id": "d-3", "repeat_of": "d-4"}], WORDS["repeat"]),
-    (("platform",), "platfrom.yaml", "platform: expected a file in"),
-    (("platform",), "no-such-platform", "no-such-platform"),
-    (("wave_channel",), {"column": "w", "unit": "deg"}, "wave_channel.unit: expected a unit of length"),
-    (("calibrate",), {"bounds": {"column.Ca_t": [2, 1]}}, "calibrate.bounds.column.Ca_t: expected two numbers"),
-    (("calibrate",), {"priors": {"column.Ca_t": {"value": 1.0, "standard_deviation": 0}}}, "standard_deviation"),
-    (("calibrate",), {"free": "column.*"}, "calibrate.free: expected a list"),
-])
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        (("name",), ..., "name: expected"),
+        (("tests",), [], "tests: expected one test at least"),
+        (("tests",), ..., "tests: expected"),
+        (("test",), [], "'test'. Did you mean 'tests'?"),
+        (("scale",), 0, "scale: expected a number > 0"),
+        (("scale",), "70", "scale: expected a number"),
+        (("density_ratio",), -1.0, "density_ratio"),
+        (("channels", "time"), ..., "channels: expected the channel time"),
+        (("channels", "surge"), "x", "channels.surge: expected"),
+        (("channels",), {"time": {"column": "t", "unit": "s"}}, "a motion beside time"),
+        (("channels", "Heave"), {"column": "p", "unit": "m"}, "found 'Heave'. Did you mean 'heave'?"),
+        (("channels", "wave"), {"column": "x", "unit": "m"}, "wave_channel"),
+        (("channels", "surge", "unit"), "inch", WORDS["unit"]),
+        (("channels", "surge", "unit"), "deg", "a unit of length"),
+        (("channels", "pitch", "unit"), "m", "a unit of angle: rad, mrad, deg"),
+        (("channels", "surge", "sign"), 2, "channels.surge.sign: expected one of 1, -1, found 2"),
+        (("channels", "surge", "column"), -1, "channels.surge.column"),
+        (("channels", "surge", "column"), 1.5, "a column's name, or its number"),
+        (("channels", "surge", "column"), "xx", "channel surge of test d-1: expected a column 'xx', found t, x, p"),
+        (("channels", "surge", "column"), 7, "a column 7"),
+        (("channels", "surge", "colum"), "x", "Did you mean 'column'?"),
+        (("noise",), {"heave": 0.1}, "noise: expected a declared channel: pitch, surge, found 'heave'"),
+        (("noise",), {"surge": -0.1}, "noise.surge: expected a number > 0"),
+        (("zero",), {"test": "d1"}, "zero.test: expected the id of a test: d-1, found 'd1'. Did you mean 'd-1'?"),
+        (("zero",), {}, "either a window or a test"),
+        (("zero",), {"window": [0, 1], "test": "d-1"}, "either a window or a test, found both"),
+        (("zero",), {"window": [5, 1]}, "zero.window: expected two numbers, the first less than the second"),
+        (("zero",), {"window": [-9, -5]}, "in zero.window, found 0 in [-9.0, -5.0], of a file from 0 s to 39.9 s"),
+        (("tests", 0, "kind"), "decai", WORDS["kind"]),
+        (("tests", 0, "use"), "fitt", "Did you mean 'fit'?"),
+        (("tests", 0, "degree_of_freedom"), ..., "tests[0].degree_of_freedom: expected the motion that was released"),
+        (("tests", 0, "degree_of_freedom"), "heave", "a motion that has a channel: surge, pitch, found 'heave'"),
+        (("tests", 0, "kind"), "irregular", "expected a wave_channel"),
+        (("tests", 0, "file"), "e.csv", "tests[0].file: expected a file in"),
+        (("tests", 0, "file"), "d\0.csv", "tests[0].file: expected a file in"),
+        (("tests", 0, "file"), "", "tests[0].file"),
+        (("tests", 0, "file"), "campaign.yaml", "expected a data file"),
+        (("tests", 0, "id"), "a/b", "tests[0].id: expected a name that can be a file's"),
+        (("tests", 0, "id"), "..", "a name that can be a file's"),
+        (("tests", 0, "window"), [3, 1], "tests[0].window: expected two numbers, the first less"),
+        (("tests", 0, "window"), [3], "tests[0].window: expected a list of 2 numbers, found [3]"),
+        (("tests", 0, "window"), [0, float("inf")], "tests[0].window"),
+        (("tests", 0, "window"), [0, 100], WORDS["window"]),
+        (("tests", 0, "window"), [1, 2], "expected 20 samples or more in the window, found 11 samples"),
+        (("tests", 0, "transient"), 39.0, WORDS["left"]),
+        (("tests", 0, "transient"), -1, "tests[0].transient"),
+        (("tests", 0, "repeat_of"), "d-1", "tests[0].repeat_of: expected the id of another test"),
+        (("tests", 0, "channels"), {"heave": {"unit": "m"}}, "tests[0].channels: expected a declared channel"),
+        (("tests", 0, "channels"), {"surge": {"unit": "deg"}}, "tests[0].channels.surge.unit: expected a unit of length"),
+        (("tests", 0, "channels"), {"time": None}, "tests[0].channels.time: expected a column"),
+        (("tests", 0, "channels"), {"surge": None, "pitch": None}, "one motion at least"),
+        (("tests",), [D2, D2], "tests[1].id: expected an id that no other test has, found 'd-2'"),
+        (("tests",), [D2, {**D2, "id": "D-2"}], "Upper and lower case are alike"),
+        (("tests",), [D2, {**D2, "id": "d-3", "repeat_of": "d-4"}], WORDS["repeat"]),
+        (("platform",), "platfrom.yaml", "platform: expected a file in"),
+        (("platform",), "no-such-platform", "no-such-platform"),
+        (("wave_channel",), {"column": "w", "unit": "deg"}, "wave_channel.unit: expected a unit of length"),
+        (("calibrate",), {"bounds": {"column.Ca_t": [2, 1]}}, "calibrate.bounds.column.Ca_t: expected two numbers"),
+        (("calibrate",), {"priors": {"column.Ca_t": {"value": 1.0, "standard_deviation": 0}}}, "standard_deviation"),
+        (("calibrate",), {"free": "column.*"}, "calibrate.free: expected a list"),
+    ],
+)
 def test_broken_manifests(tmp_path, path, value, words):
     message = failure(load_campaign, write(tmp_path, change(manifest(), path, value)))
     assert words in message and "campaign.yaml" in message, message
@@ -581,20 +651,26 @@ def test_a_campaign_that_is_not_there_or_not_yaml(tmp_path):
     assert "a mapping" in failure(load_campaign, tmp_path)
 
 
-@pytest.mark.parametrize(("csv", "words"), [
-    (spoilt(t={(200, 400): T[200:] - 4.0}), "expected times that increase, found a step back from 19.9 s to 16 s"),
-    (spoilt(t={(100, 140): T[99]}), "fewer than 2% of the 400 rows to be dropped, found 40 times that"),
-    (spoilt(x={(50, 90): np.nan}), "fewer than 2% of the 400 rows to be dropped, found 40 values"),
-    (spoilt(t={(0, 400): np.nan}), "channel time: expected times, found none"),
-    (spoilt(x={(0, 400): 2.0}), "channel surge: expected a signal that moves, found one value throughout, 2"),
-    (table(*(column[::10] for column in (T, SURGE, PITCH))), "expected 8 samples per cycle or more, found 5.9 samples"),
-    (table(*(column[:12] for column in (T, SURGE, PITCH))), "expected 20 samples or more in the window, found 12"),
-    (table().replace("\n3.00000,", "\n3.00000,oops"), "d.csv, row 32, column x: expected a number, found 'oops"),
-    (table(header="t,x,x"), "expected one column 'x', found 2 of that name"),
-    (table(header="t,X,p"), "expected a column 'x', found t, X, p. Did you mean 'X'?"),
-    ("t,x,p\n" + "\n".join(f"{i},high,{i}" for i in range(60)), "numbers in column 'x', found text such as 'high' in row 2"),
-    ("t,x,p\n" + "\n".join(f"{i},12:00:{i:02d},{i}" for i in range(60)), "numbers, found times in column 'x', stated in m"),
-])
+@pytest.mark.parametrize(
+    ("csv", "words"),
+    [
+        (spoilt(t={(200, 400): T[200:] - 4.0}), "expected times that increase, found a step back from 19.9 s to 16 s"),
+        (spoilt(t={(100, 140): T[99]}), "fewer than 2% of the 400 rows to be dropped, found 40 times that"),
+        (spoilt(x={(50, 90): np.nan}), "fewer than 2% of the 400 rows to be dropped, found 40 values"),
+        (spoilt(t={(0, 400): np.nan}), "channel time: expected times, found none"),
+        (spoilt(x={(0, 400): 2.0}), "channel surge: expected a signal that moves, found one value throughout, 2"),
+        (table(*(column[::10] for column in (T, SURGE, PITCH))), "expected 8 samples per cycle or more, found 5.9 samples"),
+        (table(*(column[:12] for column in (T, SURGE, PITCH))), "expected 20 samples or more in the window, found 12"),
+        (table().replace("\n3.00000,", "\n3.00000,oops"), "d.csv, row 32, column x: expected a number, found 'oops"),
+        (table(header="t,x,x"), "expected one column 'x', found 2 of that name"),
+        (table(header="t,X,p"), "expected a column 'x', found t, X, p. Did you mean 'X'?"),
+        (
+            "t,x,p\n" + "\n".join(f"{i},high,{i}" for i in range(60)),
+            "numbers in column 'x', found text such as 'high' in row 2",
+        ),
+        ("t,x,p\n" + "\n".join(f"{i},12:00:{i:02d},{i}" for i in range(60)), "numbers, found times in column 'x', stated in m"),
+    ],
+)
 def test_broken_records(tmp_path, csv, words):
     message = failure(load_campaign, write(tmp_path, files={"d.csv": csv}))
     assert words in message and "d.csv" in message, message
@@ -619,18 +695,28 @@ def test_a_faulty_test_marked_ignore_is_left_out(tmp_path):
     campaign = load_campaign(folder)
     assert [record.id for record in campaign.records] == ["d-1"]
     assert [finding.message for finding in campaign.findings if finding.test == "d-2"] == [
-        "left out: a step back from 19.9 s to 16 s at sample 201 of the file"]
-    assert "d-2" in failure(load_campaign, write(tmp_path, {**document, "zero": {"test": "d-2"}}, {
-        "bad.csv": spoilt(t={(200, 400): T[200:] - 4.0})}))
+        "left out: a step back from 19.9 s to 16 s at sample 201 of the file"
+    ]
+    assert "d-2" in failure(
+        load_campaign,
+        write(tmp_path, {**document, "zero": {"test": "d-2"}}, {"bad.csv": spoilt(t={(200, 400): T[200:] - 4.0})}),
+    )
 
 
 # ----------------------------------------------------------------------------------------------------------- fuzz
 
-FULL = manifest(scale=2.0, density_ratio=1.025, noise={"surge": 0.1}, zero={"window": [0, 5]}, calibrate={
-    "free": ["*"], "bounds": {"a": [0, 1]}, "priors": {"b": {"value": 1.0, "standard_deviation": 0.1}}},
-    wave_channel={"column": "w", "unit": "m", "position": [1.0, 0.0]})
-FULL["tests"] = [{**FULL["tests"][0], "window": [0, 20], "transient": 1.0, "channels": {"surge": {"sign": -1}}},
-                 {"id": "s", "kind": "regular", "file": "d.csv", "use": "holdout", "wave_height": 2.0, "period": 3.0}]
+FULL = manifest(
+    scale=2.0,
+    density_ratio=1.025,
+    noise={"surge": 0.1},
+    zero={"window": [0, 5]},
+    calibrate={"free": ["*"], "bounds": {"a": [0, 1]}, "priors": {"b": {"value": 1.0, "standard_deviation": 0.1}}},
+    wave_channel={"column": "w", "unit": "m", "position": [1.0, 0.0]},
+)
+FULL["tests"] = [
+    {**FULL["tests"][0], "window": [0, 20], "transient": 1.0, "channels": {"surge": {"sign": -1}}},
+    {"id": "s", "kind": "regular", "file": "d.csv", "use": "holdout", "wave_height": 2.0, "period": 3.0},
+]
 SHORT = "\n".join(table(w=np.cos(2 * np.pi * T / 3)).split("\n")[:202])
 
 
@@ -641,9 +727,37 @@ def paths(document, here=()):
         yield from paths(value, (*here, key))
 
 
-odd = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8), st.just([]), st.just({}),
-                st.sampled_from(["surge", "time", "d.csv", "d-1", "s", "deg", 1e308, -1e308, 1e-320, 10**400, [0, 1],
-                                 [1e308, 1.7e308], {"a": 1}, [[]], "\0", "../..", "platform.yaml", "volturnus-s"]))
+odd = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=8),
+    st.just([]),
+    st.just({}),
+    st.sampled_from(
+        [
+            "surge",
+            "time",
+            "d.csv",
+            "d-1",
+            "s",
+            "deg",
+            1e308,
+            -1e308,
+            1e-320,
+            10**400,
+            [0, 1],
+            [1e308, 1.7e308],
+            {"a": 1},
+            [[]],
+            "\0",
+            "../..",
+            "platform.yaml",
+            "volturnus-s",
+        ]
+    ),
+)
 
 
 @settings(max_examples=120, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
@@ -668,12 +782,19 @@ def matlab():
     return file.getvalue()
 
 
-BASES = {".csv": SHORT.encode(), ".txt": text(" ").encode(), ".csv.gz": gzip.compress(SHORT.encode()), ".mat": matlab(),
-         ".nc": bytes(xr.Dataset({"x": ("t", SURGE)}, {"t": T}).to_netcdf(engine="scipy")), ".out": OUT.encode(),
-         ".outb": outb(2)}
+BASES = {
+    ".csv": SHORT.encode(),
+    ".txt": text(" ").encode(),
+    ".csv.gz": gzip.compress(SHORT.encode()),
+    ".mat": matlab(),
+    ".nc": bytes(xr.Dataset({"x": ("t", SURGE)}, {"t": T}).to_netcdf(engine="scipy")),
+    ".out": OUT.encode(),
+    ".outb": outb(2),
+}
 words = st.sampled_from([b"nan", b"1e999", b"-1e300", b"\n", b"\n\n", *(bytes([c]) for c in b',;"\t#0.-\x00')])
-cuts = st.lists(st.tuples(st.floats(0, 1) | st.floats(0, 0.05), st.integers(0, 40), st.binary(max_size=6) | words),
-                min_size=1, max_size=4)
+cuts = st.lists(
+    st.tuples(st.floats(0, 1) | st.floats(0, 0.05), st.integers(0, 40), st.binary(max_size=6) | words), min_size=1, max_size=4
+)
 
 
 @settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
@@ -682,7 +803,7 @@ def test_a_mutated_file_is_refused_or_read(tmp_path_factory, cuts, ending):
     content = BASES[ending]
     for place, length, put in cuts:
         start = int(place * len(content))
-        content = content[:start] + put + content[start + length:]
+        content = content[:start] + put + content[start + length :]
     path = tmp_path_factory.mktemp("fuzz") / f"d{ending}"
     path.write_bytes(content)
     try:

@@ -42,8 +42,12 @@ def decay(p: float, q: float) -> np.ndarray:
     """x'' + p x' + q x'|x'| + OMEGA^2 x = 0 from 5 at rest, at TIMES."""
     return solve_ivp(
         lambda t, y: [y[1], -p * y[1] - q * y[1] * abs(y[1]) - OMEGA**2 * y[0]],
-        (0, TIMES[-1]), [5.0, 0.0], t_eval=TIMES, rtol=1e-10, atol=1e-12,
-    ).y[0]  # fmt: skip
+        (0, TIMES[-1]),
+        [5.0, 0.0],
+        t_eval=TIMES,
+        rtol=1e-10,
+        atol=1e-12,
+    ).y[0]
 
 
 def fitted(p: float, q: float) -> Classical:

@@ -49,13 +49,24 @@ def study():
     series = tuple(
         Series(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES, np.full(12, NOISE))
         for i, use in enumerate(uses)
-    )  # fmt: skip
+    )
     free = tuple(SimpleNamespace(label=name, transform=None) for name in ("rate", "decay"))
     space = SimpleNamespace(labels=("rate", "decay"), start=jnp.array([1.0, 0.1]), free=free)
     found = Oscillations(
-        space, None, ("rate", "decay"), np.eye(2), 8, SimpleNamespace(data=SimpleNamespace(dofs=(0,))), (), (), series,
-        tuple(SimpleNamespace(use=use) for use in uses), np.full((3, 2), np.inf), (Rows.of([cut] * 3, SAMPLES),), {},
-    )  # fmt: skip
+        space,
+        None,
+        ("rate", "decay"),
+        np.eye(2),
+        8,
+        SimpleNamespace(data=SimpleNamespace(dofs=(0,))),
+        (),
+        (),
+        series,
+        tuple(SimpleNamespace(use=use) for use in uses),
+        np.full((3, 2), np.inf),
+        (Rows.of([cut] * 3, SAMPLES),),
+        {},
+    )
     truth = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     object.__setattr__(found, "looks", [])
     object.__setattr__(found, "measured", found.values(truth) + noise)
@@ -147,9 +158,15 @@ def test_a_fit_is_converged_to_the_tolerance_of_where_it_ends(study, far):
     begin = Place(np.array([1.25, 0.1]), far * np.array([[0.9, 0.3], [-1.8, 0.3], [0.4, 0.0]]))
     costs = []
     reached = fit(
-        study, study.look(begin, (0, 1)), study.used, PRIOR, iterations=200, looks=20, tolerance=1e-6,
+        study,
+        study.look(begin, (0, 1)),
+        study.used,
+        PRIOR,
+        iterations=200,
+        looks=20,
+        tolerance=1e-6,
         say=lambda _, cost: costs.append(cost),
-    )  # fmt: skip
+    )
     near = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     expected = best(study, near)
     z = np.concatenate([reached.look.place.x, reached.look.place.own[:2].ravel()])

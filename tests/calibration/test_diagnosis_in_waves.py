@@ -97,8 +97,10 @@ def write_table(folder: Path, force) -> None:
     for omega in np.linspace(0.1, 1.6, 61)[::-1]:
         for mode in range(1, 7):
             value = complex(force(np.array([omega]))[0]) / (RHO * G) if mode == 3 else 0j
-            rows.append(f"{2 * np.pi / omega:.6e} 0.0 {mode} {abs(value):.6e} {np.degrees(np.angle(value)):.6e} "
-                        f"{value.real:.6e} {value.imag:.6e}")  # fmt: skip
+            rows.append(
+                f"{2 * np.pi / omega:.6e} 0.0 {mode} {abs(value):.6e} {np.degrees(np.angle(value)):.6e} "
+                f"{value.real:.6e} {value.imag:.6e}"
+            )
     (folder / "buoy.3").write_text("\n".join(rows) + "\n")
 
 
@@ -110,14 +112,25 @@ def campaign_of(folder: Path, force, tones=MappingProxyType({})) -> Campaign:
     for seed, use in enumerate(("fit", "holdout")):
         columns = record(seed, force, tones)
         np.savetxt(folder / f"sea-{seed}.csv", columns, "%.6f", ",", header="t,wave,heave", comments="")
-        tests.append({"id": f"sea-{seed}", "kind": "irregular", "file": f"sea-{seed}.csv", "use": use, "transient": TRANSIENT,
-                      "peak_period": 9.7})  # fmt: skip
+        tests.append(
+            {
+                "id": f"sea-{seed}",
+                "kind": "irregular",
+                "file": f"sea-{seed}.csv",
+                "use": use,
+                "transient": TRANSIENT,
+                "peak_period": 9.7,
+            }
+        )
     manifest = {
-        "name": "a buoy", "platform": "platform.yaml", "scale": 1.0,
+        "name": "a buoy",
+        "platform": "platform.yaml",
+        "scale": 1.0,
         "channels": {"time": {"column": "t", "unit": "s"}, "heave": {"column": "heave", "unit": "m"}},
         "wave_channel": {"column": "wave", "unit": "m", "position": [0.0, 0.0]},
-        "noise": {"heave": NOISE}, "tests": tests,
-    }  # fmt: skip
+        "noise": {"heave": NOISE},
+        "tests": tests,
+    }
     (folder / "campaign.yaml").write_text(json.dumps(manifest))
     return load_campaign(folder)
 
@@ -163,10 +176,13 @@ def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("label", "turns", "far", "near"), [
-    ("wave_gauge_position.distance", lambda omega: omega**2 / G, -25.0, 2.0),
-    ("sensor_lag.delay", lambda omega: -omega, 2.2, -0.1),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("label", "turns", "far", "near"),
+    [
+        ("wave_gauge_position.distance", lambda omega: omega**2 / G, -25.0, 2.0),
+        ("sensor_lag.delay", lambda omega: -omega, 2.2, -0.1),
+    ],
+)
 def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float, near: float) -> None:
     """By one look where it is null: within a step of what is looked at; nothing where slopes tell of it."""
     found = []
@@ -208,14 +224,26 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
         columns = np.column_stack([times, sea.gauge(times), moved["surge"], moved["heave"]])
         columns[:, 1:] += np.random.default_rng(seed).normal(0, 1e-3, columns[:, 1:].shape)
         np.savetxt(tmp_path / f"sea-{seed}.csv", columns, "%.6f", ",", header="t,wave,surge,heave", comments="")
-        tests.append({"id": f"sea-{seed}", "kind": "irregular", "file": f"sea-{seed}.csv", "use": ("fit", "holdout")[seed - 1],
-                      "transient": TRANSIENT, "peak_period": 9.0})  # fmt: skip
+        tests.append(
+            {
+                "id": f"sea-{seed}",
+                "kind": "irregular",
+                "file": f"sea-{seed}.csv",
+                "use": ("fit", "holdout")[seed - 1],
+                "transient": TRANSIENT,
+                "peak_period": 9.0,
+            }
+        )
     motions = {dof: {"column": dof, "unit": "m"} for dof in ("surge", "heave")}
     manifest = {
-        "name": "a buoy", "platform": "platform.yaml", "scale": 1.0, "noise": dict.fromkeys(motions, 1e-3), "tests": tests,
+        "name": "a buoy",
+        "platform": "platform.yaml",
+        "scale": 1.0,
+        "noise": dict.fromkeys(motions, 1e-3),
+        "tests": tests,
         "channels": {"time": {"column": "t", "unit": "s"}} | motions,
         "wave_channel": {"column": "wave", "unit": "m", "position": [0.0, 0.0]},
-    }  # fmt: skip
+    }
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     campaign = load_campaign(tmp_path)
     options, _ = options_for(campaign)

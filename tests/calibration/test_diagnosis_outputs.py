@@ -96,8 +96,14 @@ def test_the_series_before_have_the_residual_they_had(result: Diagnosis, written
 def test_every_figure_is_half_a_page_wide_and_named_in_the_document(written: Path) -> None:
     listed = json.loads((written / "diagnosis.json").read_text())["figures"]
     names = [figure["file"].removeprefix("figures/") for figure in listed]
-    assert names == ["before-after.png", "anatomy.png", "effect-coulomb_friction-surge.png", "scores.png", "spectra-sea-1.png",
-                     "spectra-sea-2.png"]  # fmt: skip
+    assert names == [
+        "before-after.png",
+        "anatomy.png",
+        "effect-coulomb_friction-surge.png",
+        "scores.png",
+        "spectra-sea-1.png",
+        "spectra-sea-2.png",
+    ]
     assert set(names) == {path.name for path in (written / "figures").iterdir()}
     for figure in listed:
         assert figure["caption"]
@@ -143,8 +149,18 @@ def test_a_gain_is_called_after_what_it_was_found_on(result: Diagnosis, written:
 
 def nothing(**changes: Any) -> Diagnosis:
     """Nothing was found."""
-    less = {"verdict": "nothing_missing", "effects": (), "rejected": (), "scores": (), "anatomy_before": (),
-            "anatomy_after": (), "unexplained_share": np.nan, "next_test": "", "notes": (), "signature": ""}  # fmt: skip
+    less = {
+        "verdict": "nothing_missing",
+        "effects": (),
+        "rejected": (),
+        "scores": (),
+        "anatomy_before": (),
+        "anatomy_after": (),
+        "unexplained_share": np.nan,
+        "next_test": "",
+        "notes": (),
+        "signature": "",
+    }
     return replace(fake_diagnosis(), **{**less, **changes})
 
 
@@ -222,13 +238,35 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
     assert path == written / "report.html" and page.tags.count("img") == len(list((written / "figures").iterdir()))
     assert all(link.startswith("data:image/png;base64,") for link in page.links) and "http" not in page.text
     assert not {"script", "link", "iframe", "object"} & set(page.tags)
-    told = ("The declared model lacks Coulomb friction in surge", "falls by 69 %", "What was measured",
-            "free decay: 4 fitted, 1 held out", "What the model missed", "in phase with velocity", "What was found",
-            "force (81.0 ± 2.1) kN", "Very strong evidence", "squared error of held-out tests falls by 61 %",
-            "cannot tell it from hysteresis in surge", "A test that would tell: a static pull-out",
-            "left unexplained: white", "The test to run next", "Error before and after", "RMSE after", "low frequency", "-24 %",
-            "Fitted coefficients", "91000 ± 3000", "44000 ± 1500", "-52 %", "What was rejected", "held-out error grew", "Notes",
-            "surge-2 repeats surge-1", "321 s")  # fmt: skip
+    told = (
+        "The declared model lacks Coulomb friction in surge",
+        "falls by 69 %",
+        "What was measured",
+        "free decay: 4 fitted, 1 held out",
+        "What the model missed",
+        "in phase with velocity",
+        "What was found",
+        "force (81.0 ± 2.1) kN",
+        "Very strong evidence",
+        "squared error of held-out tests falls by 61 %",
+        "cannot tell it from hysteresis in surge",
+        "A test that would tell: a static pull-out",
+        "left unexplained: white",
+        "The test to run next",
+        "Error before and after",
+        "RMSE after",
+        "low frequency",
+        "-24 %",
+        "Fitted coefficients",
+        "91000 ± 3000",
+        "44000 ± 1500",
+        "-52 %",
+        "What was rejected",
+        "held-out error grew",
+        "Notes",
+        "surge-2 repeats surge-1",
+        "321 s",
+    )
     places = [page.text.find(text) for text in told]
     assert -1 not in places and places == sorted(places), list(zip(told, places))
     assert "did not converge" not in page.text and "not determined" in page.text
@@ -238,14 +276,29 @@ def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Pat
     evil = '<script>alert("1")</script>&amp; $title'
     one = result.effects[0]
     force = replace(one.parameters[FORCE], label=evil, unit=evil)
-    effect = replace(one, effect=evil, degree_of_freedom=evil, meaning=evil, source=evil, parameters={evil: force},
-                     telling_test=evil, indistinguishable=(evil,))  # fmt: skip
+    effect = replace(
+        one,
+        effect=evil,
+        degree_of_freedom=evil,
+        meaning=evil,
+        source=evil,
+        parameters={evil: force},
+        telling_test=evil,
+        indistinguishable=(evil,),
+    )
     rejected = tuple(replace(r, effect=evil, reason=evil) for r in result.rejected)
     anatomy = tuple(replace(f, test=evil, words=evil) for f in result.anatomy_before)
     strange = replace(
-        result, campaign=evil, effects=(effect,), rejected=rejected, anatomy_before=anatomy, signature=evil, next_test=evil,
-        notes=(evil,), augmented=replace(result.augmented, converged=False, parameters={evil: replace(force, label=evil)}),
-    )  # fmt: skip
+        result,
+        campaign=evil,
+        effects=(effect,),
+        rejected=rejected,
+        anatomy_before=anatomy,
+        signature=evil,
+        next_test=evil,
+        notes=(evil,),
+        augmented=replace(result.augmented, converged=False, parameters={evil: replace(force, label=evil)}),
+    )
     page = Page(write_report(write_diagnosis(strange, tmp_path / "out", figures=False)).read_text(encoding="utf-8"))
     assert "script" not in page.tags and page.text.count(evil) >= 15 and "did not converge" in page.text
 

@@ -41,13 +41,21 @@ def test_few_digits_are_no_fault(tmp_path, values, form):
 
 
 @pytest.mark.parametrize("form", ["%.4g", "%.17g"])
-@pytest.mark.parametrize("values", [
-    coarse(2), coarse(5), coarse(10), coarse(10, SMOOTH + 0.01 * NOISE), coarse(10, written(SMOOTH, "%.4g")),
-    np.interp(T, np.arange(0, 101, 0.3337), np.interp(np.arange(0, 101, 0.3337), T, SMOOTH)),
-    SMOOTH[np.arange(len(T)) // 10 * 10],
-    SMOOTH.astype(np.float32).astype(float),
-    np.rint(SMOOTH / 0.0033) * 0.0033,
-], ids=["by 2", "by 5", "by 10", "noisy by 10", "rounded by 10", "odd rate", "held by 10", "float32", "counts"])  # fmt: skip
+@pytest.mark.parametrize(
+    "values",
+    [
+        coarse(2),
+        coarse(5),
+        coarse(10),
+        coarse(10, SMOOTH + 0.01 * NOISE),
+        coarse(10, written(SMOOTH, "%.4g")),
+        np.interp(T, np.arange(0, 101, 0.3337), np.interp(np.arange(0, 101, 0.3337), T, SMOOTH)),
+        SMOOTH[np.arange(len(T)) // 10 * 10],
+        SMOOTH.astype(np.float32).astype(float),
+        np.rint(SMOOTH / 0.0033) * 0.0033,
+    ],
+    ids=["by 2", "by 5", "by 10", "noisy by 10", "rounded by 10", "odd rate", "held by 10", "float32", "counts"],
+)
 def test_interpolation_is_no_fault(tmp_path, values, form):
     assert told(tmp_path, values, form) == []
 
@@ -58,8 +66,9 @@ def test_a_spike_and_a_clipped_channel_are_told(tmp_path, values, form):
     spoilt = values.copy()
     spoilt[777] += 0.5
     assert [f"a spike at {T[777]:g} s" in message for message in told(tmp_path, spoilt, form)] == [True]
-    assert ["clipped" in message and "highest value, 2.5" in message
-            for message in told(tmp_path, np.minimum(values, 2.5), form)] == [True]  # fmt: skip
+    assert [
+        "clipped" in message and "highest value, 2.5" in message for message in told(tmp_path, np.minimum(values, 2.5), form)
+    ] == [True]
 
 
 def test_the_step_of_the_last_digit_is_that_at_the_value():

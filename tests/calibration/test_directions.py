@@ -269,8 +269,9 @@ def surge():
     motion = np.asarray(jh.free_decay(model, {"surge": 6.0}, time)["surge"]) - float(jh.equilibrium(model)[0])
     motion = motion + NOISE * np.random.default_rng(4).standard_normal(len(time))
     test = Test.model_validate({"id": "surge-1", "kind": "decay", "file": "made", "degree_of_freedom": "surge"})
-    record = Record("surge-1", "decay", "fit", "surge", time, {"surge": motion}, None, None, {"surge": NOISE}, True, 0.0,
-                    test, "made")  # fmt: skip
+    record = Record(
+        "surge-1", "decay", "fit", "surge", time, {"surge": motion}, None, None, {"surge": NOISE}, True, 0.0, test, "made"
+    )
     space = parameter_space(declared, [*true, "column.Cd_z"])
     at_rest = SimpleNamespace(manifest=SimpleNamespace(zero=True))
     problem = pose(declared, at_rest, [record], space)
@@ -318,10 +319,11 @@ def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
     fit, tests, found, model = surge
     noise = effective_noise(fit, tests) | {"pitch": math.radians(0.01)}
     made = {
-        "another surge decay": decay_information(model, fit.problem.space, "surge", 6.0, {"surge": noise["surge"]},
-                                                 cycles=LENGTH / 128, interval=3.3),
+        "another surge decay": decay_information(
+            model, fit.problem.space, "surge", 6.0, {"surge": noise["surge"]}, cycles=LENGTH / 128, interval=3.3
+        ),
         "a pitch decay": decay_information(model, fit.problem.space, "pitch", math.radians(5.0), {"pitch": noise["pitch"]}),
-    }  # fmt: skip
+    }
     first, second = rank_tests(found, made)
     assert first.name == "a pitch decay" and first.gain > second.gain + 1
     index = found.parameters.labels.index("pontoon.Ca_t")

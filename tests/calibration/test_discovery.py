@@ -218,9 +218,12 @@ class Sine(AbstractLoad):
 def test_a_law_of_ones_own_takes_part(tmp_path):
     """What no candidate of the catalogue follows as well is found by one's own, and the model has it afterwards."""
     own = Candidate(
-        "repeating", "roll", ("repeating.strength",), load=Sine({"repeating.strength": jnp.zeros(())}),
+        "repeating",
+        "roll",
+        ("repeating.strength",),
+        load=Sine({"repeating.strength": jnp.zeros(())}),
         sizes={"repeating.strength": 1.0},
-    )  # fmt: skip
+    )
     found = found_in(campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x)), candidates=[own])
     assert found.effects[0].effect == "repeating"
     assert_allclose(float(found.augmented.model.values["repeating.strength"]), 4.0, rtol=0.05)
@@ -247,9 +250,12 @@ class Runaway(AbstractLoad):
 def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
     """The others are scored as ever, whatever one of them does off its null."""
     own = Candidate(
-        "runaway", "roll", ("runaway.strength",), load=Runaway({"runaway.strength": jnp.zeros(())}),
+        "runaway",
+        "roll",
+        ("runaway.strength",),
+        load=Runaway({"runaway.strength": jnp.zeros(())}),
         sizes={"runaway.strength": 1.0},
-    )  # fmt: skip
+    )
     found = found_in(campaign_of(tmp_path, lambda x, v: -500.0 * x**3), candidates=[own])
     assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
     assert "explains too little" in next(one.reason for one in found.rejected if one.effect == "runaway")
@@ -302,11 +308,18 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
     monkeypatch.setattr(search, "away", away)
     after = state([0.1, inertia], (one,))
     under_way = SimpleNamespace(
-        posed=SimpleNamespace(candidates=[one], prior=nearly), found={}, rejected={}, notes=[], count=500.0,
+        posed=SimpleNamespace(candidates=[one], prior=nearly),
+        found={},
+        rejected={},
+        notes=[],
+        count=500.0,
         study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], look=lambda *_: None, steps=lambda x: x),
-        active=lambda chosen: [0, 1], refit=lambda *_: after, prior=lambda chosen: free if chosen else nearly,
-        gain=lambda *_: 0.0, judge=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
-    )  # fmt: skip
+        active=lambda chosen: [0, 1],
+        refit=lambda *_: after,
+        prior=lambda chosen: free if chosen else nearly,
+        gain=lambda *_: 0.0,
+        judge=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
+    )
     found = Search.weighed(under_way, state([0.1, 0.9 * inertia]))
     assert (found is after) == told == ("mass_properties" in under_way.found)
     if told:
@@ -325,11 +338,16 @@ def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, ref
     whole, without = (SimpleNamespace(chosen=chosen, look=look) for chosen in ((first, last), (last,)))
     of_last, of_first = Verdict(60.0, 0.5, True, 120.0, 9.0, 1.2, ""), Verdict(bic, 0.5, True, 60.0, 9.0, 0.9, refused)
     under_way = SimpleNamespace(
-        found={one.name: Found(1.0, None, None, of_last, ()) for one in (first, last)}, rejected={}, notes=[],
-        study=SimpleNamespace(look=lambda *_: look), active=lambda chosen: [], renewed=lambda *_: None,
-        refit=lambda *_: without, judge=lambda *_, **__: of_first,
+        found={one.name: Found(1.0, None, None, of_last, ()) for one in (first, last)},
+        rejected={},
+        notes=[],
+        study=SimpleNamespace(look=lambda *_: look),
+        active=lambda chosen: [],
+        renewed=lambda *_: None,
+        refit=lambda *_: without,
+        judge=lambda *_, **__: of_first,
         refuse=lambda one, why, verdict: under_way.rejected.update({one.name: why}),
-    )  # fmt: skip
+    )
     assert Search.pruned(under_way, whole) is (whole if stays else without)
     assert bool(under_way.rejected) is not stays and bool(under_way.notes) is (stays and bool(refused))
     assert not stays or under_way.found[first.name].verdict == of_first._replace(refused="")

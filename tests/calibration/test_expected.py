@@ -41,9 +41,20 @@ def test_the_impedance_of_springs() -> None:
     step, steps = 0.25, 40
     prepared = irregular().prepared(np.array([[-1.0, 0, 0], [1.0, 0, 0]]).T, None, Clock(0.0, step, steps, (0.0,)))
     record = SeaRecord(
-        model, prepared, jnp.arange(10.0), jnp.asarray(step), jnp.zeros((1, 2, 10)), ParameterSpace(()), True, steps, steps,
-        (0,), (0, 4), ("sea",), 0.04,
-    )  # fmt: skip
+        model,
+        prepared,
+        jnp.arange(10.0),
+        jnp.asarray(step),
+        jnp.zeros((1, 2, 10)),
+        ParameterSpace(()),
+        True,
+        steps,
+        steps,
+        (0,),
+        (0, 4),
+        ("sea",),
+        0.04,
+    )
     frequency = np.array([0.0, 0.02, 0.1])
     omega = 2 * np.pi * frequency
     found = impedance(record, np.zeros(0), frequency)

@@ -40,15 +40,20 @@ def manifest(model: jh.Model) -> dict:
     periods = {dof: {"value": modes.of(dof), "standard_deviation": 0.01 * modes.of(dof)} for dof in ("surge", "pitch")}
     decays = [{"id": f"{d}-decay", "kind": "decay", "degree_of_freedom": d, "file": f"{d}.csv"} for d in ("surge", "heave")]
     return {
-        "name": "all kinds", "platform": "platform.yaml", "channels": {"time": {"column": "t", "unit": "s"}, **channels},
-        "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]}, "zero": {"test": "rest"}, "noise": NOISE,
+        "name": "all kinds",
+        "platform": "platform.yaml",
+        "channels": {"time": {"column": "t", "unit": "s"}, **channels},
+        "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]},
+        "zero": {"test": "rest"},
+        "noise": NOISE,
         "calibrate": {"natural_periods": periods, "free": list(LABELS)},
         "tests": [
-            {"id": "rest", "kind": "static", "file": "rest.csv", "use": "ignore"}, *decays,
+            {"id": "rest", "kind": "static", "file": "rest.csv", "use": "ignore"},
+            *decays,
             {"id": "held", "kind": "static", "degree_of_freedom": "surge", "file": "held.csv"},
             {"id": "sea", "kind": "irregular", "file": "sea.csv", "transient": 100.0, "peak_period": 10.0},
         ],
-    }  # fmt: skip
+    }
 
 
 @pytest.fixture(scope="module")
@@ -118,8 +123,10 @@ def test_a_natural_period_and_its_slope(model, dof: str) -> None:
 
     slope = jax.jit(jax.jacfwd(period))(jnp.asarray(value))
     h = 1e-3 * value
-    rough = (jh.natural_modes(model.with_values({label: value + h})).of(dof)
-             - jh.natural_modes(model.with_values({label: value - h})).of(dof)) / (2 * h)  # fmt: skip
+    rough = (
+        jh.natural_modes(model.with_values({label: value + h})).of(dof)
+        - jh.natural_modes(model.with_values({label: value - h})).of(dof)
+    ) / (2 * h)
     assert float(slope) == pytest.approx(rough, rel=1e-4)
 
 

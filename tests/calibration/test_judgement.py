@@ -123,6 +123,7 @@ def errors(**motions: float) -> Any:
 
 def test_what_something_refused_outdoes_is_in_doubt():
     """By the last round alone, and only where that let nothing in."""
+
     def verdict(bic: float, refused: str) -> Verdict:
         return Verdict(bic, 0.9, True, -100.0, 30.0, 5.0, refused)
 
@@ -144,9 +145,12 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
     scores = [score(1, drag, good), score(2, friction, good), score(3, memory, small)]
     rejected = {memory.name: Rejected("radiation_memory", "pitch", "too little")}
     search = SimpleNamespace(
-        scores=scores, rejected=rejected, found={friction.name: SimpleNamespace(verdict=good)},
-        posed=SimpleNamespace(candidates=[friction, drag, memory]), declared_in_second_order=None,
-    )  # fmt: skip
+        scores=scores,
+        rejected=rejected,
+        found={friction.name: SimpleNamespace(verdict=good)},
+        posed=SimpleNamespace(candidates=[friction, drag, memory]),
+        declared_in_second_order=None,
+    )
     state: Any = SimpleNamespace(chosen=(friction,))
     assert in_doubt(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
     taken_out = small._replace(bic=350.0, refused="all in all the held-out tests do not gain by it")
@@ -160,9 +164,12 @@ def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
     good = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, "")
     drift, friction = Candidate("wave_drift", "pitch", ()), Candidate("coulomb_friction", "surge", ())
     search = SimpleNamespace(
-        scores=[], rejected={}, found={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
-        posed=SimpleNamespace(candidates=[drift, friction]), declared_in_second_order=None,
-    )  # fmt: skip
+        scores=[],
+        rejected={},
+        found={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
+        posed=SimpleNamespace(candidates=[drift, friction]),
+        declared_in_second_order=None,
+    )
     state: Any = SimpleNamespace(chosen=(drift, friction))
     assert in_doubt(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
     worse, better = errors(surge=0.38, pitch=0.1), errors(surge=0.1, pitch=0.13)
@@ -292,19 +299,30 @@ def test_what_matters_of_a_decay(channel, least):
         assert (grounds.matters() >= 1) == matters
 
 
-@pytest.mark.parametrize(("numbers", "where", "said"), [
-    ({"bic": 9, "net": 60}, HELD_OUT, ""),
-    ({"bic": 9, "net": 60}, FITTED, "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)"),
-    ({"bic": 9, "net": 60}, BLOCKS, "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)"),
-    ({"bic": 5, "net": 60}, HELD_OUT, "too little in the fitted tests (BIC +5, 6 are asked)"),
-    ({"bic": 9, "net": 15}, HELD_OUT, "too little in fitted and held-out tests together (BIC +9, -2 ln L -15)"),
-    ({"bic": 43, "net": -197}, HELD_OUT, "do not gain by it (-2 ln L +197)"),
-    ({"bic": 43, "net": -197, "held": 0.0}, HELD_OUT, "squared error of the held-out tests falls by 0 % only"),
-    ({"bic": 43, "held": -1.42}, HELD_OUT, "squared error of the held-out tests grows by 142 %"),
-    ({"bic": 43, "held": 0.1}, BLOCKS, "squared error of the blocks left out in turn falls by 10 % only"),
-    ({"bic": 43, "clear": 2.0}, HELD_OUT, "2.0 standard deviations from none"),
-    ({"bic": 43, "matters": 0.9}, HELD_OUT, "no error falls by"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("numbers", "where", "said"),
+    [
+        ({"bic": 9, "net": 60}, HELD_OUT, ""),
+        (
+            {"bic": 9, "net": 60},
+            FITTED,
+            "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)",
+        ),
+        (
+            {"bic": 9, "net": 60},
+            BLOCKS,
+            "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)",
+        ),
+        ({"bic": 5, "net": 60}, HELD_OUT, "too little in the fitted tests (BIC +5, 6 are asked)"),
+        ({"bic": 9, "net": 15}, HELD_OUT, "too little in fitted and held-out tests together (BIC +9, -2 ln L -15)"),
+        ({"bic": 43, "net": -197}, HELD_OUT, "do not gain by it (-2 ln L +197)"),
+        ({"bic": 43, "net": -197, "held": 0.0}, HELD_OUT, "squared error of the held-out tests falls by 0 % only"),
+        ({"bic": 43, "held": -1.42}, HELD_OUT, "squared error of the held-out tests grows by 142 %"),
+        ({"bic": 43, "held": 0.1}, BLOCKS, "squared error of the blocks left out in turn falls by 10 % only"),
+        ({"bic": 43, "clear": 2.0}, HELD_OUT, "2.0 standard deviations from none"),
+        ({"bic": 43, "matters": 0.9}, HELD_OUT, "no error falls by"),
+    ],
+)
 def test_what_an_effect_has_to_reach(numbers, where, said):
     """Little in the fitted tests is enough where tests that were not fitted agree; much is not where they do not."""
     reason = refusal(**{"held": 0.7, "net": 100.0, "clear": 6.0, "matters": 2.0, **numbers}, where=where)

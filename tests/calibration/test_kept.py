@@ -150,7 +150,7 @@ DAMAGE = {
     "a key less": lambda path: changed(path, about={"reached": {}}),
     "no states": lambda path: changed(path, reached={"states": []}),
     "a list for a document": lambda path: changed(path, about={"reached": []}),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("how", DAMAGE)
@@ -200,7 +200,7 @@ CHANGES = {
     "what is not free": ("platform.yaml", lambda text: text.replace("994.0", "994.5")),
     "noise": ("campaign.yaml", lambda text: text.replace("0.0002", "0.0003")),
     "a use": ("campaign.yaml", lambda text: text.replace("holdout", "fit")),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("how", CHANGES)
@@ -264,10 +264,24 @@ def _of(value, folder):
 
 @pytest.mark.parametrize(
     ("one", "other"),
-    [(1, 1.0), (1, True), ("1", 1), (None, "None"), ([1, [2]], [[1], 2]), ({"a": 1}, {"a": 2}), ({"a": 1}, {"b": 1}),
-     (np.zeros(3), np.zeros((3, 1))), (np.zeros(3), np.zeros(3, np.float32)), (0.0, -0.0), (("ab", "c"), ("a", "bc")),
-     (lambda x: 2 * x, lambda x: 3 * x), (np.nan, 0.0), ([], ()), (jnp.zeros(2), jnp.ones(2))],
-)  # fmt: skip
+    [
+        (1, 1.0),
+        (1, True),
+        ("1", 1),
+        (None, "None"),
+        ([1, [2]], [[1], 2]),
+        ({"a": 1}, {"a": 2}),
+        ({"a": 1}, {"b": 1}),
+        (np.zeros(3), np.zeros((3, 1))),
+        (np.zeros(3), np.zeros(3, np.float32)),
+        (0.0, -0.0),
+        (("ab", "c"), ("a", "bc")),
+        (lambda x: 2 * x, lambda x: 3 * x),
+        (np.nan, 0.0),
+        ([], ()),
+        (jnp.zeros(2), jnp.ones(2)),
+    ],
+)
 def test_what_differs_has_another_fingerprint(one, other):
     assert fingerprints.fingerprint(one) != fingerprints.fingerprint(other)
     assert fingerprints.fingerprint(one) == fingerprints.fingerprint(one)
@@ -345,8 +359,17 @@ def test_a_diagnosis_says_in_one_line_that_it_starts_anew(tmp_path, monkeypatch)
     assert told_in(campaign, path, "round 1")[2] == []  # which was kept anew
 
 
-WORDS = ("import pickle", "from pickle", "cloudpickle", "joblib", "shelve", "marshal", "dill", "read_pickle",
-         "allow_pickle=True")  # fmt: skip
+WORDS = (
+    "import pickle",
+    "from pickle",
+    "cloudpickle",
+    "joblib",
+    "shelve",
+    "marshal",
+    "dill",
+    "read_pickle",
+    "allow_pickle=True",
+)
 
 
 def test_the_packages_read_and_write_no_pickles():

@@ -180,8 +180,20 @@ def sea(height: float, seed: int, use: str, law) -> Force:
     velocity, time = np.gradient(position, step), step * np.arange(n)
     test = Moved(f"sea-{seed}", use, "irregular", time, {"surge": position}, {"surge": 0 * position}, {}, StillWater(), wave)
     gain = np.ones(len(frequency))
-    return Force(test, "surge", force, position, velocity, np.gradient(velocity, step), (position, velocity), gain,
-                 np.ones(n), slice(100, n - 100), 0.01 * float(np.std(force)), 1e3)  # fmt: skip
+    return Force(
+        test,
+        "surge",
+        force,
+        position,
+        velocity,
+        np.gradient(velocity, step),
+        (position, velocity),
+        gain,
+        np.ones(n),
+        slice(100, n - 100),
+        0.01 * float(np.std(force)),
+        1e3,
+    )
 
 
 def test_slow_drift_goes_with_the_squared_envelope():
@@ -233,11 +245,27 @@ def test_what_is_written(model, tmp_path):
     made = decays(model(), cubic)
     jitter = np.random.default_rng(1).uniform(-0.005, 0.005, len(TIME))
     tests = tuple(
-        TestFit(test.id, test.use, "decay", "roll", TIME + jitter, tuple(
-            Series("roll", *(np.interp(TIME + jitter, TIME, row["roll"]) for row in (test.measured, test.simulated)), 0.0,
-                   NOISE, True) for _ in "1"), {}, "roll.csv")
+        TestFit(
+            test.id,
+            test.use,
+            "decay",
+            "roll",
+            TIME + jitter,
+            tuple(
+                Series(
+                    "roll",
+                    *(np.interp(TIME + jitter, TIME, row["roll"]) for row in (test.measured, test.simulated)),
+                    0.0,
+                    NOISE,
+                    True,
+                )
+                for _ in "1"
+            ),
+            {},
+            "roll.csv",
+        )
         for test, _ in made
-    )  # fmt: skip
+    )
     campaign = SimpleNamespace(manifest=SimpleNamespace(zero=None), records=[SimpleNamespace(id=test.id) for test in tests])
     search = SimpleNamespace(campaign=campaign, study=SimpleNamespace(seas=()), posed=SimpleNamespace(motions=("roll",)))
     latent = latent_of(search, SimpleNamespace(model=model(), tests=tests))

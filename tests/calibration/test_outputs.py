@@ -143,8 +143,11 @@ def test_the_series_are_on_one_time_axis_with_units(result: Calibration, written
             for series in test.series:
                 here = {"test": test.id, "channel": series.channel}
                 factor = 180 / np.pi if series.channel == "pitch" else 1.0
-                for name, values in (("measured", series.measured), ("simulated", series.simulated),
-                                     ("before", test.start[series.channel])):  # fmt: skip
+                for name, values in (
+                    ("measured", series.measured),
+                    ("simulated", series.simulated),
+                    ("before", test.start[series.channel]),
+                ):
                     got = data[name].sel(here).values
                     np.testing.assert_allclose(got[: len(values)], factor * values, atol=1e-12)
                     assert np.isnan(got[len(values) :]).all()
@@ -317,11 +320,28 @@ def test_the_report_is_one_page_that_needs_nothing_else(written: Path) -> None:
     assert all(link.startswith("data:image/png;base64,") for link in page.links)
     assert not {"script", "link", "iframe", "object"} & set(page.tags)
     assert "http" not in page.text and "url(" not in path.read_text() and "@import" not in path.read_text()
-    told = ("volturnus-s-decays", "2 decays followed to", "1 held-out decay", "9 of 11 coefficients determined",
-            "not determined: linear_damping.B33; at a bound: column.Cd_z", "Parameters", "1.480 ± 0.015", "at its bound",
-            "linear damping in surge", "not determined", "Tests", "surge-1", "free decay in heave", "held out",
-            "Other motions, which do not count in the fit (6)", "Damping by classical analysis", "1/rad", "Notes",
-            "stays near its starting value", "Figures")  # fmt: skip
+    told = (
+        "volturnus-s-decays",
+        "2 decays followed to",
+        "1 held-out decay",
+        "9 of 11 coefficients determined",
+        "not determined: linear_damping.B33; at a bound: column.Cd_z",
+        "Parameters",
+        "1.480 ± 0.015",
+        "at its bound",
+        "linear damping in surge",
+        "not determined",
+        "Tests",
+        "surge-1",
+        "free decay in heave",
+        "held out",
+        "Other motions, which do not count in the fit (6)",
+        "Damping by classical analysis",
+        "1/rad",
+        "Notes",
+        "stays near its starting value",
+        "Figures",
+    )
     places, at = [], 0
     for words in told:
         at = page.text.find(words, at)
@@ -375,9 +395,13 @@ def test_the_report_escapes_what_comes_from_files(result: Calibration, tmp_path:
     first = result.parameters["column.Ca_t"]
     tests = (replace(result.tests[0], id=evil), result.tests[1])
     strange = replace(
-        result, campaign=evil, tests=tests, notes=(evil,), converged=False,
+        result,
+        campaign=evil,
+        tests=tests,
+        notes=(evil,),
+        converged=False,
         parameters={evil: replace(first, label=evil, unit=evil, meaning=evil)},
-    )  # fmt: skip
+    )
     folder = write_calibration(strange, tmp_path / "out", figures=False)
     (folder / "figures").mkdir()
     Image.new("RGB", (3, 3)).save(folder / "figures" / "a&<b>.png")
@@ -416,8 +440,14 @@ def test_decays_of_one_motion_that_are_not_followed_make_one_note(result: Calibr
 
 def test_numbers_as_people_read_them() -> None:
     assert [number(x) for x in (0.0, 1.0, 43938.4, 2e5, -0.000123, None, np.nan)] == [
-        "0", "1.000", "43938", "2.000·10⁵", "-1.230·10⁻⁴", "–", "–",
-    ]  # fmt: skip
+        "0",
+        "1.000",
+        "43938",
+        "2.000·10⁵",
+        "-1.230·10⁻⁴",
+        "–",
+        "–",
+    ]
     assert with_deviation(1.5123, 0.0131) == "1.512 ± 0.013"
     assert with_deviation(3.6292e8, 5.3e5) == "(3.6292 ± 0.0053)·10⁸"
     assert with_deviation(0.2, 30.0) == "0 ± 30"

@@ -70,7 +70,7 @@ def test_a_sound_campaign_has_nothing_odd():
         ({"pitch": {"unit": "rad"}}, "pitch-3.csv, test pitch-3, channel pitch", "an angle of 3\\d\\d deg"),
         ({"heave": {"column": "surge_m"}}, "surge-1.csv, channel heave of test surge-1", "that of channel surge, 'surge_m'"),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_unit_is_an_error(tmp_path, channels, where, told):
     with pytest.raises(InputError) as error:
         load_campaign(stated(tmp_path / "campaign", **channels))
@@ -127,8 +127,12 @@ def test_waves_that_cannot_stand_are_told(factor, severity):
     time = np.arange(0.0, 600.0, 0.5)
     campaign = load_campaign(DEMO)
     record = replace(
-        campaign.record("surge-1"), kind="regular", degree_of_freedom=None, time=time, values={},
+        campaign.record("surge-1"),
+        kind="regular",
+        degree_of_freedom=None,
+        time=time,
+        values={},
         wave=factor * 2.0 * np.sin(2 * np.pi * time / 10),  # 4 m high, 156 m long: 1/39
-    )  # fmt: skip
+    )
     found = check_plausible([record], campaign.model, zeroed=False)
     assert [one.severity for one in found] == ([severity] if severity else [])

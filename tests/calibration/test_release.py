@@ -51,10 +51,14 @@ def test_a_decay_begins_at_its_release(hold, noise):
     assert -STEP < t[found.first] - released < 0.06 * PERIOD
 
 
-@pytest.mark.parametrize(("before", "start", "first"), [
-    ((held(20, 0.0), PULL, held(15)), "release", 65.0), ((held(20, 0.0), PULL), "release", 50.0),
-    ((held(15, 1.02), held(2, 1.01), held(9)), "release", 26.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("before", "start", "first"),
+    [
+        ((held(20, 0.0), PULL, held(15)), "release", 65.0),
+        ((held(20, 0.0), PULL), "release", 50.0),
+        ((held(15, 1.02), held(2, 1.01), held(9)), "release", 26.0),
+    ],
+)
 def test_the_last_stillness_counts(before, start, first):
     t, x = motion(*before, DECAY)
     found = free_motion(t, x)
@@ -69,9 +73,14 @@ def test_a_push_from_rest_is_left_out():
     assert 20 < t[found.first] < 20 + 0.35 * PERIOD
 
 
-@pytest.mark.parametrize(("after", "end", "last"), [
-    (held(40, AT_END), "catch", 40.0), (swing(80, AT_END, -2 * W), "push", 40.0), (swing(80, 2.0, 0.0), "push", 40.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("after", "end", "last"),
+    [
+        (held(40, AT_END), "catch", 40.0),
+        (swing(80, AT_END, -2 * W), "push", 40.0),
+        (swing(80, 2.0, 0.0), "push", 40.0),
+    ],
+)
 def test_a_decay_ends_where_it_is_disturbed(after, end, last):
     t, x = motion(DECAY[:400], after)
     found = free_motion(t, x)
@@ -86,12 +95,14 @@ def test_a_second_push_after_rest_is_left_out():
 
 
 FREE = {
-    "noisy": motion(DECAY, noise=0.03), "in motion": motion(DECAY[30:]), "to rest": motion(swing(300)),
+    "noisy": motion(DECAY, noise=0.03),
+    "in motion": motion(DECAY[30:]),
+    "to rest": motion(swing(300)),
     "strongly damped": motion(np.exp(-0.15 * W * STEP * np.arange(900)) * np.cos(W * STEP * np.arange(900))),
     "with a slow motion": motion(DECAY + 0.2 * np.cos(W / 4 * STEP * np.arange(900) + 1)),
     "with a fast motion": motion(DECAY + 0.1 * np.cos(3.3 * W * STEP * np.arange(900) + 1)),
     "with a gap": tuple(np.delete(one, np.s_[200:240]) for one in motion(DECAY)),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", FREE)
@@ -140,7 +151,7 @@ def test_waves_in_a_decay_are_told(tmp_path):
     told, _ = campaign(tmp_path, t, x, wave)
     assert len(told) == 1 and told[0].startswith("waves of 2.29")
     assert "0.1 m high, where a decay should be in still water" in told[0]
-    assert campaign(tmp_path, t, x, 0.01 * DECAY + 0.0005 * RNG.normal(size=len(t)))[0] == []           # its own
+    assert campaign(tmp_path, t, x, 0.01 * DECAY + 0.0005 * RNG.normal(size=len(t)))[0] == []  # its own
     told, _ = campaign(tmp_path, t, x * np.exp(-t / 15) + 0.3 * np.sin(2 * np.pi * t / 2.3))
     assert [message[:40] for message in told] == ["its last third oscillates by 0.3 m in 2."]
 
@@ -152,11 +163,18 @@ def sea(first, last, duration=400.0, period=4.0):
     return t, height * np.cos(2 * np.pi * t / period) + 0.001 * RNG.normal(size=len(t))
 
 
-@pytest.mark.parametrize(("bounds", "transient", "words"), [
-    ((-20, 500), 0.0, ["the waves have begun before the record"]), ((-20, 500), 40.0, []), ((0, 500), 10.0, []),
-    ((20, 500), 60.0, []), ((100, 500), 20.0, ["the waves begin at 1"]), ((0, 300), 20.0, ["the waves die down after 2"]),
-    ((0, 300), 300.0, []),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("bounds", "transient", "words"),
+    [
+        ((-20, 500), 0.0, ["the waves have begun before the record"]),
+        ((-20, 500), 40.0, []),
+        ((0, 500), 10.0, []),
+        ((20, 500), 60.0, []),
+        ((100, 500), 20.0, ["the waves begin at 1"]),
+        ((0, 300), 20.0, ["the waves die down after 2"]),
+        ((0, 300), 300.0, []),
+    ],
+)
 def test_seas_that_begin_late_or_die_down(tmp_path, bounds, transient, words):
     t, wave = sea(*bounds)
     found, _ = campaign(tmp_path, t, 0.5 * wave + 0.01 * RNG.normal(size=len(t)), wave, kind="regular", transient=transient)

@@ -169,7 +169,5 @@ def test_messages(campaign, made, tmp_path) -> None:  # noqa: F811
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as stopped:
-        calibrate_in_waves(
-            campaign, free=LABELS, start=start_of(campaign), objective="both", options=OPTIONS, progress=stop
-        )
+        calibrate_in_waves(campaign, free=LABELS, start=start_of(campaign), objective="both", options=OPTIONS, progress=stop)
     assert stopped.value.partial is not None and not stopped.value.partial.converged

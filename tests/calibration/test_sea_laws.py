@@ -40,14 +40,32 @@ HEADS = "t,w,surge,heave,pitch"
 
 
 def document() -> dict:
-    channels = {"time": {"column": "t", "unit": "s"}, "surge": {"column": "surge", "unit": "m"},
-                "heave": {"column": "heave", "unit": "m"}, "pitch": {"column": "pitch", "unit": "rad"}}  # fmt: skip
+    channels = {
+        "time": {"column": "t", "unit": "s"},
+        "surge": {"column": "surge", "unit": "m"},
+        "heave": {"column": "heave", "unit": "m"},
+        "pitch": {"column": "pitch", "unit": "rad"},
+    }
     tests = [
-        {"id": f"sea-{i + 1}", "kind": "irregular", "file": "sea.csv", "window": [i * LENGTH, (i + 1) * LENGTH - STEP],
-         "transient": 80.0, "peak_period": 10.0, "use": "holdout" if i == 1 else "fit"} for i in range(len(HEIGHTS))
-    ]  # fmt: skip
-    return {"name": "stepped", "platform": "platform.yaml", "channels": channels, "zero": {"window": [0.0, 15.0]},
-            "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]}, "tests": tests}  # fmt: skip
+        {
+            "id": f"sea-{i + 1}",
+            "kind": "irregular",
+            "file": "sea.csv",
+            "window": [i * LENGTH, (i + 1) * LENGTH - STEP],
+            "transient": 80.0,
+            "peak_period": 10.0,
+            "use": "holdout" if i == 1 else "fit",
+        }
+        for i in range(len(HEIGHTS))
+    ]
+    return {
+        "name": "stepped",
+        "platform": "platform.yaml",
+        "channels": channels,
+        "zero": {"window": [0.0, 15.0]},
+        "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]},
+        "tests": tests,
+    }
 
 
 def stepped() -> tuple[np.ndarray, np.ndarray]:
@@ -159,17 +177,23 @@ def found(campaign, fitted, calls):
             return fitted
         alone = list(uses.values()).count("fit") == 1
         one = replace(fitted.parameters["column.Cd_t"], value=1.0 if alone else 1.5)
-        worse = [replace(t, bands={c: {k: v._replace(after=-0.4) for k, v in row.items()} for c, row in t.bands.items()})
-                 for t in fitted.tests]  # fmt: skip
+        worse = [
+            replace(t, bands={c: {k: v._replace(after=-0.4) for k, v in row.items()} for c, row in t.bands.items()})
+            for t in fitted.tests
+        ]
         return replace(fitted, model=model, parameters={"column.Cd_t": one}, tests=tuple(worse))
 
     said = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("calibration.fitting.law_choice.calibrate_in_waves", fake)
         laws = choose_law(
-            campaign, laws=("constant", "significant_height"), free=LABELS, options=OPTIONS, start=start_of(campaign),
+            campaign,
+            laws=("constant", "significant_height"),
+            free=LABELS,
+            options=OPTIONS,
+            start=start_of(campaign),
             progress=said.append,
-        )  # fmt: skip
+        )
     return laws, said
 
 
@@ -237,9 +261,7 @@ def test_the_law_that_made_the_records_is_chosen(campaign) -> None:
     Not so the one in the middle: constants fitted to it are wrong in the sea before, whose slow drift it begins with, and 0.92
     and 1.79 meet its energies equally well, to 1.1 and 1.3 %, where the law has 1.04.
     """
-    laws = choose_law(
-        campaign, laws=("constant", "significant_height"), free=LABELS, options=OPTIONS, start=start_of(campaign)
-    )
+    laws = choose_law(campaign, laws=("constant", "significant_height"), free=LABELS, options=OPTIONS, start=start_of(campaign))
     plain, law = laws.laws
     assert laws.chosen is law and law.held_out < 0.1 * plain.held_out and law.fitted < 0.1 * plain.fitted
     for sea in laws.seas:
@@ -373,9 +395,12 @@ def test_slow_motion_apart_is_found_back(campaign, made, tmp_path) -> None:
         for r in campaign.records
     )
     laws = choose_law(
-        replace(campaign, records=records), laws=("constant", "high_pass"), free=LABELS, options=OPTIONS,
+        replace(campaign, records=records),
+        laws=("constant", "high_pass"),
+        free=LABELS,
+        options=OPTIONS,
         start=start_of(campaign),
-    )  # fmt: skip
+    )
     assert laws.chosen.name == "high_pass" and laws.chosen.held_out < 0.3 * laws.laws[0].held_out
     assert laws.chosen.calibration.parameters[added[0]].value == pytest.approx(3.0, rel=0.15)
 

@@ -22,8 +22,11 @@ from jaxhydro.errors import InputError
 NOISE, OFFSET = 2e-4, 3e-3  # rad
 # one size of batch, CMA-ES's apart: less to compile
 _METHODS: tuple[AbstractSearch, ...] = (
-    MultiStart(starts=33), CMAES(), Genetic(population=33), DifferentialEvolution(population=11),
-)  # fmt: skip
+    MultiStart(starts=33),
+    CMAES(),
+    Genetic(population=33),
+    DifferentialEvolution(population=11),
+)
 CHOSEN = {method.name: method for method in _METHODS}
 ENOUGH = Budget(seconds=60.0, simulations=3000.0, objective=0.005)  # the noise alone is 0.002
 LABELS = list(SHIP_TRUE)
@@ -180,8 +183,9 @@ def test_ranges_keep_to_what_is_given_and_what_is_physical(campaign: Campaign) -
     model = jh.build(campaign.platform)
     given = {"added_mass.A44": (20.0, 40.0)}
     assert ranges(model, LABELS, given, 10.0, "x") == given | {
-        "linear_damping.B44": pytest.approx((1.2, 120.0)), "quadratic_damping.B44": pytest.approx((0.5, 50.0)),
-    }  # fmt: skip
+        "linear_damping.B44": pytest.approx((1.2, 120.0)),
+        "quadratic_damping.B44": pytest.approx((0.5, 50.0)),
+    }
     with pytest.raises(InputError, match="expected bounds to search between") as caught:
         ranges(model.with_values({"linear_damping.B44": 0.0}), LABELS, given, 10.0, "x")
     assert [p.where for p in caught.value.problems] == ["calibrate.bounds.linear_damping.B44"]

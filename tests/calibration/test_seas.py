@@ -35,20 +35,33 @@ HEADER = "t,w,x,z,p"
 def document(**changes):
     time = SCALE**0.5
     return {
-        "name": "made", "platform": "platform.yaml", "scale": SCALE,
-        "channels": {"time": {"column": "t", "unit": "s"}, "surge": {"column": "x", "unit": "m"},
-                     "heave": {"column": "z", "unit": "m"}, "pitch": {"column": "p", "unit": "deg", "sign": -1}},
+        "name": "made",
+        "platform": "platform.yaml",
+        "scale": SCALE,
+        "channels": {
+            "time": {"column": "t", "unit": "s"},
+            "surge": {"column": "x", "unit": "m"},
+            "heave": {"column": "z", "unit": "m"},
+            "pitch": {"column": "p", "unit": "deg", "sign": -1},
+        },
         "wave_channel": {"column": "w", "unit": "m", "position": [GAUGE[0] / SCALE, GAUGE[1] / SCALE]},
         "zero": {"test": "rest"},
         "tests": [
             {"id": "rest", "kind": "static", "file": "rest.csv", "use": "ignore"},
-            {"id": "sea-a", "kind": "irregular", "file": "sea.csv", "window": [0, 200 / time], "transient": 40 / time,
-             "peak_period": 11 / time, "significant_wave_height": 5 / SCALE},
+            {
+                "id": "sea-a",
+                "kind": "irregular",
+                "file": "sea.csv",
+                "window": [0, 200 / time],
+                "transient": 40 / time,
+                "peak_period": 11 / time,
+                "significant_wave_height": 5 / SCALE,
+            },
             {"id": "sea-b", "kind": "irregular", "file": "sea.csv", "window": [200 / time, 400 / time], "use": "holdout"},
             {"id": "wave", "kind": "regular", "file": "sea.csv", "window": [100 / time, 300 / time], "period": 10 / time},
         ],
         **changes,
-    }  # fmt: skip
+    }
 
 
 def write(folder, text=None, sea=None, **changes):
@@ -243,8 +256,12 @@ def test_decays_are_wanted_where_only_waves_are(made, tmp_path):
 def saved(folder, **more):
     values = {"column.Ca_t": 1.4, "mooring.line1.stiffness": 3.3e4}
     parameters = {k: {"value": v, "unit": "-", "identifiable": k != "column.Ca_t"} for k, v in {**values, **more}.items()}
-    content = {"campaign": "other", "jaxhydro": "0", "platform": "another hull",
-               "baseline": {"parameters": parameters, "error": {}, "objective": {"fit": 1.0}, "converged": True}}  # fmt: skip
+    content = {
+        "campaign": "other",
+        "jaxhydro": "0",
+        "platform": "another hull",
+        "baseline": {"parameters": parameters, "error": {}, "objective": {"fit": 1.0}, "converged": True},
+    }
     (folder / "calibration.json").write_text(json.dumps(content))
     return folder / "calibration.json"
 

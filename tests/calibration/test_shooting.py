@@ -48,9 +48,14 @@ START = {"added_mass.A11": 5.53e6, "linear_damping.B11": 6e4}  # a natural perio
 
 def document() -> dict:
     test = {"id": "sea", "kind": "irregular", "file": "sea.csv", "transient": 100.0, "peak_period": 9.0}
-    return {"name": "drift", "platform": "platform.yaml", "zero": {"window": [0.0, 10.0]}, "tests": [test],
-            "channels": {"time": {"column": "t", "unit": "s"}, **{dof: {"column": dof, "unit": "m"} for dof in DOFS}},
-            "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]}}  # fmt: skip
+    return {
+        "name": "drift",
+        "platform": "platform.yaml",
+        "zero": {"window": [0.0, 10.0]},
+        "tests": [test],
+        "channels": {"time": {"column": "t", "unit": "s"}, **{dof: {"column": dof, "unit": "m"} for dof in DOFS}},
+        "wave_channel": {"column": "w", "unit": "m", "position": [0.0, 0.0]},
+    }
 
 
 @pytest.fixture(scope="module")

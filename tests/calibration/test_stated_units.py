@@ -17,12 +17,29 @@ from jaxhydro.interop.stated_units import stated_unit
 T = np.arange(0.0, 300.0, 0.1)
 
 
-@pytest.mark.parametrize(("column", "unit"), [
-    ("Roll [rad]", "rad"), ("eta (mm)", "mm"), ("Time[s]", "s"), ("surge_m", "m"),
-    ("pitch in deg", "deg"), ("Pitch, degrees", "deg"),
-    ("t / ms", "ms"), ("Heave [Metres]", "m"), ("roll (°)", "deg"), ("PtfmSurge", None), ("x_t", None), ("F [kN]", None),
-    ("surge_x", None), ("wave_1", None), ("v (m/s)", None), ("PtfmPitch_deg", "deg"), ("eta {cm}", "cm"), ("heave_ft", "ft"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("column", "unit"),
+    [
+        ("Roll [rad]", "rad"),
+        ("eta (mm)", "mm"),
+        ("Time[s]", "s"),
+        ("surge_m", "m"),
+        ("pitch in deg", "deg"),
+        ("Pitch, degrees", "deg"),
+        ("t / ms", "ms"),
+        ("Heave [Metres]", "m"),
+        ("roll (°)", "deg"),
+        ("PtfmSurge", None),
+        ("x_t", None),
+        ("F [kN]", None),
+        ("surge_x", None),
+        ("wave_1", None),
+        ("v (m/s)", None),
+        ("PtfmPitch_deg", "deg"),
+        ("eta {cm}", "cm"),
+        ("heave_ft", "ft"),
+    ],
+)
 def test_the_unit_in_a_name(column, unit):
     assert stated_unit(column, {}) == unit
     assert stated_unit(column, {column: "(mm)"}) == "mm"
@@ -60,22 +77,33 @@ hydrostatics: {displaced_volume: 0.9, C33: 2.0e4}
     return [finding.message for finding in load_campaign(folder).findings]
 
 
-@pytest.mark.parametrize(("column", "unit", "size", "words"), [
-    ("Roll [deg]", "deg", 5.0, []), ("Roll", "deg", 5.0, []), ("Roll [rad]", "rad", 0.1, []),
-    ("Roll [rad]", "deg", 0.09, ["the file states rad for column 1, and the manifest deg", "moves by 0.08"]),
-    ("Roll", "deg", 0.09, ["moves by 0.08"]),
-    ("Roll [deg]", "rad", 0.5, ["the file states deg for column 1, and the manifest rad"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("column", "unit", "size", "words"),
+    [
+        ("Roll [deg]", "deg", 5.0, []),
+        ("Roll", "deg", 5.0, []),
+        ("Roll [rad]", "rad", 0.1, []),
+        ("Roll [rad]", "deg", 0.09, ["the file states rad for column 1, and the manifest deg", "moves by 0.08"]),
+        ("Roll", "deg", 0.09, ["moves by 0.08"]),
+        ("Roll [deg]", "rad", 0.5, ["the file states deg for column 1, and the manifest rad"]),
+    ],
+)
 def test_a_file_that_states_another_unit(tmp_path, column, unit, size, words):
     found = campaign(tmp_path, column, unit, size)
     assert len(found) == len(words) and all(message.startswith(word) for message, word in zip(found, words))
 
 
-@pytest.mark.parametrize(("scale", "period", "words"), [
-    (4.0, 1.0, None), (4.0, 2.0, "longer by the square root of `scale`, 2: are the records at full scale already?"),
-    (4.0, 0.5, "shorter by the square root of `scale`, 2: were times scaled down before?"),
-    (1.0, 0.25, "a `scale` of about 64"), (1.0, 2.0, None), (1.0, 1.7, None),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("scale", "period", "words"),
+    [
+        (4.0, 1.0, None),
+        (4.0, 2.0, "longer by the square root of `scale`, 2: are the records at full scale already?"),
+        (4.0, 0.5, "shorter by the square root of `scale`, 2: were times scaled down before?"),
+        (1.0, 0.25, "a `scale` of about 64"),
+        (1.0, 2.0, None),
+        (1.0, 1.7, None),
+    ],
+)
 def test_a_period_that_is_the_root_of_the_scale_away(tmp_path, scale, period, words):
     found = campaign(tmp_path, "Roll", "deg", 5.0, scale, period)
     assert [words in message for message in found] == ([True] if words else [])

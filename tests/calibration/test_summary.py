@@ -30,14 +30,20 @@ def saved(
     **more: Any,
 ) -> Saved:
     """A calibration.json: tests by id as (kind, use, error)."""
-    return Saved.model_validate({
-        "campaign": "basin", "jaxhydro": "0", **more,
-        "baseline": {
-            "parameters": parameters, "error": {id: {"use": use, **row} for id, (_, use, row) in tests.items()},
-            "objective": {"fit": 1.0}, "converged": converged,
-        },
-        "tests": {id: {"use": use, "kind": kind} for id, (kind, use, _) in tests.items()},
-    })  # fmt: skip
+    return Saved.model_validate(
+        {
+            "campaign": "basin",
+            "jaxhydro": "0",
+            **more,
+            "baseline": {
+                "parameters": parameters,
+                "error": {id: {"use": use, **row} for id, (_, use, row) in tests.items()},
+                "objective": {"fit": 1.0},
+                "converged": converged,
+            },
+            "tests": {id: {"use": use, "kind": kind} for id, (kind, use, _) in tests.items()},
+        }
+    )
 
 
 def said(one: Saved) -> str:
@@ -136,8 +142,11 @@ def test_equal_warnings_are_said_once() -> None:
     assert str(gap) == str(several[9]) == "t-1.csv, test t-1, channel pitch: a gap" and str(surge) == str(several[10])
     heads, rows = tables.findings(several)
     assert heads == ("Test", "File", "Channel", "Warning")
-    assert rows == [("9 tests", "9 files", "pitch", "no zero"), ("t-1", "t-1.csv", "pitch", "a gap"),
-                    ("t-1", "t-1.csv", "surge", "no zero")]  # fmt: skip
+    assert rows == [
+        ("9 tests", "9 files", "pitch", "no zero"),
+        ("t-1", "t-1.csv", "pitch", "a gap"),
+        ("t-1", "t-1.csv", "surge", "no zero"),
+    ]
     (two,) = grouped([finding("a"), finding("b"), finding("b")])
     assert str(two) == "tests a and b, channel pitch: no zero"
 
@@ -150,8 +159,9 @@ def test_warnings_that_differ_by_numbers_alone_are_one() -> None:
     assert one.message == "its mean drifts by -0.149 to -0.0885 m over 100 s" and one.tests == ("a", "b", "c")
     spikes = [replace(finding(id, f"a spike at {t} s"), time=float(t)) for id, t in (("a", 10), ("b", 20), ("c", 20))]
     assert [(one.message, one.tests) for one in grouped(spikes)] == [
-        ("a spike at 10 s", ("a",)), ("a spike at 20 s", ("b", "c"))
-    ]  # fmt: skip
+        ("a spike at 10 s", ("a",)),
+        ("a spike at 20 s", ("b", "c")),
+    ]
     shared = [finding(id, f"the fitted test surge-{n} has samples of it") for id, n in (("a", 1), ("b", 2))]
     assert len(grouped(shared)) == 2
     tiny = [finding(id, f"written to {x} s, 12.5 in all") for id, x in (("a", "1e-05"), ("b", "0.01"))]
@@ -178,15 +188,27 @@ def test_calibrated_values_beside_true_ones() -> None:
 
 @pytest.mark.parametrize(
     ("ratios", "text"),
-    [([0.004, 0.017], "0.4-1.7 %"), ([0.0004, 0.017], "0.04-1.7 %"), ([0.017, 0.01701], "1.7 %"), ([0.0], "0 %"),
-     ([0.02, 1.4], "2-140 %"), ([5.0, 3e7], "more than 10000 %")],
-)  # fmt: skip
+    [
+        ([0.004, 0.017], "0.4-1.7 %"),
+        ([0.0004, 0.017], "0.04-1.7 %"),
+        ([0.017, 0.01701], "1.7 %"),
+        ([0.0], "0 %"),
+        ([0.02, 1.4], "2-140 %"),
+        ([5.0, 3e7], "more than 10000 %"),
+    ],
+)
 def test_spans_of_ratios(ratios: list[float], text: str) -> None:
     assert percent_span(ratios) == text
 
 
 def test_units_and_counts_as_people_read_them() -> None:
     assert [readable_unit(u) for u in ("N s2/m2", "N m s2/rad2", "kg m2", "N/m5", "N s/m", "-", "m")] == [
-        "N s²/m²", "N m s²/rad²", "kg m²", "N/m⁵", "N s/m", "", "m"
-    ]  # fmt: skip
+        "N s²/m²",
+        "N m s²/rad²",
+        "kg m²",
+        "N/m⁵",
+        "N s/m",
+        "",
+        "m",
+    ]
     assert counted(1, "test") == "1 test" and counted(0, "test") == "0 tests" and counted(9, "test") == "9 tests"

@@ -40,8 +40,15 @@ def campaign(folder, point=POINT, names=DOFS, change=lambda columns: columns) ->
     channels = {name: {"column": name, "unit": "m" if DOFS.index(name) < 3 else "rad"} for name in names}
     test = {"id": "a", "kind": "decay", "degree_of_freedom": names[0], "file": "a.csv"}
     noise = {name: 1e-4 if name == "surge" else 2e-4 for name in names if name in ("surge", "pitch")}
-    document = {"name": "point", "platform": "volturnus-s", "scale": SCALE, "tests": [test], "noise": noise,
-                "channels": {"time": {"column": "t", "unit": "s"}, **channels}, "tracked_point": POINT}  # fmt: skip
+    document = {
+        "name": "point",
+        "platform": "volturnus-s",
+        "scale": SCALE,
+        "tests": [test],
+        "noise": noise,
+        "channels": {"time": {"column": "t", "unit": "s"}, **channels},
+        "tracked_point": POINT,
+    }
     (folder / "campaign.yaml").write_text(json.dumps(document))
 
 

@@ -63,8 +63,9 @@ def test_records_of_unlike_noise_keep_their_own_variance() -> None:
 
 def test_groups_share_a_colour_unless_they_differ() -> None:
     random = np.random.default_rng(7)
-    white, slow = ([periodogram(noise(kind, random)[0], np.zeros(N // 2 + 1), STEP) for _ in range(3)]
-                   for kind in ("white", "drifting"))  # fmt: skip
+    white, slow = (
+        [periodogram(noise(kind, random)[0], np.zeros(N // 2 + 1), STEP) for _ in range(3)] for kind in ("white", "drifting")
+    )
     (one, _), (other, _) = colours([slow[:1], slow[1:]])
     assert one == other and one.peak > 1
     (one, _), (other, _) = colours([white, slow])

@@ -54,8 +54,10 @@ def test_what_is_written_is_what_python_finds(ship: tuple[Path, Path, Likelihood
     assert list(content["profiles"]) == ["added_mass.A44"] and content["nuts"] is None
     assert content["bootstrap"]["repeats"]["groups"] == {"roll-1": ["roll-1", "roll-3"], "roll-2": ["roll-2"]}
     assert {Path(one["file"]).name for one in content["figures"]} == {
-        "profile-added_mass.A44.png", "draws-blocks.png", "draws-repeats.png"
-    }  # fmt: skip
+        "profile-added_mass.A44.png",
+        "draws-blocks.png",
+        "draws-repeats.png",
+    }
     assert all((out / one["file"]).stat().st_size > 5000 for one in content["figures"])
     assert any("roll-2 without repeats" in note for note in content["notes"])
     assert "makes a page of them" in said
@@ -102,8 +104,12 @@ def test_results_do_not_stand_beside_others(ship: tuple[Path, Path, Likelihood])
 
 @pytest.mark.parametrize(
     "ends, words",
-    [((1.4949, 1.5351), "1.495 to 1.535"), ((0.2, None), "at least 0.200"), ((None, 3.0), "at most 3.00"),
-     ((None, None), "not bounded")],
-)  # fmt: skip
+    [
+        ((1.4949, 1.5351), "1.495 to 1.535"),
+        ((0.2, None), "at least 0.200"),
+        ((None, 3.0), "at most 3.00"),
+        ((None, None), "not bounded"),
+    ],
+)
 def test_intervals_in_words(ends: tuple[float | None, float | None], words: str) -> None:
     assert interval(*ends) == words

@@ -18,21 +18,43 @@ from calibration.results.write_uncertainty import write_uncertainty
 from jaxhydro.errors import InputError
 
 MASS = {
-    "value": 18.4088, "unit": "kg m2", "meaning": "added mass in roll", "identifiable": True, "at_bound": False,
-    "laplace": [18.1517, 18.6695], "white": [18.3999, 18.4176], "white_too_small_by": 29.2109,
-    "profile": [None, 18.6676], "blocks": [18.2909, 18.5125],
-}  # fmt: skip
+    "value": 18.4088,
+    "unit": "kg m2",
+    "meaning": "added mass in roll",
+    "identifiable": True,
+    "at_bound": False,
+    "laplace": [18.1517, 18.6695],
+    "white": [18.3999, 18.4176],
+    "white_too_small_by": 29.2109,
+    "profile": [None, 18.6676],
+    "blocks": [18.2909, 18.5125],
+}
 DAMPING = {
-    "value": 0.76541, "unit": "N m s/rad", "meaning": "linear damping in roll", "identifiable": False,
-    "at_bound": False, "laplace": [0.027306, 36.393], "white": [0.17589, 3.6609], "white_too_small_by": None,
+    "value": 0.76541,
+    "unit": "N m s/rad",
+    "meaning": "linear damping in roll",
+    "identifiable": False,
+    "at_bound": False,
+    "laplace": [0.027306, 36.393],
+    "white": [0.17589, 3.6609],
+    "white_too_small_by": None,
     "blocks": [0.30247, 3.7146],
-}  # fmt: skip
+}
 CONTENT: dict[str, Any] = {
-    "campaign": "a roll decay", "platform": "a tanker", "jaxhydro": "0.1.0", "calibration": "results/calibration.json",
-    "level": 0.9, "seed": 0, "converged": True, "parameters": {"added_mass.A44": MASS, "linear_damping.B44": DAMPING},
-    "profiles": {}, "bootstrap": {"blocks": {"asked": 200, "draws": 198, "unsettled": 39, "groups": {"roll-1": 2.54}}},
-    "nuts": None, "notes": ["the records do not determine linear_damping.B44"], "figures": [],
-}  # fmt: skip
+    "campaign": "a roll decay",
+    "platform": "a tanker",
+    "jaxhydro": "0.1.0",
+    "calibration": "results/calibration.json",
+    "level": 0.9,
+    "seed": 0,
+    "converged": True,
+    "parameters": {"added_mass.A44": MASS, "linear_damping.B44": DAMPING},
+    "profiles": {},
+    "bootstrap": {"blocks": {"asked": 200, "draws": 198, "unsettled": 39, "groups": {"roll-1": 2.54}}},
+    "nuts": None,
+    "notes": ["the records do not determine linear_damping.B44"],
+    "figures": [],
+}
 PARAMETERS = CONTENT["parameters"]
 
 
@@ -54,14 +76,33 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(tmp_path: Path) -> No
     (tmp_path / "figures").mkdir()
     Figure(figsize=(1, 1)).savefig(tmp_path / "figures" / "draws-blocks.png")
     page = page_of(tmp_path, figures=[{"file": "figures/draws-blocks.png", "caption": "draws of two"}])
-    told = ("a roll decay", "Uncertainty by jaxhydro 0.1.0", "1 of 2 coefficients known to 1.4 % (90 % intervals)",
-            "not determined: linear_damping.B44.", "Parameters", "90 % interval", "added mass in roll", "29 times",
-            "linear damping in roll; not determined", "their width over that of intervals for white errors",
-            "90 % intervals in other ways", "drawn anew in blocks and fitted again, 198 times", "Laplace",
-            "What the intervals mean", "What a 90 % interval means", "about 90 in 100",
-            "does not mean: that the model is right", "What was calibrated", "Campaign: a roll decay", "Platform: a tanker",
-            "results/calibration.json, 2 parameters fitted", "Notes", "the records do not determine", "Figures",
-            "draws of two")  # fmt: skip
+    told = (
+        "a roll decay",
+        "Uncertainty by jaxhydro 0.1.0",
+        "1 of 2 coefficients known to 1.4 % (90 % intervals)",
+        "not determined: linear_damping.B44.",
+        "Parameters",
+        "90 % interval",
+        "added mass in roll",
+        "29 times",
+        "linear damping in roll; not determined",
+        "their width over that of intervals for white errors",
+        "90 % intervals in other ways",
+        "drawn anew in blocks and fitted again, 198 times",
+        "Laplace",
+        "What the intervals mean",
+        "What a 90 % interval means",
+        "about 90 in 100",
+        "does not mean: that the model is right",
+        "What was calibrated",
+        "Campaign: a roll decay",
+        "Platform: a tanker",
+        "results/calibration.json, 2 parameters fitted",
+        "Notes",
+        "the records do not determine",
+        "Figures",
+        "draws of two",
+    )
     places, at = [], 0
     for text in told:
         at = words(page).find(text, at)

@@ -13,21 +13,31 @@ def hints(value: float, start: float, deviation: float | None = None, known: boo
     return list(unit_hints([Estimate("quadratic_damping.B44", value, deviation, "-", "damping", start, False, known)]))
 
 
-@pytest.mark.parametrize(("ratio", "said"), [
-    (180 / math.pi, "57.3 times the declared value: are degrees and radians mixed up"),
-    (math.pi / 180, "1/57.3 of the declared value: are degrees and radians mixed up"),
-    (1010.0, "times the declared value: are millimetres and metres mixed up"),
-    (-1.02, "has the declared size and the other sign"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("ratio", "said"),
+    [
+        (180 / math.pi, "57.3 times the declared value: are degrees and radians mixed up"),
+        (math.pi / 180, "1/57.3 of the declared value: are degrees and radians mixed up"),
+        (1010.0, "times the declared value: are millimetres and metres mixed up"),
+        (-1.02, "has the declared size and the other sign"),
+    ],
+)
 def test_what_is_told(ratio: float, said: str) -> None:
     (hint,) = hints(5.0 * ratio, 5.0)
     assert said in hint
 
 
-@pytest.mark.parametrize(("value", "start", "deviation", "known"), [
-    (5.0, 5.0, None, True), (40.0, 1.0, None, True), (-2.0, 1.0, None, True),  # no ratio of units
-    (57.3, 1.0, 10.0, True), (57.3, 1.0, None, False),  # not known well enough
-    (57.3, 0.0, None, True), (0.0, 1.0, 0.1, True),  # no ratio at all
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("value", "start", "deviation", "known"),
+    [
+        (5.0, 5.0, None, True),
+        (40.0, 1.0, None, True),
+        (-2.0, 1.0, None, True),  # no ratio of units
+        (57.3, 1.0, 10.0, True),
+        (57.3, 1.0, None, False),  # not known well enough
+        (57.3, 0.0, None, True),
+        (0.0, 1.0, 0.1, True),  # no ratio at all
+    ],
+)
 def test_what_is_not(value: float, start: float, deviation: float | None, known: bool) -> None:
     assert hints(value, start, deviation, known) == []

@@ -33,9 +33,13 @@ def test_only_numbers_and_short_cells_stay_on_one_line() -> None:
     """Free text in any column wraps."""
     text = table(["Effect", "Size", "Why not"], [[LONG, "1.5 ± 0.1", LONG], ["short", "2", "x" * SHORT]], 1, 2)
     assert re.findall(r"<td([^>]*)>", text) == [
-        ' data-label="Effect"', ' class=number data-label="Size"', ' data-label="Why not"',
-        ' class=short data-label="Effect"', ' class=number data-label="Size"', ' class=short data-label="Why not"',
-    ]  # fmt: skip
+        ' data-label="Effect"',
+        ' class=number data-label="Size"',
+        ' data-label="Why not"',
+        ' class=short data-label="Effect"',
+        ' class=number data-label="Size"',
+        ' class=short data-label="Why not"',
+    ]
     rules = re.findall(r"([^{}]*)\{[^{}]*white-space: nowrap[^{}]*\}", framed("a", "b", [], "0"))
     assert [selector.strip() for rule in rules for selector in rule.split(",")] == ["td.number", ".short"]
 

@@ -75,25 +75,37 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 CAMPAIGN = "expected a campaign's folder, or its campaign.yaml, found"
 ON_CAMPAIGNS = (["calibrate"], ["diagnose"], ["uncertainty", "--calibration", "results"])
 MISSING = [
-    *((command, name, f"{name}: {CAMPAIGN} {words}") for command in ON_CAMPAIGNS for name, words in (
-        ("nowhere", "no such folder"),
-        ("my-campain", "no such folder. Did you mean 'my-campaign'?"),
-        ("my-campain/campaign.yaml", "no such file. Did you mean 'my-campaign/campaign.yaml'?"),
-        ("empty", "a folder without campaign.yaml"),
-        ("almost", "a folder without campaign.yaml. Did you mean 'almost/campaing.yml'?"),
-    )),
+    *(
+        (command, name, f"{name}: {CAMPAIGN} {words}")
+        for command in ON_CAMPAIGNS
+        for name, words in (
+            ("nowhere", "no such folder"),
+            ("my-campain", "no such folder. Did you mean 'my-campaign'?"),
+            ("my-campain/campaign.yaml", "no such file. Did you mean 'my-campaign/campaign.yaml'?"),
+            ("empty", "a folder without campaign.yaml"),
+            ("almost", "a folder without campaign.yaml. Did you mean 'almost/campaing.yml'?"),
+        )
+    ),
     (["simulate"], "empty", f"empty: {CAMPAIGN} a folder without campaign.yaml"),
-    (["simulate"], "nowhere", "nowhere: expected a platform file, a built-in platform (volturnus-s, volturnus-s-focal), or a "
-                              "campaign's folder, found no such file or folder"),
+    (
+        ["simulate"],
+        "nowhere",
+        "nowhere: expected a platform file, a built-in platform (volturnus-s, volturnus-s-focal), or a "
+        "campaign's folder, found no such file or folder",
+    ),
     (["simulate"], "my-campain", "found no such file or folder. Did you mean 'my-campaign'?"),
     (["simulate"], "volturnus", "found no such file or folder. Did you mean 'volturnus-s'?"),
     (["simulate"], "my-campaign/platfrm.yaml", "found no such file. Did you mean 'my-campaign/platform.yaml'?"),
     (["sweep"], "nowhere.yaml", "nowhere.yaml: expected a YAML file, found no such file"),
     (["sweep"], "sweeep.yaml", "found no such file. Did you mean 'sweep.yaml'?"),
-    (["report"], "nowhere", "nowhere: expected a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote, "
-                            "found no such folder"),
+    (
+        ["report"],
+        "nowhere",
+        "nowhere: expected a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote, "
+        "found no such folder",
+    ),
     (["report"], "result", "found no such folder. Did you mean 'results'?"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("command", "name", "words"), MISSING, ids=[f"{c[0]} {n}" for c, n, _ in MISSING])

@@ -1,6 +1,5 @@
 """Drag laws beside Morison's: silent nulls, filters against scipy's, closed forms, whole simulations, the platform file."""
 
-
 import math
 
 import equinox as eqx
@@ -348,9 +347,7 @@ def test_gradients_through_a_memory(method: str, monkeypatch) -> None:
 
     def scalar(x, adjoint):
         changed = model.with_values(dict(zip(labels, x)))
-        grid = integrate.integrate(
-            changed, jh.StillWater(), start, times[0], jnp.asarray(0.25), 96, method, adjoint
-        )
+        grid = integrate.integrate(changed, jh.StillWater(), start, times[0], jnp.asarray(0.25), 96, method, adjoint)
         return (grid.at(times)[0] * weights).sum()
 
     x = jnp.array([float(model.values[label]) for label in labels])
@@ -393,9 +390,12 @@ def test_parameters_have_labels_and_can_be_freed() -> None:
     model = with_laws({**KEULEGAN_CARPENTER, "exponent": 0.0}, {**HIGH_PASS, "suction": 0.5}, ends=False)
     new = sorted(label for label in model.values if ".drag_" in label)
     assert new == [
-        "column.drag_cutoff_z", "column.drag_exponent_t", "column.drag_low_share_z", "column.drag_suction_z",
+        "column.drag_cutoff_z",
+        "column.drag_exponent_t",
+        "column.drag_low_share_z",
+        "column.drag_suction_z",
         "pontoon.drag_exponent_t",
-    ]  # fmt: skip
+    ]
     assert not [label for label in default_free(model, ("surge",)) if "exponent" in label]
     space = parameter_space(model, new)
     values = space.values(space.start)
@@ -418,9 +418,11 @@ def test_laws_of_a_model_given_to_another() -> None:
     declared = with_laws(KEULEGAN_CARPENTER, {**HIGH_PASS, "suction": 0.5})
     laws = drag_laws_of(declared)
     assert {label: law.law for label, law in laws.items()} == {
-        "column.Cd_t": "keulegan_carpenter", "pontoon.Cd_t": "keulegan_carpenter", "column.Cd_z": "high_pass",
+        "column.Cd_t": "keulegan_carpenter",
+        "pontoon.Cd_t": "keulegan_carpenter",
+        "column.Cd_z": "high_pass",
         "pontoon.Cd_z": "high_pass",
-    }  # fmt: skip
+    }
     assert laws["column.Cd_t"].model_dump() == {**KEULEGAN_CARPENTER, "window": 60.0} | KEULEGAN_CARPENTER
     given = with_drag_laws(build(COLUMN, PONTOON), laws)
     assert given.values.keys() == declared.values.keys()
@@ -442,9 +444,12 @@ def test_number_of_the_surface() -> None:
 
 def told(row: dict, members=(COLUMN,)) -> str:
     data = {
-        "name": "test", "water": {"density": RHO, "depth": 200.0}, "rigid_body": BODY, "members": members,
+        "name": "test",
+        "water": {"density": RHO, "depth": 200.0},
+        "rigid_body": BODY,
+        "members": members,
         "coefficients": {member["name"]: COEFFICIENTS | row for member in members},
-    }  # fmt: skip
+    }
     with pytest.raises(InputError) as caught:
         jh.build(validate(Platform, data, "platform.yaml"))
     return str(caught.value)

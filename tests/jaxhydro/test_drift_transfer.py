@@ -114,8 +114,10 @@ def rows_of(whole: np.ndarray, heading: float = 0.0, modes=range(6)) -> list[lis
     for k, p in enumerate(2 * math.pi / GRID):
         for j, q in enumerate(2 * math.pi / GRID):
             if j >= k:
-                rows += [[p, q, heading, heading, i + 1, abs(t := whole[i, k, j]), np.degrees(np.angle(t)), t.real, t.imag]
-                         for i in modes]  # fmt: skip
+                rows += [
+                    [p, q, heading, heading, i + 1, abs(t := whole[i, k, j]), np.degrees(np.angle(t)), t.real, t.imag]
+                    for i in modes
+                ]
     return rows
 
 

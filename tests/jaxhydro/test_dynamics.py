@@ -123,8 +123,7 @@ def test_order_of_the_schemes_themselves(method: str, order: int, steps: tuple[i
 def test_own_loop_against_diffrax() -> None:
     """The same scheme in this package's loop, either adjoint, and in diffrax, with drag and added mass: one motion."""
     own, checkpointed, other = (
-        run(hull(), START, jnp.zeros(6), 0.5, 40, *options)
-        for options in (("tsit5",), ("tsit5", "reverse"), ("diffrax",))
+        run(hull(), START, jnp.zeros(6), 0.5, 40, *options) for options in (("tsit5",), ("tsit5", "reverse"), ("diffrax",))
     )
     for name in ("position", "rate", "acceleration"):
         one = getattr(own, name)[:41]
@@ -202,9 +201,7 @@ def test_gradients_through_a_simulation() -> None:
     """Reverse = forward, and both = central differences of the simulation, for parameters and initial state; under vmap
     the gradients of a batch are those of its members."""
     batch = [UNKNOWNS, jax.tree.map(lambda x: 1.2 * x, UNKNOWNS)]
-    forward = jax.jit(jax.vmap(jax.jacfwd(lambda u: objective(u, "forward"))))(
-        jax.tree.map(lambda *x: jnp.stack(x), *batch)
-    )
+    forward = jax.jit(jax.vmap(jax.jacfwd(lambda u: objective(u, "forward"))))(jax.tree.map(lambda *x: jnp.stack(x), *batch))
     forward = jnp.concatenate(forward, axis=1)
     reverse = jax.jit(jax.grad(lambda u: objective(u, "reverse")))
     for i, unknowns in enumerate(batch):
@@ -260,9 +257,7 @@ def test_linear_oscillator(damping: float) -> None:
     omega = math.sqrt(4e6 / 1e7)
     zeta = damping / (2 * math.sqrt(4e6 * 1e7))
     damped = omega * math.sqrt(1 - zeta**2)
-    exact = (
-        3.0 * np.exp(-zeta * omega * times) * (np.cos(damped * times) + zeta * omega / damped * np.sin(damped * times))
-    )
+    exact = 3.0 * np.exp(-zeta * omega * times) * (np.cos(damped * times) + zeta * omega / damped * np.sin(damped * times))
     assert_allclose(found, exact, atol=3e-8)
 
 
@@ -330,8 +325,7 @@ def test_acceleration_and_its_derivatives() -> None:
     weights = jnp.asarray(rng.normal(size=6)) / jnp.abs(plain(*arguments))
     for differentiate in (jax.grad, jax.jacfwd):
         found, expected = (
-            differentiate(lambda *x, f=f: f(*x) @ weights, argnums=(0, 1, 2))(*arguments)
-            for f in (accelerate, plain)
+            differentiate(lambda *x, f=f: f(*x) @ weights, argnums=(0, 1, 2))(*arguments) for f in (accelerate, plain)
         )
         for one, other in zip(found, expected, strict=True):
             other = 0.5 * (other + other.T) if one.shape == (6, 6) else other

@@ -306,9 +306,16 @@ def test_eigenfrequencies_with_a_hidden_oscillator() -> None:
 def test_nonlinear_hydrostatics_have_a_potential() -> None:
     """Heave and pitch exchange energy and none is lost; forces are the slopes of U, written here."""
     label = "nonlinear_hydrostatics.{}.{}".format
-    coefficients = {("heave", "even_quadratic"): 2e5, ("heave", "cubic"): 3e4, ("heave", "quintic"): 2e3,
-                    ("heave", "pitch_squared"): 5e7, ("pitch", "cubic"): 2e9, ("pitch", "quintic"): 3e9,
-                    ("roll", "cubic"): 1e9, ("roll", "quintic"): 2e9}  # fmt: skip
+    coefficients = {
+        ("heave", "even_quadratic"): 2e5,
+        ("heave", "cubic"): 3e4,
+        ("heave", "quintic"): 2e3,
+        ("heave", "pitch_squared"): 5e7,
+        ("pitch", "cubic"): 2e9,
+        ("pitch", "quintic"): 3e9,
+        ("roll", "cubic"): 1e9,
+        ("roll", "quintic"): 2e9,
+    }
     values = {label(*names): value for names, value in coefficients.items()}
 
     def potential(z, roll, pitch):
@@ -332,8 +339,10 @@ def test_nonlinear_hydrostatics_have_a_potential() -> None:
 def test_wall_sided_roll() -> None:
     """GZ = (GM + BM/2 tan^2) sin of a box, by the third and fifth powers, to 1 % at 30 degrees."""
     weight, gm, bm, angle = 8e7, 2.0, 4.0, math.radians(30)
-    values = {"nonlinear_hydrostatics.roll.cubic": weight * (bm / 2 - gm / 6),
-              "nonlinear_hydrostatics.roll.quintic": weight * (bm / 4 + gm / 120)}  # fmt: skip
+    values = {
+        "nonlinear_hydrostatics.roll.cubic": weight * (bm / 2 - gm / 6),
+        "nonlinear_hydrostatics.roll.quintic": weight * (bm / 4 + gm / 120),
+    }
     moment = at_rest(only(rig().with_values(values), NonlinearHydrostatics), jnp.zeros(6).at[3].set(angle))[3]
     lever = (gm + bm / 2 * math.tan(angle) ** 2) * math.sin(angle)
     assert_allclose(weight * gm * angle - moment, weight * lever, rtol=1e-2)
@@ -434,7 +443,10 @@ def test_what_is_refused_and_what_labels_mean() -> None:
     load = Hysteresis.null(["pitch", "surge"])
     assert load.about("hysteresis.pitch.force").unit == "N m" and load.about("hysteresis.surge.force").unit == "N"
     assert {label: float(value) for label, value in load.values.items()} == {
-        "hysteresis.surge.force": 0.0, "hysteresis.surge.yield_displacement": 0.5,
-        "hysteresis.pitch.force": 0.0, "hysteresis.pitch.yield_displacement": 0.01}  # fmt: skip
+        "hysteresis.surge.force": 0.0,
+        "hysteresis.surge.yield_displacement": 0.5,
+        "hysteresis.pitch.force": 0.0,
+        "hysteresis.pitch.yield_displacement": 0.01,
+    }
     assert float(Hysteresis.null(["surge"], 2.0).values["hysteresis.surge.yield_displacement"]) == 2.0
     assert float(RadiationMemory.null(["heave"], frequency=1.0).values["radiation_memory.heave.frequency"]) == 1.0

@@ -77,8 +77,10 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
     for share in (0.0, 0.4, 1.0):
         found, _ = acts(model.with_values({"computed_excitation.share": share}), AWAY, REST, none, sea, 20.0)
         assert_allclose(found, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
-    still = [np.asarray(one.rate(jnp.zeros(()), one.rest(), jh.StillWater()).velocity) for one in (
-        build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_load(ComputedExcitation.of(table.excitation)))]  # fmt: skip
+    still = [
+        np.asarray(one.rate(jnp.zeros(()), one.rest(), jh.StillWater()).velocity)
+        for one in (build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_load(ComputedExcitation.of(table.excitation)))
+    ]
     assert_allclose(still[1], still[0], rtol=1e-12, atol=1e-12)
 
 
@@ -240,7 +242,9 @@ def test_seas_of_another_heading_are_refused(tmp_path: Path) -> None:
     tests = "".join(f"  - {{id: sea-{i}, kind: irregular, file: sea.csv, sea: {{heading: {i}}}}}\n" for i in (0, 30))
     (tmp_path / "campaign.yaml").write_text(
         "name: c\nplatform: a.yaml\nchannels: {time: {column: t, unit: s}, surge: {column: x, unit: m}}\n"
-        f"wave_channel: {{column: w, unit: m}}\ntests:\n{tests}", encoding="utf-8")  # fmt: skip
+        f"wave_channel: {{column: w, unit: m}}\ntests:\n{tests}",
+        encoding="utf-8",
+    )
     words = r"tests\[1\]\.sea\.heading: expected 360 deg, the excitation\.heading of a\.yaml, found 30 deg"
     with pytest.raises(InputError, match=words) as error:
         load_campaign(tmp_path)

@@ -267,9 +267,7 @@ def test_contract(name: str) -> None:
         assert about.lower <= float(value) <= about.upper
 
     loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
-    batch = eqx.filter_jit(eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0, None)))(
-        model, positions, velocities, SEA
-    )
+    batch = eqx.filter_jit(eqx.filter_vmap(wrench.__wrapped__, in_axes=(None, 0, 0, None)))(model, positions, velocities, SEA)
     eager = wrench.__wrapped__(model, positions[0], velocities[0], SEA)
     for whole, alone, *parts in zip(batch, eager, *loop, strict=True):
         scale = float(jnp.abs(whole).max()) + 1e-300
@@ -519,9 +517,10 @@ def test_lumped_added_mass_and_its_labels() -> None:
     assert model.about("added_mass.A15").unit == "kg m"
     meanings = [model.about(f"added_mass.{label}").meaning for label in ("A15", "A51", "A66")]
     assert meanings == [
-        "added mass: surge force from pitch acceleration", "added mass: pitch moment from surge acceleration",
+        "added mass: surge force from pitch acceleration",
+        "added mass: pitch moment from surge acceleration",
         "added mass in yaw",
-    ]  # fmt: skip
+    ]
 
 
 def test_lumped_stiffness_acts_along_earth_axes() -> None:
@@ -530,12 +529,17 @@ def test_lumped_stiffness_acts_along_earth_axes() -> None:
     model = model_of(build(), Stiffness({"mooring.C11": jnp.asarray(5.0), "mooring.C15": jnp.asarray(7.0)}, preload))
     position = jnp.array([2.0, 1.0, 0, 0.1, 0.2, 0.5])
     assert_allclose(at_rest(model, position), [1 - 10 - 1.4, 0, -2, 0, 0, 4], rtol=1e-13, atol=1e-14)
-    meanings = [Stiffness({}, preload, name).about(f"{name}.{label}").meaning for name in ("mooring", "stiffness")
-                for label in ("C11", "C15")]  # fmt: skip
+    meanings = [
+        Stiffness({}, preload, name).about(f"{name}.{label}").meaning
+        for name in ("mooring", "stiffness")
+        for label in ("C11", "C15")
+    ]
     assert meanings == [
-        "mooring stiffness in surge", "mooring stiffness: surge force from pitch displacement",
-        "stiffness in surge", "stiffness: surge force from pitch displacement",
-    ]  # fmt: skip
+        "mooring stiffness in surge",
+        "mooring stiffness: surge force from pitch displacement",
+        "stiffness in surge",
+        "stiffness: surge force from pitch displacement",
+    ]
     assert CoupledDamping.null().about("coupled_damping.B15").meaning == "linear damping that couples surge and pitch"
 
 

@@ -129,10 +129,7 @@ CHANGE = st.tuples(st.sampled_from(CHANGES), st.integers(0, 10**6), ANY)
 
 FILES = {name: Path(jaxhydro.__file__).parent / "platforms" / f"{name}.yaml" for name in builtin_platforms()}
 DOCUMENTS = {name: read_yaml(file) for name, file in FILES.items()}
-PARTS = [
-    {"name": name, "mass": 1e7, "centre_of_mass": [0, 0, -9], "inertia": {"Ixx": 3, "Iyy": 3, "Izz": 3}}
-    for name in "ab"
-]
+PARTS = [{"name": name, "mass": 1e7, "centre_of_mass": [0, 0, -9], "inertia": {"Ixx": 3, "Iyy": 3, "Izz": 3}} for name in "ab"]
 DOCUMENTS["parts"] = {
     **DOCUMENTS["volturnus-s"],
     "rigid_body": {"parts": PARTS},

@@ -312,15 +312,17 @@ def test_capytaine_datasets(tmp_path: Path) -> None:
 
     for broken, words in (
         (made.drop_vars("added_mass"), "added_mass: expected this variable, found"),
-        (made.assign_coords(radiating_dof=["Heave", "Surge", "Pitsch"]),
-         "radiating_dof: expected motions among Surge, Sway, Heave, Roll, Pitch, Yaw, found 'pitsch'. Did you mean 'pitch'?"),
+        (
+            made.assign_coords(radiating_dof=["Heave", "Surge", "Pitsch"]),
+            "radiating_dof: expected motions among Surge, Sway, Heave, Roll, Pitch, Yaw, found 'pitsch'. Did you mean 'pitch'?",
+        ),
         (made.isel(omega=slice(1, 4)), "omega: expected 4 finite frequencies above 0 or more, found 3"),
         (made.where(~made.omega.isin([0.2, 0.5])), "omega: expected 4 finite frequencies above 0 or more, found 3"),
         (made.where((made.omega != 0.5) | (made.radiating_dof != "Heave")), "added_mass: expected finite numbers, found 3"),
         (made.isel(influenced_dof=0), "added_mass.influenced_dof: expected a dimension with names"),
         (made.assign_coords(omega=-made.omega), "omega: expected frequencies from 0 up, each once"),
         (xr.concat([made, made], "water_depth"), "added_mass.water_depth: expected one entry, found 2"),
-    ):  # fmt: skip
+    ):
         broken.to_netcdf(file)
         with pytest.raises(InputError) as caught:
             read_capytaine(file)
@@ -381,7 +383,7 @@ def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
         ({"fiel": "a"}, "radiation.fiel: expected a known key"),
         ({"order": 3}, "radiation.order: expected enough states to follow the coefficients, found a misfit of"),
     ],
-)  # fmt: skip
+)
 def test_wrong_declarations_are_told(tmp_path: Path, keys: dict, words: str) -> None:
     with pytest.raises(InputError) as caught:
         jh.load_model(folder(tmp_path, **keys))

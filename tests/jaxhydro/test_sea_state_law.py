@@ -106,9 +106,7 @@ def test_simulations_take_the_coefficients_of_their_sea() -> None:
     powers = {"column.Cd_t": -0.5, "linear_damping.B11": 0.8}
     exponents = {exponent_label(label, "significant_height"): power for label, power in powers.items()}
     laws = dataclasses.replace(plain, loads=with_exponents(plain.loads, exponents, REFERENCE))
-    waves = jh.spectrum_components(
-        lambda w: jh.jonswap(w, 6.0, 11.0), 200.0, plain.environment, low=0.03, cutoff=0.25, seed=1
-    )
+    waves = jh.spectrum_components(lambda w: jh.jonswap(w, 6.0, 11.0), 200.0, plain.environment, low=0.03, cutoff=0.25, seed=1)
     sea, times = jh.IrregularSea(waves, plain.environment), np.arange(0.0, 60.0, 0.5)
     height = state_of(waves).significant_height / REFERENCE.significant_height
     assert height > 1.3
@@ -129,9 +127,13 @@ def test_simulations_take_the_coefficients_of_their_sea() -> None:
 )
 def test_messages(change: dict, said: str, tmp_path) -> None:
     data = {
-        "name": "test", "water": {"density": RHO, "depth": 200.0, "gravity": G}, "rigid_body": BODY, "members": [COLUMN],
-        "coefficients": {"column": COEFFICIENTS}, "sea_state_laws": LAWS | {"exponents": {}} | change,
-    }  # fmt: skip
+        "name": "test",
+        "water": {"density": RHO, "depth": 200.0, "gravity": G},
+        "rigid_body": BODY,
+        "members": [COLUMN],
+        "coefficients": {"column": COEFFICIENTS},
+        "sea_state_laws": LAWS | {"exponents": {}} | change,
+    }
     path = tmp_path / "platform.yaml"
     YAML().dump(data, path)
     with pytest.raises(jh.InputError, match=said):

@@ -209,9 +209,13 @@ def test_a_calibration_frees_the_shared_one(tmp_path: Path) -> None:
     for name, offset in (("large", 14.0), ("small", 5.0)):
         motion = jh.free_decay(model, {"surge": offset}, times, step=0.25)
         np.savetxt(
-            tmp_path / f"{name}.csv", np.stack([times, motion["surge"]], -1), fmt="%.9g", delimiter=",",
-            header="t,surge", comments="",
-        )  # fmt: skip
+            tmp_path / f"{name}.csv",
+            np.stack([times, motion["surge"]], -1),
+            fmt="%.9g",
+            delimiter=",",
+            header="t,surge",
+            comments="",
+        )
         tests.append({"id": name, "kind": "decay", "degree_of_freedom": "surge", "file": f"{name}.csv"})
     manifest = {
         "name": "two columns",
@@ -262,19 +266,32 @@ BROKEN = [
     ({"leg": SHARED | {"Ca_t": ["column"]}}, "coefficients.leg.Ca_t: expected a number >= 0"),
     ({"leg": SHARED | {"Ca_t": "leg"}}, "found 'leg'. leg -> leg: none of them has a number."),
     ({"column": OWN | {"Ca_t": "leg"}}, "found 'leg'. column -> leg -> column: none of them has a number."),
-    ({"pontoon": FLAT | {"Ca_t": "leg"}}, "coefficients.pontoon.Ca_t: expected a number >= 0, or a group with a number for "
-     "Ca_t (column), found 'leg'. leg shares it itself. Name column here."),
-    ({"column": {"Cd_t": 1.1}}, "coefficients.leg.Ca_t: expected a number >= 0, or a group with a number for Ca_t (pontoon), "
-     "found 'column', which has no Ca_t"),
-    ({"leg": SHARED | {"drag_t": HIGH_PASS}}, "coefficients.leg.drag_t: expected no law beside a shared Cd_t, found one. The "
-     "law of column.Cd_t goes with it."),
+    (
+        {"pontoon": FLAT | {"Ca_t": "leg"}},
+        "coefficients.pontoon.Ca_t: expected a number >= 0, or a group with a number for "
+        "Ca_t (column), found 'leg'. leg shares it itself. Name column here.",
+    ),
+    (
+        {"column": {"Cd_t": 1.1}},
+        "coefficients.leg.Ca_t: expected a number >= 0, or a group with a number for Ca_t (pontoon), "
+        "found 'column', which has no Ca_t",
+    ),
+    (
+        {"leg": SHARED | {"drag_t": HIGH_PASS}},
+        "coefficients.leg.drag_t: expected no law beside a shared Cd_t, found one. The law of column.Cd_t goes with it.",
+    ),
     ({"leg": SHARED | {"drag_t": {"law": "constant"}}}, "coefficients.leg.drag_t: expected no law beside a shared Cd_t"),
-    ({"leg": SHARED | {"Ca_t": "all"}, "all": {"Ca_t": 1.0, "Ca_z": 2.0}}, "coefficients.all.Ca_z: expected a coefficient that "
-     "another group shares, found one that nothing uses, as no member is of the group all"),
-    ({"leg": SHARED | {"Cd_t": "all"}, "all": {"Cd_t": 1.0, "drag_z": HIGH_PASS}}, "coefficients.all.drag_z: expected a law "
-     "of a coefficient that another group shares"),
+    (
+        {"leg": SHARED | {"Ca_t": "all"}, "all": {"Ca_t": 1.0, "Ca_z": 2.0}},
+        "coefficients.all.Ca_z: expected a coefficient that "
+        "another group shares, found one that nothing uses, as no member is of the group all",
+    ),
+    (
+        {"leg": SHARED | {"Cd_t": "all"}, "all": {"Cd_t": 1.0, "drag_z": HIGH_PASS}},
+        "coefficients.all.drag_z: expected a law of a coefficient that another group shares",
+    ),
     ({"al": {"Ca_t": 1.0}}, "coefficients.al: expected a group that members belong to"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("groups", "words"), BROKEN, ids=range(len(BROKEN)))

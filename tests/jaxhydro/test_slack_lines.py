@@ -21,11 +21,13 @@ DATA: dict[str, Any] = {
     "name": "shallow",
     "water": {"density": 1025.0, "depth": 100},
     "rigid_body": {
-        "mass": 483019.87, "centre_of_mass": [0, 0, -4.2], "inertia": {"Ixx": 1.0e7, "Iyy": 1.0e7, "Izz": 5.0e6},
+        "mass": 483019.87,
+        "centre_of_mass": [0, 0, -4.2],
+        "inertia": {"Ixx": 1.0e7, "Iyy": 1.0e7, "Izz": 5.0e6},
     },
     "members": [{"name": "m", "shape": "circ", "d": 10.0, "rA": [0, 0, -6], "rB": [0, 0, 6]}],
     "coefficients": {"m": {"Ca_t": 1.0, "Ca_z": 0.6, "Cd_t": 1.0, "Cd_z": 1.0}},
-}  # fmt: skip
+}
 
 
 def platform(*lengths: float) -> dict[str, Any]:

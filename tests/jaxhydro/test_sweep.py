@@ -32,8 +32,11 @@ def plan(**changes) -> Plan:
 
 
 def test_cases_are_states_by_headings_by_seeds_in_order() -> None:
-    made = plan(scatter=[{"hs": 1, "tp": 5, "probability": 1}, {"hs": 2, "tp": 8, "probability": 3, "gamma": 2}], seeds=[4, 7],
-                headings=[{"heading": 0, "probability": 1}, {"heading": 30, "probability": 3}])  # fmt: skip
+    made = plan(
+        scatter=[{"hs": 1, "tp": 5, "probability": 1}, {"hs": 2, "tp": 8, "probability": 3, "gamma": 2}],
+        seeds=[4, 7],
+        headings=[{"heading": 0, "probability": 1}, {"heading": 30, "probability": 3}],
+    )
     assert [case.probability for case in made.cases] == [1 / 16, 3 / 16, 3 / 16, 9 / 16]
     assert [(case.hs, case.gamma, case.heading) for case in made.cases] == [(1, None, 0), (1, None, 30), (2, 2, 0), (2, 2, 30)]
     assert len(made) == 8
@@ -46,7 +49,8 @@ def test_cases_are_states_by_headings_by_seeds_in_order() -> None:
 def test_a_grid_is_all_heights_with_all_periods_and_what_never_happens_is_left_out() -> None:
     made, known = plan_of(
         validate(Sweep, SWEEP | {"scatter": {"hs": [1, 2], "tp": [5, 6, 7], "probability": [[1, 0, 1], [2, 2, 0]]}}, "sweep"),
-        "s" )
+        "s",
+    )
     assert known == ["2 cases of probability 0 are left out"]
     found = [(case.hs, case.tp, case.probability) for case in made.cases]
     assert found == [(1, 5, 1 / 6), (1, 7, 1 / 6), (2, 5, 1 / 3), (2, 6, 1 / 3)]
@@ -109,10 +113,14 @@ def test_a_wrong_table_is_told_by_its_row(tmp_path, table, words) -> None:
         ({"scatter": {"hs": [1], "tp": [5], "probability": [[1, 2]]}}, "scatter.probability[0]: expected 1 numbers"),
         ({"scatter": [{"hs": 1, "tp": 5, "probability": 0}]}, "scatter: expected a probability above 0, found none"),
         ({"headings": [{"heading": 0, "probability": 0}]}, "headings: expected a probability above 0, found none"),
-        ({"scatter": [{"hs": 1, "tp": 5, "probability": 2}, {"hs": 1, "tp": 6}]},
-         "scatter[1]: expected a probability, as others in the list have, found none"),
-        ({"headings": [0, {"heading": 30, "probability": 0.5}]},
-         "headings[0]: expected a probability, as others in the list have, found none"),
+        (
+            {"scatter": [{"hs": 1, "tp": 5, "probability": 2}, {"hs": 1, "tp": 6}]},
+            "scatter[1]: expected a probability, as others in the list have, found none",
+        ),
+        (
+            {"headings": [0, {"heading": 30, "probability": 0.5}]},
+            "headings[0]: expected a probability, as others in the list have, found none",
+        ),
         ({"fatigue": {"exponents": [3, 4, 3]}}, "fatigue.exponents: expected each one once, found 3.0 twice"),
         ({"scatter": "none.csv"}, "none.csv', and there is none"),
         ({"seed": 3}, "found 'seed'. Did you mean 'seeds'?"),
@@ -127,7 +135,7 @@ def test_a_wrong_table_is_told_by_its_row(tmp_path, table, words) -> None:
         ({"fatigue": {"exponents": [0.5]}}, "fatigue.exponents[0]: expected a number >= 1"),
         ({"order": 3}, "order: expected one of 1, 2, found 3"),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_sweep_is_told_by_its_key(tmp_path, changes, words) -> None:
     with pytest.raises(InputError) as error:
         plan_of(load_sweep(written(tmp_path, **changes)), "sweep")
@@ -142,9 +150,7 @@ def test_a_table_in_another_encoding_is_told(tmp_path) -> None:
 
 
 def test_what_differs_between_plans_is_named() -> None:
-    assert list(plan().differences(plan(duration=200.0))) == [
-        ("duration", "150.0", "200.0"), ("start", "37.5", "50.0")
-    ]  # fmt: skip
+    assert list(plan().differences(plan(duration=200.0))) == [("duration", "150.0", "200.0"), ("start", "37.5", "50.0")]
     assert list(plan().differences(plan())) == []
 
 
@@ -179,9 +185,13 @@ def test_the_share_of_a_spectrum_in_the_band_is_that_of_its_seas() -> None:
     assert found.shape == (6,) and (found[::2] == found[1::2]).all()
     for case, share in zip(made.cases[::2], found[::2]):
         waves = jh.spectrum_components(
-            lambda w, case=case: jh.jonswap(w, case.hs, case.tp, case.gamma), 3600.0, jh.Environment(), low=0.03, cutoff=0.3,
+            lambda w, case=case: jh.jonswap(w, case.hs, case.tp, case.gamma),
+            3600.0,
+            jh.Environment(),
+            low=0.03,
+            cutoff=0.3,
             seed=0,
-        )  # fmt: skip
+        )
         assert float((waves.amplitude**2 / 2).sum()) == pytest.approx(share * case.hs**2 / 16)
     smooth = plan(scatter=[{"hs": 0.5, "tp": 3}, {"hs": 3, "tp": 9}], spectrum="pierson_moskowitz", cutoff=0.3, duration=3600.0)
     below = [math.exp(-1.25 / (f * tp) ** 4) for tp in (3, 9) for f in (0.03, 0.3)]
@@ -336,19 +346,38 @@ def test_a_sweep_makes_a_page(tmp_path: Path) -> None:
     life = {"unit": "deg", "mean": 0.5, "standard_deviation": 1.25, "damage_equivalent_range": {"3": 2.5}}
     failure = {"hs": 14.0, "tp": 9.0, "headings": [30.0], "seeds": [0, 4], "runs": 2, "reason": "a wave <b>breaks</b>"}
     options = {
-        "duration": 3600.0, "start": 500.0, "time_step": 0.5, "step": 0.25, "spectrum": "jonswap", "low": 0.03, "cutoff": 0.3,
-        "amplitudes": "rayleigh", "order": 2, "stretching": "vertical", "diffraction": "maccamy_fuchs",
+        "duration": 3600.0,
+        "start": 500.0,
+        "time_step": 0.5,
+        "step": 0.25,
+        "spectrum": "jonswap",
+        "low": 0.03,
+        "cutoff": 0.3,
+        "amplitudes": "rayleigh",
+        "order": 2,
+        "stretching": "vertical",
+        "diffraction": "maccamy_fuchs",
         "equivalent_frequency": 0.1,
-    }  # fmt: skip
+    }
     content = {
-        "sweep": "s.yaml", "platform": "volturnus-s", "source": "jaxhydro 0.1.0", "sea_states": 2, "cases": 3, "seeds": [0, 4],
-        "headings": [{"heading": 0.0, "probability": 0.75}, {"heading": 30.0, "probability": 0.25}], "options": options,
-        "runs": {"total": 6, "done": 4, "failed": 2}, "lifetime": {"pitch": life}, "failures": [failure],
-        "notes": ["one & all"], "calibration": {
-            "file": "c.json", "values": {"column.Cd_t": 1.25},
+        "sweep": "s.yaml",
+        "platform": "volturnus-s",
+        "source": "jaxhydro 0.1.0",
+        "sea_states": 2,
+        "cases": 3,
+        "seeds": [0, 4],
+        "headings": [{"heading": 0.0, "probability": 0.75}, {"heading": 30.0, "probability": 0.25}],
+        "options": options,
+        "runs": {"total": 6, "done": 4, "failed": 2},
+        "lifetime": {"pitch": life},
+        "failures": [failure],
+        "notes": ["one & all"],
+        "calibration": {
+            "file": "c.json",
+            "values": {"column.Cd_t": 1.25},
             "sea_state_reference": {"significant_height": 2.0, "peak_period": 8.0},
         },
-    }  # fmt: skip
+    }
     (tmp_path / "sweep.json").write_text(json.dumps(content))
     page = write_report(tmp_path).read_text()
     assert ">pitch (deg)</td>" in page and ">1.250</td>" in page and "Equivalent range, m = 3" in page

@@ -313,9 +313,11 @@ def test_runs_at_once_are_runs_one_by_one(whole, order) -> None:
 
 @pytest.mark.parametrize(
     ("changes", "words"),
-    [({"duration": 160.0}, "duration: expected 150.0, as in the runs that are there, found 160.0"),
-     ({"scatter": SWEEP["scatter"][:1]}, "scatter: expected 3 sea states, as in the runs that are there, found 1")],
-)  # fmt: skip
+    [
+        ({"duration": 160.0}, "duration: expected 150.0, as in the runs that are there, found 160.0"),
+        ({"scatter": SWEEP["scatter"][:1]}, "scatter: expected 3 sea states, as in the runs that are there, found 1"),
+    ],
+)
 def test_another_sweep_is_not_mixed_in(whole, tmp_path, changes, words) -> None:
     before = chunks(whole)
     text = command("sweep", written(tmp_path, **changes), "--out", whole, status=2)
@@ -353,13 +355,19 @@ def test_a_store_of_an_earlier_format_is_refused(file, whole, tmp_path) -> None:
 
 @pytest.mark.parametrize(
     ("changes", "words"),
-    [({"platform": "none.yaml"}, "sweep.yaml: platform: none.yaml: expected a YAML file"),
-     ({"calibration": "none.json"}, "none.json: expected a calibration.json"),
-     ({"calibration": "buoy.yaml"}, "buoy.yaml: line 2, column 1: expected valid JSON"),
-     ({"scatter": [BREAKING]}, "scatter: expected a sea state that can be, found none: Hs 20 m, Tp 9 s: expected a sea that"),
-     ({"cutoff": 3}, "cutoff: expected about 1"), ({"scatter": "none.csv"}, "there is none"),
-     ({"seed": 1}, "Did you mean 'seeds'?")],
-)  # fmt: skip
+    [
+        ({"platform": "none.yaml"}, "sweep.yaml: platform: none.yaml: expected a YAML file"),
+        ({"calibration": "none.json"}, "none.json: expected a calibration.json"),
+        ({"calibration": "buoy.yaml"}, "buoy.yaml: line 2, column 1: expected valid JSON"),
+        (
+            {"scatter": [BREAKING]},
+            "scatter: expected a sea state that can be, found none: Hs 20 m, Tp 9 s: expected a sea that",
+        ),
+        ({"cutoff": 3}, "cutoff: expected about 1"),
+        ({"scatter": "none.csv"}, "there is none"),
+        ({"seed": 1}, "Did you mean 'seeds'?"),
+    ],
+)
 def test_bad_input_leaves_nothing_behind(tmp_path, changes, words) -> None:
     file = written(tmp_path / "in", **changes)
     assert words in command("sweep", file, "--out", tmp_path / "o", status=2)

@@ -107,8 +107,22 @@ def test_the_warning_of_a_sea_leads(tmp_path: Path) -> None:
     for low, high, warned in ((0.5, 0.9, True), (0.1, 2.0, False)):
         excitation(tmp_path, low, high)
         out = tmp_path / f"o{high}"
-        status, output = run(platform(tmp_path, "excitation: {file: hull.3}"), "--hs", 3, "--tp", 9, "--duration", 60,
-                             "--transient", 20, "--order", 1, "--no-figures", "--out", out)  # fmt: skip
+        status, output = run(
+            platform(tmp_path, "excitation: {file: hull.3}"),
+            "--hs",
+            3,
+            "--tp",
+            9,
+            "--duration",
+            60,
+            "--transient",
+            20,
+            "--order",
+            1,
+            "--no-figures",
+            "--out",
+            out,
+        )
         assert status == 0, output
         lines = [line for line in output.splitlines() if line.strip() and "Building the sea" not in line]
         assert lines[0].startswith("jaxhydro: warning:") == warned

@@ -125,6 +125,7 @@ def test_forces_are_scaled_to_the_platforms_water() -> None:
 
 def two_bodies(data: xr.Dataset) -> xr.Dataset:
     """The cylinder and one at x = 10 m with twice its coefficients, as Capytaine names motions of several bodies."""
+
     def named(one: xr.Dataset, name: str, factor: float) -> xr.Dataset:
         dofs = {dim: [f"{name}__{dof}" for dof in data[dim].values] for dim in ("radiating_dof", "influenced_dof")}
         return (factor * one).assign_coords(dofs)
@@ -275,8 +276,10 @@ def test_a_sweeps_copy_finds_the_file_of_hydrostatics(tmp_path: Path) -> None:
 
 
 def test_members_tell_whether_a_hst_file_has_the_weight(tmp_path: Path) -> None:
-    members = ("members: [{name: column, shape: circ, d: 2.0, rA: [0, 0, -3], rB: [0, 0, 2]}]",
-               "coefficients: {column: {Ca_t: 1.0}}")  # fmt: skip
+    members = (
+        "members: [{name: column, shape: circ, d: 2.0, rA: [0, 0, -3], rB: [0, 0, 2]}]",
+        "coefficients: {column: {Ca_t: 1.0}}",
+    )
     own = model_of(tmp_path, *members)
     buoyancy = next(load for load in own.loads if isinstance(load, Buoyancy))
     c44 = hydrostatic_stiffness(buoyancy, RHO * G)[3, 3] / (RHO * G)
@@ -445,8 +448,9 @@ def test_one_of_several_bodies_of_a_wamit_file_is_chosen_by_its_number(tmp_path:
         read_excitation(tmp_path / "hull.3", RHO, G)
     first, other = (read_wamit(tmp_path / "hull.1", RHO, body=body) for body in (1, 2))
     assert_allclose(other.added_mass, 3 * first.added_mass, rtol=1e-6)
-    assert_allclose(read_excitation(tmp_path / "hull.3", RHO, G, body=2).force, read_excitation(
-        tmp_path / "hull.3", RHO, G, body=1).force)  # fmt: skip
+    assert_allclose(
+        read_excitation(tmp_path / "hull.3", RHO, G, body=2).force, read_excitation(tmp_path / "hull.3", RHO, G, body=1).force
+    )
     with pytest.raises(InputError, match="body: expected rows of body 3"):
         read_wamit(tmp_path / "hull.1", RHO, body=3)
     with pytest.raises(InputError, match="body: expected rows of body 3"):
@@ -513,6 +517,7 @@ def test_wrong_keys_are_told(tmp_path: Path, line: str, words: str) -> None:
 def test_other_layouts_of_a_dataset_are_one(tmp_path: Path) -> None:
     """Frequencies by period with omega beside them, radiating before influenced motion, a dimension of one density, infinite
     depth: as other versions and other test matrices of Capytaine have it."""
+
     def by_period(data: xr.Dataset) -> xr.Dataset:
         data = data.assign_coords(period=("omega", 2 * np.pi / data.omega.values)).swap_dims(omega="period").reset_coords()
         data = data.set_coords([name for name in ("omega", "rho", "g", "wave_direction") if name in data])

@@ -68,28 +68,46 @@ def test_a_header_of_another_delimiter(tmp_path, delimiter, top, names):
 
 
 @pytest.mark.parametrize("delimiter", DELIMITERS, ids=["comma", "semicolon", "tab", "spaces"])
-@pytest.mark.parametrize("bottom", [
-    ["End of file"], ["End of the measurement"], ["Test stopped, rope slack"], ["", "Operator: J. Doe", "File closed"],
-    ["# 60 samples"], ["Samples: 60"],
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "bottom",
+    [
+        ["End of file"],
+        ["End of the measurement"],
+        ["Test stopped, rope slack"],
+        ["", "Operator: J. Doe", "File closed"],
+        ["# 60 samples"],
+        ["Samples: 60"],
+    ],
+)
 def test_sentences_after_the_last_row(tmp_path, delimiter, bottom):
     found = read(tmp_path, ["Time", *rows(delimiter), *bottom][1:])
     np.testing.assert_allclose(found.to_numpy(), NUMBERS, atol=5e-3)
 
 
-@pytest.mark.parametrize(("top", "told"), [
-    (["Time Surge"], "header: expected 3 names, one for each column, found 2: Time, Surge"),
-    (["Time Surge Pitch Roll"], "header: expected 3 names, one for each column, found 4: Time, Surge, Pitch, Roll"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("top", "told"),
+    [
+        (["Time Surge"], "header: expected 3 names, one for each column, found 2: Time, Surge"),
+        (["Time Surge Pitch Roll"], "header: expected 3 names, one for each column, found 4: Time, Surge, Pitch, Roll"),
+    ],
+)
 def test_a_header_that_does_not_fit(tmp_path, top, told):
     assert told in refused(tmp_path, top + rows("  "))
 
 
 @pytest.mark.parametrize("delimiter", DELIMITERS, ids=["comma", "semicolon", "tab", "spaces"])
 @pytest.mark.parametrize("at", [0, 1, COUNT // 2, COUNT - 1])
-@pytest.mark.parametrize("damage", [
-    "1.00", "oops", "1.0x{d}2.00{d}3.00", "1.00{d}2.00", "1.00{d}2.00{d}3.00{d}4.00", "1.00{d}*{d}3.00",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "1.00",
+        "oops",
+        "1.0x{d}2.00{d}3.00",
+        "1.00{d}2.00",
+        "1.00{d}2.00{d}3.00{d}4.00",
+        "1.00{d}*{d}3.00",
+    ],
+)
 def test_no_damaged_row_is_passed_over(tmp_path, delimiter, at, damage):
     """Wherever it is. A word alone in the last row is no row."""
     lines = rows(delimiter)
@@ -113,18 +131,25 @@ def stamps(form, step=0.5, start=datetime.datetime(2024, 1, 31, 10, 22, 33)):
     return [form.format(m, tenth=m.microsecond // 100000, half=m.strftime("%I:%M:%S.%f %p")) for m in moments]
 
 
-@pytest.mark.parametrize(("times", "first"), [
-    (stamps("{0:%Y-%m-%dT%H:%M:%S}.{tenth}"), 0), (stamps("{0:%Y-%m-%d %H:%M:%S.%f}"), 0),
-    (stamps("{0:%Y-%m-%dT%H:%M:%S.%f}Z"), 0), (stamps("{0:%Y-%m-%dT%H:%M:%S.%f}+01:00"), 0),
-    (stamps("{0:%Y/%m/%d %H:%M:%S.%f}"), 0), (stamps("{0:%Y%m%dT%H:%M:%S.%f}"), 0),
-    (stamps("{0:%d.%m.%Y %H:%M:%S.%f}", start=datetime.datetime(2024, 1, 31, 23, 59, 50)), 0),
-    (stamps("{0:%Y-%m-%dT%H:%M:%S.%f}", start=datetime.datetime(2024, 2, 28, 23, 59, 50)), 0),
-    (stamps("{0:%d/%m/%Y %H:%M:%S.%f}"), 0), (stamps("{0:%m/%d/%Y} {half}"), 0),
-    (stamps("{0:%H:%M:%S}.{tenth}"), 37353),
-    (stamps("{0:%H:%M:%S.%f}", start=datetime.datetime(2024, 1, 1, 23, 59, 50)), 86390),
-    ([f"{100 + i // 3600}:{i // 60 % 60:02d}:{i % 60:02d}.5" for i in range(COUNT)], 360000.5),
-    ([f"{i // 120:02d}:{i / 2 % 60:04.1f}" for i in range(COUNT)], 0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("times", "first"),
+    [
+        (stamps("{0:%Y-%m-%dT%H:%M:%S}.{tenth}"), 0),
+        (stamps("{0:%Y-%m-%d %H:%M:%S.%f}"), 0),
+        (stamps("{0:%Y-%m-%dT%H:%M:%S.%f}Z"), 0),
+        (stamps("{0:%Y-%m-%dT%H:%M:%S.%f}+01:00"), 0),
+        (stamps("{0:%Y/%m/%d %H:%M:%S.%f}"), 0),
+        (stamps("{0:%Y%m%dT%H:%M:%S.%f}"), 0),
+        (stamps("{0:%d.%m.%Y %H:%M:%S.%f}", start=datetime.datetime(2024, 1, 31, 23, 59, 50)), 0),
+        (stamps("{0:%Y-%m-%dT%H:%M:%S.%f}", start=datetime.datetime(2024, 2, 28, 23, 59, 50)), 0),
+        (stamps("{0:%d/%m/%Y %H:%M:%S.%f}"), 0),
+        (stamps("{0:%m/%d/%Y} {half}"), 0),
+        (stamps("{0:%H:%M:%S}.{tenth}"), 37353),
+        (stamps("{0:%H:%M:%S.%f}", start=datetime.datetime(2024, 1, 1, 23, 59, 50)), 86390),
+        ([f"{100 + i // 3600}:{i // 60 % 60:02d}:{i % 60:02d}.5" for i in range(COUNT)], 360000.5),
+        ([f"{i // 120:02d}:{i / 2 % 60:04.1f}" for i in range(COUNT)], 0),
+    ],
+)
 def test_times_become_seconds(tmp_path, times, first):
     found = read(tmp_path, ["t,x", *(f"{time},{i}" for i, time in enumerate(times))], "a.csv")
     step = 1.0 if first == 360000.5 else 0.5
@@ -139,14 +164,23 @@ def test_a_date_and_a_time_of_day_between_spaces(tmp_path, header):
     assert time[-1] - time[0] == pytest.approx(0.5 * (COUNT - 1)) and found.iloc[-1, -1] == COUNT - 1
 
 
-@pytest.mark.parametrize(("times", "told"), [
-    (stamps("{0:%d/%m/%Y %H:%M:%S}", start=datetime.datetime(2024, 1, 31, 23, 59, 50)), "in the order year-month-day"),
-    ([f"10:{i:02d}" for i in range(COUNT)], "hours, minutes and seconds"),
-    ([*stamps("{0:%H:%M:%S}")[:-1], "10:23:75"], f"row {COUNT + 1}, column t: expected a time such as 2024-01-31T10:22:33.5"),
-    ([*stamps("{0:%Y-%m-%dT%H:%M:%S}")[:-1], "2024-13-45T10:22:33"], f"row {COUNT + 1}, column t: expected a date"),
-    ([*stamps("{0:%Y-%m-%dT%H:%M:%S}")[:-1], "10:22:33"], "column t: expected a date, as the other rows have"),
-    ([*stamps("{0:%Y-%m-%dT%H:%M:%S}")[:-1], "2024-01-31T25:22:33"], f"row {COUNT + 1}, column t: expected an hour of the day"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("times", "told"),
+    [
+        (stamps("{0:%d/%m/%Y %H:%M:%S}", start=datetime.datetime(2024, 1, 31, 23, 59, 50)), "in the order year-month-day"),
+        ([f"10:{i:02d}" for i in range(COUNT)], "hours, minutes and seconds"),
+        (
+            [*stamps("{0:%H:%M:%S}")[:-1], "10:23:75"],
+            f"row {COUNT + 1}, column t: expected a time such as 2024-01-31T10:22:33.5",
+        ),
+        ([*stamps("{0:%Y-%m-%dT%H:%M:%S}")[:-1], "2024-13-45T10:22:33"], f"row {COUNT + 1}, column t: expected a date"),
+        ([*stamps("{0:%Y-%m-%dT%H:%M:%S}")[:-1], "10:22:33"], "column t: expected a date, as the other rows have"),
+        (
+            [*stamps("{0:%Y-%m-%dT%H:%M:%S}")[:-1], "2024-01-31T25:22:33"],
+            f"row {COUNT + 1}, column t: expected an hour of the day",
+        ),
+    ],
+)
 def test_times_that_may_mean_something_else(tmp_path, times, told):
     assert told in refused(tmp_path, ["t,x", *(f"{time},{i}" for i, time in enumerate(times))], "a.csv")
 

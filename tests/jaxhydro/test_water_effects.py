@@ -115,8 +115,11 @@ def test_what_a_point_off_the_reference_reads() -> None:
     assert (np.asarray(SensorReference.null().seen(jnp.asarray(position))) == position).all()
     upright = position * [1, 1, 1, 0, 0, 0]
     assert (np.asarray(load.seen(jnp.asarray(upright))) == upright).all()
-    slope = jax.jacfwd(lambda z: dataclasses.replace(load, values=load.values | {"sensor_reference.z": z}).seen(
-        jnp.array([0.0, 0, 0, 0, 0.1, 0])))(jnp.zeros(()))  # fmt: skip
+    slope = jax.jacfwd(
+        lambda z: dataclasses.replace(load, values=load.values | {"sensor_reference.z": z}).seen(
+            jnp.array([0.0, 0, 0, 0, 0.1, 0])
+        )
+    )(jnp.zeros(()))
     assert_allclose(slope, [math.sin(0.1), 0, math.cos(0.1) - 1, 0, 0, 0], atol=1e-15)
 
 
@@ -423,7 +426,6 @@ def test_pressure_on_a_column_in_deep_water() -> None:
     # pressure is in phase with the elevation
     crest = np.array([float(wave.elevation(jnp.asarray(t), jnp.zeros((2, 1)))[0]) for t in (0.0, 9.0 / 4)])
     assert_allclose(found[:, 2] / upwards, crest / amplitude, atol=5e-3)
-
 
 
 def test_every_parameter_has_a_slope_at_its_null() -> None:

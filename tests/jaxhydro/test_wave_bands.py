@@ -91,9 +91,23 @@ def test_spectra_by_their_peaks() -> None:
 
 
 def asked(**what) -> Asked:
-    return Asked(**{"hs": 2.0, "tp": 9.0, "gamma": None, "spectrum": "jonswap", "seed": 0, "amplitudes": "deterministic",
-                    "low": None, "cutoff": None, "order": 2, "stretching": "vertical", "heading": 0.0, "transient": None,
-                    **what})  # fmt: skip
+    return Asked(
+        **{
+            "hs": 2.0,
+            "tp": 9.0,
+            "gamma": None,
+            "spectrum": "jonswap",
+            "seed": 0,
+            "amplitudes": "deterministic",
+            "low": None,
+            "cutoff": None,
+            "order": 2,
+            "stretching": "vertical",
+            "heading": 0.0,
+            "transient": None,
+            **what,
+        }
+    )
 
 
 @pytest.mark.parametrize(("tp", "pace"), [(9.0, 1.0), (0.9, 0.1), (1.4, 0.12), (40.0, 1.0), (0.3, 0.1)])

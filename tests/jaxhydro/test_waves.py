@@ -45,17 +45,13 @@ def test_dispersion_against_root_finding(depth: float) -> None:
     found = wavenumber(jnp.asarray(omega), jnp.asarray(depth), jnp.asarray(9.81))
     for w, k in zip(omega, np.asarray(found), strict=True):
         lower, upper = w**2 / 9.81, max(w**2 / 9.81, w / math.sqrt(9.81 * depth)) * 1.5
-        exact = brentq(
-            lambda k, w=w: 9.81 * k * math.tanh(k * depth) - w**2, 0.99 * lower, upper, xtol=1e-300, rtol=1e-15
-        )
+        exact = brentq(lambda k, w=w: 9.81 * k * math.tanh(k * depth) - w**2, 0.99 * lower, upper, xtol=1e-300, rtol=1e-15)
         assert k == pytest.approx(exact, rel=1e-13)
 
 
 def test_deep_and_shallow_limits() -> None:
     """k = omega^2/g where kh is large, omega/sqrt(gh) where it is small: the limits of tanh."""
-    assert float(wavenumber(jnp.asarray(2.0), jnp.asarray(500.0), jnp.asarray(9.81))) == pytest.approx(
-        4 / 9.81, rel=1e-14
-    )
+    assert float(wavenumber(jnp.asarray(2.0), jnp.asarray(500.0), jnp.asarray(9.81))) == pytest.approx(4 / 9.81, rel=1e-14)
     slow = float(wavenumber(jnp.asarray(1e-3), jnp.asarray(10.0), jnp.asarray(9.81)))
     assert slow == pytest.approx(1e-3 / math.sqrt(98.1), rel=1e-6)
 
@@ -82,9 +78,7 @@ def test_no_wave_at_zero_frequency() -> None:
 # kinematics
 
 
-@pytest.mark.parametrize(
-    "sea", [wave(heading=0.7, phase=0.4), wave(SHALLOW, 9.0, 1.0, heading=-2.0)], ids=["deep", "shallow"]
-)
+@pytest.mark.parametrize("sea", [wave(heading=0.7, phase=0.4), wave(SHALLOW, 9.0, 1.0, heading=-2.0)], ids=["deep", "shallow"])
 @pytest.mark.parametrize("point", POINTS)
 def test_the_flow_is_a_potential_flow(sea: WaveSea, point: np.ndarray) -> None:
     """Continuity and irrotationality, the Jacobian by central differences."""
@@ -98,9 +92,7 @@ def test_the_flow_is_a_potential_flow(sea: WaveSea, point: np.ndarray) -> None:
     assert_allclose(slope, slope.T, atol=1e-8 * size)
 
 
-@pytest.mark.parametrize(
-    "sea", [wave(heading=0.7, phase=0.4), wave(SHALLOW, 9.0, 1.0, heading=-2.0)], ids=["deep", "shallow"]
-)
+@pytest.mark.parametrize("sea", [wave(heading=0.7, phase=0.4), wave(SHALLOW, 9.0, 1.0, heading=-2.0)], ids=["deep", "shallow"])
 def test_boundary_conditions_and_bernoulli(sea: WaveSea) -> None:
     """w = eta_t and p/rho = g eta on the surface, w = 0 on the bottom, acceleration = -grad p/rho = u_t: Airy."""
     step, point = 1e-4, np.array([3.0, -2.0, 0.0])
@@ -115,9 +107,7 @@ def test_boundary_conditions_and_bernoulli(sea: WaveSea) -> None:
         size = float(jnp.abs(acceleration).max())
         later, earlier = flow(sea, 5.0 + step, point)[0], flow(sea, 5.0 - step, point)[0]
         assert_allclose(acceleration, (later - earlier) / (2 * step), atol=1e-7 * size)
-        push = [
-            (flow(sea, 5.0, point - step * e)[2] - flow(sea, 5.0, point + step * e)[2]) / (2 * step) for e in np.eye(3)
-        ]
+        push = [(flow(sea, 5.0, point - step * e)[2] - flow(sea, 5.0, point + step * e)[2]) / (2 * step) for e in np.eye(3)]
         assert_allclose(acceleration, push, atol=1e-7 * size)
 
 
@@ -135,9 +125,7 @@ def test_above_still_water_the_flow_is_that_of_the_surface() -> None:
     """The docstring's rule; below the bottom nothing blows up either."""
     sea = wave()
     for a, b in ((0.0, 3.0), (-200.0, -230.0)):
-        for one, other in zip(
-            flow(sea, 1.0, np.array([2.0, 0, a])), flow(sea, 1.0, np.array([2.0, 0, b])), strict=True
-        ):
+        for one, other in zip(flow(sea, 1.0, np.array([2.0, 0, a])), flow(sea, 1.0, np.array([2.0, 0, b])), strict=True):
             assert_allclose(one, other, rtol=1e-14)
 
 
@@ -174,9 +162,7 @@ def test_components_add_up() -> None:
         assert_allclose(a + b, total, rtol=1e-12, atol=1e-14)
 
 
-@pytest.mark.parametrize(
-    "height, period", [(1.0, 0.0), (-1.0, 10.0), (23.0, 10.0), (float("nan"), 10.0), (1.0, float("nan"))]
-)
+@pytest.mark.parametrize("height, period", [(1.0, 0.0), (-1.0, 10.0), (23.0, 10.0), (float("nan"), 10.0), (1.0, float("nan"))])
 def test_waves_that_cannot_be(height: float, period: float) -> None:
     """Miche's limit in deep water is 0.142 g T^2/(2 pi) = 22.17 m at 10 s; periods and heights have a range."""
     with pytest.raises(ValueError):

@@ -70,8 +70,9 @@ def inside(name: str, folders: set[str]) -> bool:
 
 def test_who_may_import_whom() -> None:
     """The contracts in pyproject.toml: layers, no cycles, calibration known to the command line alone."""
-    run = subprocess.run([str(Path(sys.executable).parent / "lint-imports"), "--no-cache"],
-                         cwd=ROOT, capture_output=True, text=True, check=False)  # fmt: skip
+    run = subprocess.run(
+        [str(Path(sys.executable).parent / "lint-imports"), "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert run.returncode == 0, run.stdout
 
 

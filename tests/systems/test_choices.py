@@ -46,11 +46,16 @@ def waves(model):
 
 @pytest.mark.parametrize(
     ("name", "wrong", "right"),
-    [("wetting", "Mean", "mean"), ("wetting", "instantanous", "instantaneous"),
-     ("diffraction", "maccamy-fuchs", "maccamy_fuchs"), ("diffraction", "ramps", "ramp"),
-     ("directions", "erth", "earth"), ("waves_at", "displacd", "displaced"),
-     ("waves_at", "Mean", "mean")],
-)  # fmt: skip
+    [
+        ("wetting", "Mean", "mean"),
+        ("wetting", "instantanous", "instantaneous"),
+        ("diffraction", "maccamy-fuchs", "maccamy_fuchs"),
+        ("diffraction", "ramps", "ramp"),
+        ("directions", "erth", "earth"),
+        ("waves_at", "displacd", "displaced"),
+        ("waves_at", "Mean", "mean"),
+    ],
+)
 def test_a_convention_that_there_is_none_of_is_refused(model, name, wrong, right):
     with pytest.raises(ValueError, match=f"{name}: expected .* found '{wrong}'. Did you mean '{right}'?") as caught:
         dataclasses.replace(model, **{name: wrong})
@@ -89,10 +94,13 @@ def test_seas_refuse_what_they_do_not_know(model, waves):
             assert make(stretching=one).stretching == one
     for make in (lambda **how: jh.IrregularSea(waves, model.environment, **how), lambda **how: Options(**how)):
         for how, said in (
-            ({"order": 3}, "order: expected 1 or 2, found 3"), ({"order": True}, "order"), ({"order": "2"}, "order"),
-            ({"acting": "everywher"}, "Did you mean 'everywhere'"), ({"kinds": ("sums",)}, "Did you mean 'sum'"),
+            ({"order": 3}, "order: expected 1 or 2, found 3"),
+            ({"order": True}, "order"),
+            ({"order": "2"}, "order"),
+            ({"acting": "everywher"}, "Did you mean 'everywhere'"),
+            ({"kinds": ("sums",)}, "Did you mean 'sum'"),
             ({"kinds": "sum"}, "kinds"),
-        ):  # fmt: skip
+        ):
             with pytest.raises(UnknownName, match=said):
                 make(**how)
         assert make(order=np.int64(2)).order == 2
@@ -118,16 +126,19 @@ def test_waves_refuse_what_they_do_not_know(model, waves):
         (lambda: with_exponents(model.loads, {exponent_label("column.Cd_T", "peak_period"): 0.0}, (1, 1)), "mean 'column.Cd_t"),
         (lambda: exponent_label("column.Cd_t", "peak_perod"), "over: .* Did you mean 'peak_period'"),
         (lambda: load_campaign(CAMPAIGN).record("surge-01x"), "no test 'surge-01x'; there are: "),
-    ):  # fmt: skip
+    ):
         with pytest.raises(UnknownName, match=said):
             one()
 
 
 def test_integrators_are_known_by_name(model):
     for one in (
-        lambda: jh.simulate(model, TIMES, method="tsit"), lambda: jh.free_decay(model, {"surge": 1.0}, TIMES, method="tsit"),
-        lambda: default_step(model, "tsit"), lambda: memory_step(model, "tsit"), lambda: clock("tsit", 0.0, 1.0, 4),
-    ):  # fmt: skip
+        lambda: jh.simulate(model, TIMES, method="tsit"),
+        lambda: jh.free_decay(model, {"surge": 1.0}, TIMES, method="tsit"),
+        lambda: default_step(model, "tsit"),
+        lambda: memory_step(model, "tsit"),
+        lambda: clock("tsit", 0.0, 1.0, 4),
+    ):
         with pytest.raises(UnknownName, match=r"method: expected .* found 'tsit'. Did you mean 'tsit5'\?"):
             one()
     with pytest.raises(UnknownName, match=r"adjoint: .* found 'revers'. Did you mean 'reverse'\?"):
@@ -143,10 +154,14 @@ def convergence_of_pich():
 def test_motions_are_known_by_name(model):
     modes, still = jh.natural_modes(model), jh.simulate(model, TIMES, step=1.0)
     for one in (
-        lambda: modes.of("pich"), lambda: still["pich"], lambda: jh.free_decay(model, {"pich": 0.1}, TIMES),
-        lambda: jh.simulate(model, TIMES, position={"pich": 0.1}), lambda: jh.simulate(model, TIMES, rate={"pich": 0.1}),
-        lambda: stable_modes(model, ["pich"]), convergence_of_pich,
-    ):  # fmt: skip
+        lambda: modes.of("pich"),
+        lambda: still["pich"],
+        lambda: jh.free_decay(model, {"pich": 0.1}, TIMES),
+        lambda: jh.simulate(model, TIMES, position={"pich": 0.1}),
+        lambda: jh.simulate(model, TIMES, rate={"pich": 0.1}),
+        lambda: stable_modes(model, ["pich"]),
+        convergence_of_pich,
+    ):
         with pytest.raises(KeyError, match=r"no degree of freedom 'pich'; .*surge.* Did you mean 'pitch'\?"):
             one()
     with pytest.raises(ValueError, match="no degree of freedom 3"):

@@ -81,8 +81,14 @@ def test_simulate_writes_a_free_decay(tmp_path: Path) -> None:
     assert "Natural periods" in text and "surge" in text and "Results are in" in text
     table = pd.read_csv(tmp_path / "o" / "motion.csv")
     assert list(table.columns) == [
-        "time_s", "surge_m", "sway_m", "heave_m", "roll_deg", "pitch_deg", "yaw_deg",
-    ]  # fmt: skip
+        "time_s",
+        "surge_m",
+        "sway_m",
+        "heave_m",
+        "roll_deg",
+        "pitch_deg",
+        "yaw_deg",
+    ]
     assert len(table) == 601 and table.time_s.iloc[-1] == pytest.approx(60.0)
     assert table.surge_m[0] == pytest.approx(3.0, abs=1e-3) and table.pitch_deg[0] == pytest.approx(2.0, abs=1e-3)
     with xr.open_dataset(tmp_path / "o" / "simulated.nc") as data:
@@ -220,9 +226,16 @@ def fitted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_calibrate_prints_and_writes(fitted, tmp_path: Path) -> None:
     text = run("calibrate", DEMO, "--out", tmp_path / "o")
     for words in (
-        "9 tests fitted", "first cycles: iteration 1, J = 3", "1.480 ± 0.015", "not determined", "at its bound",
-        "held out", "converged after 12 iterations", "Note: linear_damping.B33", f"Results are in {tmp_path}",
-    ):  # fmt: skip
+        "9 tests fitted",
+        "first cycles: iteration 1, J = 3",
+        "1.480 ± 0.015",
+        "not determined",
+        "at its bound",
+        "held out",
+        "converged after 12 iterations",
+        "Note: linear_damping.B33",
+        f"Results are in {tmp_path}",
+    ):
         assert words in text, words
     assert re.search(r"2 decays followed to [^;]*; 1 held-out decay [^;]*; 9 of 11 .*at a bound: column\.Cd_z\.$", text.strip())
     assert {path.name for path in (tmp_path / "o").iterdir()} == {"calibration.json", "simulated.nc", "figures"}

@@ -43,14 +43,25 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def test_a_sea_is_written(written, model) -> None:
     out, text = written
     assert {str(path.relative_to(out)) for path in out.rglob("*") if path.is_file()} == {
-        "motion.csv", "simulated.nc", "statistics.json", "figures/motion.png", "figures/window.png", "figures/spectra.png",
-    }  # fmt: skip
-    for words in ("Natural periods", "Components 52", "Repeat period 300 s", "Building the sea", "Simulating 299.5 s",
-                  "Statistics, from 75 to 299.5 s", "Energy by band", "0.005-0.025"):  # fmt: skip
+        "motion.csv",
+        "simulated.nc",
+        "statistics.json",
+        "figures/motion.png",
+        "figures/window.png",
+        "figures/spectra.png",
+    }
+    for words in (
+        "Natural periods",
+        "Components 52",
+        "Repeat period 300 s",
+        "Building the sea",
+        "Simulating 299.5 s",
+        "Statistics, from 75 to 299.5 s",
+        "Energy by band",
+        "0.005-0.025",
+    ):
         assert words in text, words
-    spectrum = spectrum_components(
-        lambda w: jh.jonswap(w, 3.1, 8.96), 299.5, model.environment, low=0.03, cutoff=0.2, seed=4
-    )
+    spectrum = spectrum_components(lambda w: jh.jonswap(w, 3.1, 8.96), 299.5, model.environment, low=0.03, cutoff=0.2, seed=4)
     sea = jh.IrregularSea(spectrum, model.environment, order=2)
     table = pd.read_csv(out / "motion.csv")
     np.testing.assert_allclose(table.wave_m, sea.gauge(table.time_s.to_numpy()), atol=1e-8)
@@ -60,8 +71,13 @@ def test_a_sea_is_written(written, model) -> None:
         assert data.wave.units == data.wave_first_order.units == "m"
         told = {name: data.attrs[name] for name in ("seed", "order", "stretching", "diffraction", "cutoff", "peak_period")}
     assert told == {
-        "seed": 4, "order": 2, "stretching": "vertical", "diffraction": "maccamy_fuchs", "cutoff": 0.2, "peak_period": 8.96,
-    }  # fmt: skip
+        "seed": 4,
+        "order": 2,
+        "stretching": "vertical",
+        "diffraction": "maccamy_fuchs",
+        "cutoff": 0.2,
+        "peak_period": 8.96,
+    }
 
 
 def test_statistics_are_those_of_the_series(written) -> None:

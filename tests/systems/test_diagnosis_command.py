@@ -72,10 +72,18 @@ def searching(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPath
 def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path) -> None:
     searching["it"] = result
     text = run("diagnose", DEMO, "--out", tmp_path / "o")
-    for said in ("9 tests fitted", "reading the records scoring: iteration 1, -2 ln L = 812",
-                 "The declared model lacks Coulomb friction in surge", "(81.0 ± 2.1) kN", "very strong",
-                 "hysteresis in surge explains no more", "surge-3 held out surge 12 % 1.9 %", "Note: surge-2 repeats",
-                 "sea-1 fitted surge low frequency -24 % -3 %", "Next test: a static pull-out"):  # fmt: skip
+    for said in (
+        "9 tests fitted",
+        "reading the records scoring: iteration 1, -2 ln L = 812",
+        "The declared model lacks Coulomb friction in surge",
+        "(81.0 ± 2.1) kN",
+        "very strong",
+        "hysteresis in surge explains no more",
+        "surge-3 held out surge 12 % 1.9 %",
+        "Note: surge-2 repeats",
+        "sea-1 fitted surge low frequency -24 % -3 %",
+        "Next test: a static pull-out",
+    ):
         assert said in text, said
     assert {path.name for path in (tmp_path / "o").iterdir()} == {"diagnosis.json", "simulated.nc", "figures"}
     assert "report.html" in run("report", tmp_path / "o")
@@ -101,12 +109,15 @@ def test_what_does_not_converge(searching, outcome, status, said, written, tmp_p
     stopped = Interrupted(None)
     stopped.partial = good  # type: ignore[assignment]
     searching["it"] = {
-        "unconverged": fake_diagnosis(converged=False), "stopped": stopped, "stopped at once": Interrupted(None),
-        "stopped in the first fit": Interrupted(good.baseline), "killed": KeyboardInterrupt(),
+        "unconverged": fake_diagnosis(converged=False),
+        "stopped": stopped,
+        "stopped at once": Interrupted(None),
+        "stopped in the first fit": Interrupted(good.baseline),
+        "killed": KeyboardInterrupt(),
         "diverged": Diverged("surge grows"),
         "not finite": replace(good, baseline=changed(good.baseline, 0, simulated=np.full(2400, np.nan))),
         "bad": InputError("campaign.yaml", [Problem("tests", "at least one", "none")]),
-    }[outcome]  # fmt: skip
+    }[outcome]
     assert said in run("diagnose", DEMO, "--no-figures", "--out", tmp_path / "o", status=status)
     assert (tmp_path / "o").exists() == written and not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
     if written:

@@ -99,10 +99,14 @@ def test_the_motion_behind_a_reading(body: Model) -> None:
 def manifest(tests: list[dict]) -> dict:
     channels = {name: {"column": name, "unit": unit} for name, unit in CHANNELS.items()}
     return {
-        "name": "a tracked buoy", "platform": "platform.yaml", "scale": 1.0, "noise": NOISE, "tests": tests,
+        "name": "a tracked buoy",
+        "platform": "platform.yaml",
+        "scale": 1.0,
+        "noise": NOISE,
+        "tests": tests,
         "channels": {"time": {"column": "t", "unit": "s"}} | channels,
         "wave_channel": {"column": "wave", "unit": "m", "position": [0.0, 0.0]},
-    }  # fmt: skip
+    }
 
 
 @pytest.fixture(scope="module")
@@ -186,8 +190,18 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     study, started = posed.study, np.asarray(posed.study.space.start)
     search = SimpleNamespace(study=study, posed=posed)
     kinds = {one.effect: one for one in reversed(posed.candidates)}
-    assert {"sensor_reference", "sensor_lag", "wave_gauge_position", "wave_reflection", "current", "hidden_oscillator",
-            "computed_excitation", "wave_drift", "hysteresis", "amplitude_dependent_drag"} <= set(kinds)  # fmt: skip
+    assert {
+        "sensor_reference",
+        "sensor_lag",
+        "wave_gauge_position",
+        "wave_reflection",
+        "current",
+        "hidden_oscillator",
+        "computed_excitation",
+        "wave_drift",
+        "hysteresis",
+        "amplitude_dependent_drag",
+    } <= set(kinds)
 
     def calibration(place: Place, model: Model, labels: tuple[str, ...]) -> Calibration:
         values = {label: float(model.values[label]) for label in labels}
@@ -227,7 +241,8 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
                     assert error == pytest.approx(said[id]["bands"][name][band], rel=2e-3, abs=2e-3), (effect, id, name, band)
         changed[effect] = any(
             abs(series.relative / other.relative - 1) > 0.01
-            for test, first in zip(after.tests, before.tests) for series, other in zip(test.series, first.series)
-        )  # fmt: skip
+            for test, first in zip(after.tests, before.tests)
+            for series, other in zip(test.series, first.series)
+        )
     # drag hardly matters for this buoy in a sea of 2 m
     assert {effect for effect, moves in changed.items() if not moves} <= {"amplitude_dependent_drag", "current"}

@@ -30,8 +30,7 @@ def platform(setup: dict) -> jh.Platform:
             },
             "members": [
                 column | {"name": "centre", "d": 10.0, "rA": [0, 0, -20], "rB": [0, 0, 15]},
-                column
-                | {"name": "outer", "d": 12.5, "rA": [51.75, 0, -20], "rB": [51.75, 0, 15], "heading": [60, 180, 300]},
+                column | {"name": "outer", "d": 12.5, "rA": [51.75, 0, -20], "rB": [51.75, 0, 15], "heading": [60, 180, 300]},
                 {
                     "name": "pontoon",
                     "shape": "rect",

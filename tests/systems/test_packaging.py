@@ -45,9 +45,10 @@ def test_every_import_is_a_declared_dependency() -> None:
     """Not one that another dependency happens to bring along. jaxlib is a part of jax."""
     known, named = packages_distributions(), declared()
     missing = {
-        module: path for module, path in imported().items()
+        module: path
+        for module, path in imported().items()
         if module != "jaxlib" and not named & {normal(one) for one in known.get(module, [module])}
-    }  # fmt: skip
+    }
     assert not missing
 
 

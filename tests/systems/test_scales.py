@@ -46,12 +46,21 @@ def barge(size: float) -> Model:
         },
         "members": [
             {
-                "name": "box", "group": "hull", "shape": "rect", "d": point(20.0, 25.0),
-                "rA": point(0, 0, -8.0), "rB": point(0, 0, 4.0),
+                "name": "box",
+                "group": "hull",
+                "shape": "rect",
+                "d": point(20.0, 25.0),
+                "rA": point(0, 0, -8.0),
+                "rB": point(0, 0, 4.0),
             },
             {
-                "name": "skeg", "group": "hull", "shape": "circ", "stations": [0, 1], "d": point(14.0, 8.0),
-                "rA": point(0, 0, -20.0), "rB": point(0, 0, -8.0),
+                "name": "skeg",
+                "group": "hull",
+                "shape": "circ",
+                "stations": [0, 1],
+                "d": point(14.0, 8.0),
+                "rA": point(0, 0, -20.0),
+                "rB": point(0, 0, -8.0),
             },
             {"name": "beam", "shape": "rect", "d": point(3.0, 2.0), "rA": point(-10, 0, -12.0), "rB": point(10, 0, -12.0)},
         ],
@@ -69,7 +78,7 @@ def barge(size: float) -> Model:
                 for a in (0.3, 0.3 + 2 * math.pi / 3, 0.3 + 4 * math.pi / 3)
             ],
         },
-    }  # fmt: skip
+    }
     return built(validate(Platform, copy.deepcopy(data), data["name"]))
 
 
@@ -125,8 +134,12 @@ def test_an_irregular_sea(order: int) -> None:
         model, pace = barge(size), size**0.5
         waves = spectrum_components(
             lambda omega, s=size, p=pace: jonswap(omega, 2.0 * s, 9.0 * p, 2.0),
-            300.0 * pace, model.environment, low=0.05 / pace, cutoff=0.22 / pace, seed=3,
-        )  # fmt: skip
+            300.0 * pace,
+            model.environment,
+            low=0.05 / pace,
+            cutoff=0.22 / pace,
+            seed=3,
+        )
         found[size] = moved(model, size, jh.IrregularSea(waves, model.environment, order))
     same(found[SMALL], found[1.0], SHARE)
 
@@ -161,13 +174,16 @@ def box(size: float, top: float, bottom: float = -4.0) -> Model:
         },
         "members": [
             {
-                "name": "box", "shape": "rect", "d": [100 * size, 30 * size],
-                "rA": [0, 0, bottom * size], "rB": [0, 0, top * size],
+                "name": "box",
+                "shape": "rect",
+                "d": [100 * size, 30 * size],
+                "rA": [0, 0, bottom * size],
+                "rB": [0, 0, top * size],
             }
         ],
         "coefficients": {"box": {}},
         "mooring": {"kind": "none"},
-    }  # fmt: skip
+    }
     return built(validate(Platform, data, "box"))
 
 
@@ -217,16 +233,23 @@ def test_a_calibration(tmp_path) -> None:
         lines = (f"{t:.15g},{z:.15g}" for t, z in zip(times, heave))
         (folder / "heave.csv").write_text("\n".join(["t,heave", *lines]) + "\n")
         manifest = {
-            "name": "barge", "platform": "volturnus-s", "noise": {"heave": 1e-4 * size},
+            "name": "barge",
+            "platform": "volturnus-s",
+            "noise": {"heave": 1e-4 * size},
             "channels": {"time": {"column": "t", "unit": "s"}, "heave": {"column": "heave", "unit": "m"}},
             "tests": [{"id": "heave", "kind": "decay", "degree_of_freedom": "heave", "file": "heave.csv"}],
-        }  # fmt: skip
+        }
         records = load_records(Manifest.model_validate(manifest), folder)
         declared = model.with_values({"hull.Ca_z": 0.8, "hull.Cd_z": 2.0})
         campaign = SimpleNamespace(
-            manifest=Manifest.model_validate(manifest), folder=folder, records=records, findings=(), model=declared,
-            platform=SimpleNamespace(name="barge"), used=lambda use, records=records: [r for r in records if r.use == use],
-        )  # fmt: skip
+            manifest=Manifest.model_validate(manifest),
+            folder=folder,
+            records=records,
+            findings=(),
+            model=declared,
+            platform=SimpleNamespace(name="barge"),
+            used=lambda use, records=records: [r for r in records if r.use == use],
+        )
         result = calibrate(campaign, free=["hull.Ca_z", "hull.Cd_z"])
         assert result.converged
         found.append({label: (one.value, one.standard_deviation) for label, one in result.parameters.items()})

@@ -18,12 +18,19 @@ from jaxhydro.start import QUICK, need_float64, quick_compilation, start
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = {
-    "jax_enable_x64": False, "jax_compilation_cache_dir": None, "jax_enable_compilation_cache": True,
-    "jax_persistent_cache_min_compile_time_secs": 1.0, "jax_persistent_cache_min_entry_size_bytes": 0,
-}  # fmt: skip
+    "jax_enable_x64": False,
+    "jax_compilation_cache_dir": None,
+    "jax_enable_compilation_cache": True,
+    "jax_persistent_cache_min_compile_time_secs": 1.0,
+    "jax_persistent_cache_min_entry_size_bytes": 0,
+}
 VARIABLES = (
-    "JAXHYDRO_X64", "JAXHYDRO_COMPILATION_CACHE", "XLA_FLAGS", "XDG_CACHE_HOME", *(name.upper() for name in SETTINGS),
-)  # fmt: skip
+    "JAXHYDRO_X64",
+    "JAXHYDRO_COMPILATION_CACHE",
+    "XLA_FLAGS",
+    "XDG_CACHE_HOME",
+    *(name.upper() for name in SETTINGS),
+)
 SHOW = f"""
 import json, os, sys, jax
 from jax._src.xla_bridge import backends_are_initialized
@@ -101,10 +108,12 @@ def test_each_step_can_be_switched_off(untouched: pytest.MonkeyPatch, tmp_path: 
 def test_programs_are_kept_however_short_their_compilation(untouched: pytest.MonkeyPatch, tmp_path: Path) -> None:
     start()
     assert settings() == {
-        "jax_enable_x64": True, "jax_compilation_cache_dir": str(tmp_path / "cache" / "jaxhydro" / "xla"),
-        "jax_enable_compilation_cache": True, "jax_persistent_cache_min_compile_time_secs": 0.0,
+        "jax_enable_x64": True,
+        "jax_compilation_cache_dir": str(tmp_path / "cache" / "jaxhydro" / "xla"),
+        "jax_enable_compilation_cache": True,
+        "jax_persistent_cache_min_compile_time_secs": 0.0,
         "jax_persistent_cache_min_entry_size_bytes": -1,
-    }  # fmt: skip
+    }
 
 
 def test_the_users_own_settings_stay(untouched: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -112,8 +121,9 @@ def test_the_users_own_settings_stay(untouched: pytest.MonkeyPatch, tmp_path: Pa
     untouched.setenv("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "0")
     untouched.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path / "not this"))
     own = {
-        "jax_compilation_cache_dir": str(tmp_path / "own"), "jax_persistent_cache_min_compile_time_secs": 2.5,
-    }  # fmt: skip
+        "jax_compilation_cache_dir": str(tmp_path / "own"),
+        "jax_persistent_cache_min_compile_time_secs": 2.5,
+    }
     for name, value in own.items():
         jax.config.update(name, value)
     start()

@@ -125,8 +125,11 @@ def growth_of(forces: Sequence[Force]) -> dict[str, float]:
         cycles += [row for row in rows if row[1] > CLEAR * one.noise and row[0] > 0]
     if len(cycles) >= FEWEST and (power := _power(cycles, SIMILAR["decay"])) is not None:
         found["amplitude"] = power
-    seas = [(wave_height(one.test.wave, irregular=True), in_bands(one)) for one in forces if one.test.kind == "irregular"
-            and one.test.wave is not None]  # fmt: skip
+    seas = [
+        (wave_height(one.test.wave, irregular=True), in_bands(one))
+        for one in forces
+        if one.test.kind == "irregular" and one.test.wave is not None
+    ]
     for band in seas[0][1] if seas else ():
         pairs = [(height, row[band] ** 0.5) for height, row in seas if row[band] > 0 and height > 0]
         if (power := _power(pairs, SIMILAR["waves"])) is not None:
@@ -139,16 +142,25 @@ def described(motion: str, forces: Sequence[Force], law: Law) -> LatentForce:
     largest."""
     kinds = {name: [one for one in forces if kind_of(one) == name] for name in ("decay", "waves")}
     there = {name: rows for name, rows in kinds.items() if any(one.visible for one in rows)}
-    rms = {name: float(np.sqrt(np.mean(np.concatenate([one.force[one.inside] ** 2 for one in rows]))))
-           for name, rows in there.items()}  # fmt: skip
+    rms = {
+        name: float(np.sqrt(np.mean(np.concatenate([one.force[one.inside] ** 2 for one in rows]))))
+        for name, rows in there.items()
+    }
     fitted = [one for one in forces if one.test.use == "fit"] or list(forces)
     largest = max(fitted, key=lambda one: one.root_mean_square)
     measured = largest.test.measured[motion]
     made = LatentForce(
-        motion, "N m" if DOFS.index(motion) > 2 else "N", rms, {name: shares_of(rows) for name, rows in there.items()},
-        {name: coherences(rows) for name, rows in there.items()}, growth_of(forces), law, "", _shown(largest, law),
+        motion,
+        "N m" if DOFS.index(motion) > 2 else "N",
+        rms,
+        {name: shares_of(rows) for name, rows in there.items()},
+        {name: coherences(rows) for name, rows in there.items()},
+        growth_of(forces),
+        law,
+        "",
+        _shown(largest, law),
         float(np.std(measured - largest.test.simulated[motion]) / max(np.std(measured), 1e-300)),
-    )  # fmt: skip
+    )
     return replace(made, words=sentence(made))
 
 

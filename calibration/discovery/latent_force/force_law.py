@@ -54,14 +54,24 @@ def _powers(unit: str, power: int) -> list[str]:
 
 
 IN_STILL_WATER = (  # the simplest first
-    Kind("1"), Kind("x", 1), Kind("v", 1, -1), Kind("|v| v", 2, -2), Kind("x^3", 3), Kind("tanh(v/v0)"), Kind("x |x|", 2),
-    Kind("x^2", 2), Kind("v^3", 3, -3), *(Kind(f"v lagged, {lag:g}/omega", 1, -1) for lag in LAGS),
-)  # fmt: skip
+    Kind("1"),
+    Kind("x", 1),
+    Kind("v", 1, -1),
+    Kind("|v| v", 2, -2),
+    Kind("x^3", 3),
+    Kind("tanh(v/v0)"),
+    Kind("x |x|", 2),
+    Kind("x^2", 2),
+    Kind("v^3", 3, -3),
+    *(Kind(f"v lagged, {lag:g}/omega", 1, -1) for lag in LAGS),
+)
 LAGGED = range(len(IN_STILL_WATER) - len(LAGS), len(IN_STILL_WATER))  # two of them make anything out of next to nothing
 IN_WAVES = (
-    Kind("eta^2 slow", wave=2), Kind("eta^2 slow, a quarter later", wave=2), Kind("eta", wave=1),
+    Kind("eta^2 slow", wave=2),
+    Kind("eta^2 slow, a quarter later", wave=2),
+    Kind("eta", wave=1),
     Kind("eta, a quarter later", wave=1),
-)  # fmt: skip
+)
 
 
 def squared_envelope(wave: np.ndarray, step: float) -> np.ndarray:
@@ -152,8 +162,10 @@ def law_of(motion: str, forces: Sequence[Force]) -> Law:
     if not fitted:
         return Law((), 0.0, 0.0, "")
     slow = SLOW * float(np.median([np.std(one.velocity[one.inside]) for one in fitted]))
-    moved, moving = (sum(float(np.var(values(one)[one.inside])) for one in fitted) for values in (
-        lambda one: one.position, lambda one: one.velocity))  # fmt: skip
+    moved, moving = (
+        sum(float(np.var(values(one)[one.inside])) for one in fitted)
+        for values in (lambda one: one.position, lambda one: one.velocity)
+    )
     pace = (moving / max(moved, 1e-300)) ** 0.5
 
     def part(one: Force) -> Part:

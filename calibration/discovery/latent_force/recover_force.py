@@ -136,15 +136,23 @@ def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> di
         gain = gain * fades[name]
         left = float(np.sqrt(2 * (gain**2 * through).sum() / n))
         found[name] = Force(
-            test, name, filtered(force[:, j] * taper, gain), path[:, j], speed[:, j], np.gradient(speed[:, j], test.step),
-            (position[:, j] - np.asarray(rest)[j], rate[:, j]), gain, taper, inside, left, peak,
-        )  # fmt: skip
+            test,
+            name,
+            filtered(force[:, j] * taper, gain),
+            path[:, j],
+            speed[:, j],
+            np.gradient(speed[:, j], test.step),
+            (position[:, j] - np.asarray(rest)[j], rate[:, j]),
+            gain,
+            taper,
+            inside,
+            left,
+            peak,
+        )
     return found
 
 
-def latent_forces(
-    model: Model, tests: Sequence[Moved], motions: Sequence[str], from_rest: bool
-) -> tuple[LatentForce, ...]:
+def latent_forces(model: Model, tests: Sequence[Moved], motions: Sequence[str], from_rest: bool) -> tuple[LatentForce, ...]:
     """The latent force by motion, described, with the law of few terms that tests which were not fitted follow, too. Motions
     count from the static equilibrium (`from_rest`) or from the reference position."""
     base, highest = np.asarray(equilibrium(model)) * from_rest, highest_of(model)

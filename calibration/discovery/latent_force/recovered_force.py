@@ -10,7 +10,6 @@ from jaxhydro.waves.sea import AbstractSea
 VISIBLE = 20.0  # times the noise, in power, that the highest peak of a force has: without it there is none
 
 
-
 class Moved(NamedTuple):
     """A test on an even clock (s): motions (m, rad) measured and simulated, noise, the sea that it was in, and its wave (m)."""
 
