@@ -127,6 +127,13 @@ class Test(Schema):
     weight: Positive = 1.0
 
 
+class Recording(Schema):
+    """What the records were made of. `order` of their waves: 1, linear waves, or 2, with the waves that they bind; left out:
+    2, unless a wave record that a program made shows none (`diagnose`)."""
+
+    order: Literal[1, 2] | None = None
+
+
 class Period(Schema):
     """A natural period, s, and its standard deviation."""
 
@@ -164,6 +171,7 @@ class Manifest(Schema):
     noise: dict[str, Positive] = Field(default_factory=dict)
     zero: Zero | None = None
     tracked_point: tuple[Number, Number, Number] | None = None  # m at the scale of the files, body axes
+    records: Recording = Recording()
     tests: tuple[Test, ...]
     calibrate: Calibrate = Calibrate()
 

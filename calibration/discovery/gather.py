@@ -71,7 +71,7 @@ def study_of(
     if waving:
         step = sea_step(model, options)
         recorded = seas_of(campaign, model.environment, options)
-        other_options = other_options_of(options, recorded)
+        other_options = {} if campaign.manifest.records.order is not None else other_options_of(options, recorded)
         others = {name: [] for name in other_options}
         for run, made in recorded:
             tests = [r for r in run.records if r.id in waving]

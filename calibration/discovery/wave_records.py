@@ -24,10 +24,12 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
     """Sea options by which the wave records of a campaign are to be read, and why, in words.
 
     Theory's sums and differences of a record's first-order waves are compared with what the record has at those frequencies
-    where there are no first-order waves: a numerical tank's record may hold differences only, or be linear.
+    where there are no first-order waves: a numerical tank's record may hold differences only, or be linear. A campaign that
+    states the order of its waves is taken at its word.
     """
     options = options_of(campaign) if options is None else options
-    if not any(r.kind in IN_WAVES and r.use != "ignore" for r in campaign.records):
+    stated = campaign.manifest.records.order is not None
+    if stated or not any(r.kind in IN_WAVES and r.use != "ignore" for r in campaign.records):
         return options, ()
     from calibration.campaign.runs import runs
 

@@ -68,9 +68,9 @@ class Options:
 
 
 def options_of(campaign: Campaign) -> Options:
-    """The options of a campaign's seas where nothing is said: with its own band of frequencies."""
+    """The options of a campaign's seas where a command says nothing: its own band and order."""
     low, cutoff = wave_band(campaign.manifest, campaign.model, campaign.records)
-    return Options(low=low, cutoff=cutoff)
+    return Options(order=campaign.manifest.records.order or 2, low=low, cutoff=cutoff)
 
 
 def unusual(options: Options, asked: Collection[str] = ()) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks import architecture_page
 from jaxhydro.loads import LOADS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -74,6 +75,12 @@ def test_who_may_import_whom() -> None:
         [str(Path(sys.executable).parent / "lint-imports"), "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False
     )
     assert run.returncode == 0, run.stdout
+
+
+def test_the_tree_in_the_documentation_is_that_of_the_packages() -> None:
+    """Renewed by `python -m benchmarks.architecture_page`."""
+    text = architecture_page.PAGE.read_text(encoding="utf-8")
+    assert text == architecture_page.page(text)
 
 
 def test_no_two_files_of_a_package_have_one_name() -> None:

@@ -1,0 +1,43 @@
+"""Keep the tree in docs/architecture.md that of the packages: every folder and file with the first line of its docstring.
+
+python -m benchmarks.architecture_page
+"""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "architecture.md"
+BEGIN, END = "<!-- tree -->", "<!-- end of tree -->"
+PACKAGES = ("jaxhydro", "calibration")
+WIDTH = 30  # of names
+
+
+def tree(folder: Path, depth: int = 0) -> Iterator[str]:
+    """Yield the lines of a folder's tree: names, and what each is for."""
+    yield _line(f"{folder.name}/", folder / "__init__.py", depth)
+    entries = [one for one in folder.iterdir() if not one.name.startswith("_")]
+    for one in sorted(entries, key=lambda one: (one.is_dir(), one.name)):
+        if one.suffix == ".py":
+            yield _line(one.name, one, depth + 1)
+        elif one.is_dir() and (one / "__init__.py").exists():
+            yield from tree(one, depth + 1)
+
+
+def _line(name: str, file: Path, depth: int) -> str:
+    words = (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").split("\n\n")[0].replace("\n", " ")
+    return f"{'    ' * depth + name:<{WIDTH + 4}}  {words.split(': `')[0].rstrip('.')}"
+
+
+def page(text: str) -> str:
+    """Return the page with its tree renewed."""
+    before, _, rest = text.partition(BEGIN)
+    after = rest.partition(END)[2]
+    trees = "\n\n".join("```text\n" + "\n".join(tree(ROOT / package)) + "\n```" for package in PACKAGES)
+    return f"{before}{BEGIN}\n\n{trees}\n\n{END}{after}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    print(f"{PAGE.relative_to(ROOT)} is written")
