@@ -26,8 +26,8 @@ def tree(folder: Path, depth: int = 0) -> Iterator[str]:
 
 
 def _line(name: str, file: Path, depth: int) -> str:
-    words = (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").split("\n\n")[0].replace("\n", " ")
-    return f"{'    ' * depth + name:<{WIDTH + 4}}  {words.split(': `')[0].rstrip('.')}"
+    words = (ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").replace("\n", " ").split(". ")[0]
+    return f"{'    ' * depth + name:<{WIDTH + 4}}  {words.rstrip('.')}"
 
 
 def page(text: str) -> str:
