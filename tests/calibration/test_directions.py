@@ -22,7 +22,7 @@ from calibration.identifiability.standard_deviations import spread
 from calibration.identifiability.statements import Parameters
 from calibration.parameters.space import VAGUE, parameter_space
 from calibration.residuals.decays import Unknowns, first_guess
-from calibration.uncertainty.test_design import decay_information, effective_noise, expected_information, rank_tests
+from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
 from jaxhydro.dynamics.statics import linearised
 
 PLATFORM = jh.__path__[0] + "/campaigns/volturnus-s-decays/platform.yaml"
