@@ -1,4 +1,4 @@
-"""How bad input is told: every mistake in a file by its path, what was expected and what was found."""
+"""Errors in input files: path of each mistake, what was expected and what was found."""
 
 import reprlib
 import warnings
@@ -37,7 +37,14 @@ class Schema(BaseModel):
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: its dotted path in the file (`members[2].d`), what belongs there, what is there, a way out."""
+    """One mistake in a file.
+
+    Attributes:
+        where: Dotted path in the file, such as `members[2].d`.
+        expected: What belongs there.
+        found: What is there.
+        hint: How to mend it, or "".
+    """
 
     where: str
     expected: str
@@ -55,7 +62,12 @@ class CheckpointWarning(UserWarning):
 
 
 class InputError(Exception):
-    """A file that cannot be used. `source` names it, `problems` holds every mistake in it."""
+    """An input file that cannot be used.
+
+    Attributes:
+        source: Name of the file.
+        problems: Every mistake in it.
+    """
 
     def __init__(self, source: str, problems: Iterable[Problem]) -> None:
         self.source = source

@@ -1,4 +1,4 @@
-"""Statistics and energy in bands of a motion in an irregular sea, as JSON and as tables."""
+"""Statistics and band energies of a motion in an irregular sea, as JSON and as tables."""
 
 import math
 from collections.abc import Mapping
@@ -16,8 +16,12 @@ HEADS = ("Mean", "Standard deviation", "Least", "Largest", "Significant double a
 
 
 def bands_of(channel: str, peak_period: float | None) -> dict[str, tuple[float, float]]:
-    """Bands (Hz) of a channel, of the wave only `wave_frequency`, none of yaw. peak_period None, as of white noise: those of a
-    moderate sea."""
+    """Frequency bands (Hz) of a channel.
+
+    Args:
+        channel: "wave", which has only `wave_frequency`, or a degree of freedom; yaw has no bands.
+        peak_period: Peak period (s). None (white noise): the bands of a moderate sea.
+    """
     if channel == "yaw":
         return {}
     found = bands("surge" if channel == "wave" else channel, peak_period or 1.0)
@@ -25,7 +29,16 @@ def bands_of(channel: str, peak_period: float | None) -> dict[str, tuple[float, 
 
 
 def summary(time: np.ndarray, channels: Mapping[str, np.ndarray], peak_period: float | None) -> dict[str, Any]:
-    """`window` (s), `statistics` and `bands` of every channel (m, deg), wave among them. What is not known is None."""
+    """Time window, statistics and band energies of every channel, as written to JSON.
+
+    Args:
+        time: Sample times (s), (t,).
+        channels: Records (m, deg) by channel, the wave among them.
+        peak_period: Peak period of the sea (s), or None.
+
+    Returns:
+        `window` (s), `statistics` and `bands`; undefined values are None.
+    """
     return {
         "window": [float(time[0]), float(time[-1])],
         "statistics": {name: _statistics(time, name, values) for name, values in channels.items()},
@@ -34,7 +47,7 @@ def summary(time: np.ndarray, channels: Mapping[str, np.ndarray], peak_period: f
 
 
 def still(values: np.ndarray) -> np.ndarray:
-    """Values, or their mean where they do not move."""
+    """The values; where they vary by less than `STILL`, their rounded mean throughout."""
     return np.full_like(values, np.round(values.mean(), 9) + 0.0) if np.ptp(values) < STILL else values
 
 
@@ -52,7 +65,7 @@ def _bands(time: np.ndarray, channel: str, values: np.ndarray, peak_period: floa
 
 
 def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tuple[str, ...]]], ...]:
-    """Heads and rows of the two tables that are printed: statistics, and bands, of all that moves."""
+    """Headings and rows of the two printed tables: statistics, and band energies of every moving channel."""
     rows, energy = [], []
     for channel, found in document["statistics"].items():
         rows.append((f"{channel} ({found['unit']})", *(_number(found[name]) for name in SHOWN)))
@@ -78,5 +91,5 @@ def _band(band: list[float]) -> str:
 
 
 def in_order(motion: np.ndarray, wave: np.ndarray) -> dict[str, np.ndarray]:
-    """Channels by name from motions (sample, dof) and the wave, which comes first."""
+    """Records by channel name: the wave first, then motions (sample, dof)."""
     return {"wave": wave, **dict(zip(DOFS, motion.T, strict=True))}

@@ -1,4 +1,4 @@
-"""The platform file: what `platform.yaml` may hold, checked, and as plain values. SI; headings in degrees."""
+"""Schema of the platform file `platform.yaml`: checked, plain values in SI, headings in degrees."""
 
 from collections.abc import Iterator
 from importlib import resources
@@ -322,8 +322,11 @@ class SeaStateLaws(Schema):
 
 
 class Platform(Consistent):
-    """A platform file. `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at` and `centripetal` choose
-    between forms of the strip loads (see the loads and `Model`)."""
+    """Checked contents of a platform file.
+
+    `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at` and `centripetal` choose between forms of the strip
+    loads: see `Model` and the loads.
+    """
 
     name: Text
     water: Water
@@ -353,11 +356,11 @@ class Platform(Consistent):
     sea_state_laws: SeaStateLaws | None = None
 
     def files(self) -> dict[str, str]:
-        """Files that the platform file names, by their key."""
+        """Paths of the files that the platform file names, by key."""
         return {key: one.file for key in BESIDE if (one := getattr(self, key)) is not None and one.file}
 
     def of_other_waves(self, heading: float) -> tuple[str, float] | None:
-        """Key and heading (deg) of forces that were computed for waves of another heading than this."""
+        """Key and heading (deg) of a table that was computed for another wave heading than this, or None."""
         tables = {f"{key}.heading": one.heading for key in OF_WAVES if (one := getattr(self, key)) is not None}
         return next(((key, own) for key, own in tables.items() if not same_heading(own, heading)), None)
 
@@ -384,13 +387,23 @@ class Platform(Consistent):
 
 
 def builtin_platforms() -> tuple[str, ...]:
-    """Names of the platforms that come with the package."""
+    """Names of the built-in platforms."""
     folder = resources.files("jaxhydro") / "platforms"
     return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
 
 
 def load_platform(path_or_name: str | PathLike[str]) -> Platform:
-    """The platform in a YAML file, or the built-in one of that name; `InputError` with all that is wrong in it."""
+    """Checked contents of a platform file, or of a built-in platform.
+
+    Args:
+        path_or_name: Path of a YAML file, or name of a built-in platform.
+
+    Returns:
+        The platform description; paths in it are resolved relative to the file.
+
+    Raises:
+        InputError: The file has mistakes; all of them are listed.
+    """
     name, known = str(path_or_name), builtin_platforms()
     is_path = not isinstance(path_or_name, str) or "/" in name or name.endswith((".yaml", ".yml"))
     if not is_path and name.lower() in known:

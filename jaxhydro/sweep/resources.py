@@ -1,4 +1,4 @@
-"""How many runs at a time: what the cores, the GPUs and the memory of this machine hold."""
+"""Number of runs at a time that the cores, GPUs and memory of this machine hold."""
 
 import math
 import os
@@ -25,8 +25,15 @@ PER_GPU = 4  # workers: while one makes statistics on its core, the others keep 
 
 
 class Chosen(NamedTuple):
-    """Worker processes, runs that each takes at a time, the GPU of each as CUDA names it (none: the cores), bytes of a run, and
-    all that in words."""
+    """Processes and batches of a sweep.
+
+    Attributes:
+        workers: Number of processes.
+        batch: Runs that each takes at a time.
+        devices: GPU of each process, as CUDA names it; empty: CPU.
+        size: Memory of a run (bytes).
+        words: The choice in words.
+    """
 
     workers: int
     batch: int
@@ -36,9 +43,12 @@ class Chosen(NamedTuple):
 
 
 def supports_of(setup: Setup, source: str = "sweep") -> int:
-    """Support wavenumbers of the sweep's seas, of the heading that needs most: those that `IrregularSea.prepared` finds.
+    """Largest number of support wavenumbers that a heading of the sweep needs.
 
-    Raises InputError that names `source` where the waves are too short for the hull.
+    They are those of `IrregularSea.prepared`.
+
+    Raises:
+        InputError: The waves are too short for the hull; it names `source`.
     """
     plan, environment = setup.plan, setup.model.environment
     depth, gravity, period = float(environment.depth), float(environment.gravity), repeat_period(plan.duration)
@@ -60,7 +70,7 @@ def supports_of(setup: Setup, source: str = "sweep") -> int:
 
 
 def bytes_of_run(setup: Setup) -> float:
-    """Of one run at its largest: its sea's series while they are made, and the spectra that they are made of."""
+    """Largest memory of one run (bytes): the sea's series while they are made, and their spectra."""
     plan, model = setup.plan, setup.model
     period, cylinders = repeat_period(plan.duration), model.cylinders
     steps = fourier_length(period / setup.limit) * plan.duration / period
@@ -71,8 +81,17 @@ def bytes_of_run(setup: Setup) -> float:
 
 
 def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Chosen:
-    """Workers and batch as given, else those that fit: on the CPU one run per core at a time (more at once are no faster); on
-    GPUs `PER_GPU` workers each and as many runs as its memory holds, a power of two, at most `MOST_AT_ONCE`."""
+    """Number of processes and of runs at a time, as given or as fits the machine.
+
+    On the CPU each core takes one run at a time; more at once are no faster. Each GPU has `PER_GPU` processes and as many
+    runs as its memory holds, a power of two, at most `MOST_AT_ONCE`.
+
+    Args:
+        setup: The sweep.
+        runs: Number of runs to do.
+        workers: Number of processes; None: what fits.
+        batch: Runs at a time; None: what fits.
+    """
     size = bytes_of_run(setup)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     gpus = [device for device in jax.local_devices() if device.platform == "gpu"]

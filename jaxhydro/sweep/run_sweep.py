@@ -1,4 +1,4 @@
-"""A sweep from its file to its results: made or resumed, run by run, with what failed recorded."""
+"""Run or resume a sweep, from its file to its results."""
 
 import json
 import time as clock
@@ -33,8 +33,18 @@ from jaxhydro.sweep.write_sweep import summary_of, write_outputs
 
 
 class Prepared(NamedTuple):
-    """A sweep that can be stored and run: its file, the platform and the calibration as they were asked for, the share of every
-    case's spectrum in the band, what is to be known of the sweep (`notes`) and of its tables (`remarks`)."""
+    """Sweep that can be stored and run.
+
+    Attributes:
+        inputs: Plan, platform file and calibration file as text.
+        setup: Model and options that all runs share.
+        source: Name of the sweep file.
+        platform: The platform as asked for.
+        calibration: The calibration as asked for, or None.
+        shares: Fraction of each case's spectrum within the band, (case,).
+        notes: Notes on the sweep.
+        remarks: Remarks on the tables of the platform.
+    """
 
     inputs: Inputs
     setup: Setup
@@ -47,7 +57,7 @@ class Prepared(NamedTuple):
 
     @property
     def about(self) -> dict[str, Any]:
-        """What sweep.json says first."""
+        """First entries of sweep.json."""
         about: dict[str, Any] = {"sweep": self.source, "platform": Path(self.platform).stem}
         notes = [one.text for one in sorted(self.remarks, key=lambda one: not one.warning)] + self.notes
         if (used := self.setup.calibrated) is None:
@@ -59,7 +69,14 @@ class Prepared(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """Runs done, failed, and to be done in all; simulated seconds per second of this session."""
+    """Progress of a sweep.
+
+    Attributes:
+        done: Number of runs done.
+        failed: Number of runs that failed.
+        total: Number of runs in all.
+        speed: Simulated seconds per second of this session.
+    """
 
     done: int
     failed: int
@@ -68,7 +85,14 @@ class Progress(NamedTuple):
 
 
 class Ran(NamedTuple):
-    """What a session did: runs simulated, of them failed, seconds it took, seconds simulated."""
+    """Result of a session.
+
+    Attributes:
+        runs: Number of runs simulated.
+        failed: Number of these that failed.
+        seconds: Duration of the session (s).
+        simulated: Simulated time (s).
+    """
 
     runs: int
     failed: int
@@ -77,10 +101,17 @@ class Ran(NamedTuple):
 
 
 def prepared(sweep: Sweep, source: str) -> Prepared:
-    """Read what the sweep names, and build the model: all mistakes but those of single seas show here. `source` names it in
-    errors.
+    """Read the files that a sweep names, and build its model.
 
-    Raises InputError, EquilibriumError.
+    All mistakes except those of single seas show here.
+
+    Args:
+        sweep: Checked contents of a sweep file.
+        source: Name of the sweep in errors.
+
+    Raises:
+        InputError: A file has mistakes, or no sea state is possible.
+        EquilibriumError: The platform has no stable equilibrium.
     """
     try:
         pace = pace_of_platform(sweep.platform)
@@ -110,9 +141,15 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
 
 
 def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
-    """Make the folder's store where there is none, or anew; whether there are runs of it already.
+    """Make the folder's store where there is none; whether runs of this sweep are already there.
 
-    Raises InputError for a store of other inputs.
+    Args:
+        folder: Folder of the sweep.
+        made: The sweep.
+        restart: Discard the runs that are there.
+
+    Raises:
+        InputError: The store belongs to other inputs.
     """
     if restart:
         discard(folder)
@@ -124,7 +161,12 @@ def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
 
 
 def to_do(folder: Path, retry_failed: bool = False) -> list[int]:
-    """Numbers of the runs to be done, in order."""
+    """Numbers of the runs still to do, in order.
+
+    Args:
+        folder: Folder of the sweep.
+        retry_failed: Include runs that failed.
+    """
     wanted = (TO_DO, FAILED) if retry_failed else (TO_DO,)
     return [number for number, status in enumerate(Store(folder).status()) if status in wanted]
 
@@ -137,7 +179,16 @@ def run_all(
     scheduler: str | None = None,
     progress: Callable[[Progress], None] = lambda now: None,
 ) -> Ran:
-    """Simulate runs, each written as it is done."""
+    """Simulate runs; each is written to the store when it is done.
+
+    Args:
+        folder: Folder of the sweep.
+        made: The sweep.
+        numbers: Numbers of the runs.
+        how: Processes and batches.
+        scheduler: Address of a dask scheduler; None: this machine.
+        progress: Called after each batch.
+    """
     if how.devices:  # what is simulated at once has one heading
         numbers = sorted(numbers, key=lambda number: made.inputs.plan.run(number).case.heading)
     batches = [numbers[i : i + how.batch] for i in range(0, len(numbers), how.batch)]
@@ -172,12 +223,27 @@ def run_sweep(
     scheduler: str | None = None,
     progress: Callable[[Progress], None] = lambda now: None,
 ) -> xr.Dataset:
-    """Run a sweep, or what is left of it, and open its results, in the folder `out`, with all files of the command: see
-    docs/guide/sweeps.md.
+    """Run a sweep, or what is left of it, and open its results.
 
-    `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart`
-    forgets the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a
-    dask.distributed one. Raises InputError for a sweep that cannot be, or a folder with runs of another one; EquilibriumError.
+    The folder gets all files of the command: see docs/guide/sweeps.md. On the CPU results do not depend on `workers` or
+    `batch`.
+
+    Args:
+        sweep: Sweep, or path of a sweep file.
+        out: Folder of the results.
+        workers: Number of processes; None: what fits.
+        batch: Runs at a time per process; None: what fits.
+        restart: Discard the runs that are there.
+        retry_failed: Repeat the runs that failed.
+        scheduler: Address of a dask.distributed scheduler; None: this machine.
+        progress: Called with the progress after each batch.
+
+    Returns:
+        The results, loaded from disk where used.
+
+    Raises:
+        InputError: The sweep has mistakes, or the folder has runs of another sweep.
+        EquilibriumError: The platform has no stable equilibrium.
     """
     source = "sweep" if isinstance(sweep, Sweep) else str(sweep)
     made = prepared(sweep if isinstance(sweep, Sweep) else load_sweep(source), source)

@@ -1,7 +1,8 @@
-"""The store of a sweep: results.zarr (zarr v3, for `xarray.open_zarr`) and the inputs it was made of. Whole from the beginning.
+"""Store of a sweep: results.zarr and the inputs it was made of.
 
-One chunk of every variable per run: writers never share one. A run's numbers are written first and its status last, each chunk
-by renaming a finished file, so that a process killed at any moment leaves a run that is done or one to be done again.
+The store (zarr v3, for `xarray.open_zarr`) is whole from the beginning. Every variable has one chunk per run, so writers
+never share one. A run's numbers are written first and its status last, each chunk by renaming a finished file. A process
+killed at any moment leaves a run that is done or one to be repeated.
 """
 
 import json
@@ -39,7 +40,13 @@ KEPT = {  # variable: its dimensions after case and seed, and what it is
 
 
 class Inputs(NamedTuple):
-    """What a store is made of: the plan, the platform's file and the calibration's (None: none), as text."""
+    """Inputs of a store, as text.
+
+    Attributes:
+        plan: Cases, seeds and options.
+        platform: Platform file.
+        calibration: Calibration file, or None.
+    """
 
     plan: Plan
     platform: str
@@ -47,15 +54,18 @@ class Inputs(NamedTuple):
 
     @property
     def fingerprint(self) -> str:
-        """One hash of it all, and of what computes it."""
+        """Hash of the inputs and of the program that computes them."""
         return fingerprint(self.plan.to_json(), self.platform, self.calibration)[:SHORT]
 
 
 @contextmanager
 def alone(folder: Path) -> Iterator[None]:
-    """The folder, made where absent, is written by nobody else meanwhile. Raises InputError where another sweep does.
+    """Lock the folder, made where absent, against other sweeps.
 
     Where the file system has no locks nothing is checked.
+
+    Raises:
+        InputError: Another sweep writes to the folder.
     """
     folder.mkdir(parents=True, exist_ok=True)
     lock = FileLock(folder / LOCK, fallback_to_soft=False)  # a soft lock outlives a killed process
@@ -73,9 +83,16 @@ def alone(folder: Path) -> Iterator[None]:
 
 
 def create(folder: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, " c"]) -> None:
-    """Make the folder's inputs and its store, with all runs to be done; `shares` of every case's spectrum are in its seas.
+    """Write the folder's inputs and its store, with all runs to do.
 
-    Raises InputError where they cannot be written.
+    Args:
+        folder: Folder of the sweep.
+        inputs: Plan, platform file and calibration file.
+        setup: Model and options that all runs share.
+        shares: Fraction of each case's spectrum within the band, (case,).
+
+    Raises:
+        InputError: They cannot be written.
     """
     discard(folder)
     with staged(folder) as temporary:
@@ -90,7 +107,7 @@ def create(folder: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray,
 
 
 def discard(folder: Path) -> None:
-    """Take away a store, its inputs and what was made of it."""
+    """Remove a store, its inputs and its outputs."""
     shutil.rmtree(folder / UNFINISHED, ignore_errors=True)
     if (folder / RESULTS).is_dir():
         (folder / RESULTS).rename(folder / UNFINISHED)  # at once no store any more
@@ -101,7 +118,7 @@ def discard(folder: Path) -> None:
 
 
 def check_same(folder: Path, inputs: Inputs) -> None:
-    """Raises InputError where the folder's store was made of something else."""
+    """Raise InputError where the folder's store was made of other inputs or by another program."""
     there = folder / INPUTS
     problems = []
     try:
@@ -137,18 +154,18 @@ WAYS = "Another --out keeps both; --restart begins anew."
 
 
 class Store:
-    """An open store, to write runs to."""
+    """Open store, to write runs to."""
 
     def __init__(self, folder: Path) -> None:
         self.group = zarr.open_group(folder / RESULTS, mode="r+", zarr_format=3, use_consolidated=False)
         self.arrays: dict[str, Any] = {name: array for name, array in self.group.arrays()}
 
     def status(self) -> np.ndarray:
-        """Of every run by number: TO_DO, DONE or FAILED."""
+        """Status of every run by number: TO_DO, DONE or FAILED."""
         return np.asarray(self.arrays["status"][:]).reshape(-1)
 
     def write(self, run: Run, found: Kept | str) -> bool:
-        """Write what a run gave, or why it failed; whether it is done."""
+        """Write the results of a run, or the reason why it failed; whether it is done."""
         at = (run.row, run.column)
         if isinstance(found, str):
             self.arrays["reason"][at] = found
@@ -165,7 +182,7 @@ class Store:
 
 
 def open_results(folder: Path) -> xr.Dataset:
-    """The results of a sweep; variables are loaded from disk where they are used."""
+    """Results of a sweep; variables are loaded from disk where used."""
     data = xr.open_zarr(folder / RESULTS, chunks=None, zarr_format=3)
     return data.assign_coords({name: coordinate.load() for name, coordinate in data.coords.items()})
 

@@ -1,4 +1,4 @@
-"""What is to be known of a sweep before it runs: what `jaxhydro simulate` notes of one sea, of all of them."""
+"""Notes on a sweep before it runs: as `jaxhydro simulate` notes on one sea, for all of them."""
 
 from collections.abc import Iterator
 
@@ -20,14 +20,17 @@ AT_ONCE = 256  # sea states whose spectra are in memory
 
 
 def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
-    """Of every case: share of its spectrum's variance, Hs^2/16, from `low` to `cutoff`, on the frequencies of its seas."""
+    """Fraction of each case's spectrum within the band, (case,).
+
+    It is the variance from `low` to `cutoff`, on the frequencies of the seas, over Hs²/16.
+    """
     step = 2 * np.pi / repeat_period(plan.duration)
     found = {state: float(density.sum()) * step / (state[0] ** 2 / 16) for state, _, density in _spectra(plan)}
     return np.array([found[case.state] for case in plan.cases])
 
 
 def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float[np.ndarray, " w"]]]:
-    """Every sea state, the frequencies (rad/s) of its seeds in the band and its spectrum there (m2 s/rad)."""
+    """Sea states, their frequencies (rad/s) in the band, and their spectra there (m² s/rad)."""
     period = repeat_period(plan.duration)
     first, last = harmonics(plan.low, plan.cutoff, period)
     omega = jnp.asarray(2 * np.pi / period * np.arange(first, last + 1))
@@ -44,7 +47,7 @@ def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float
 
 
 def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Remark]:
-    """What is to be said of waves outside the model's tables, of the sea state in which most of the energy is."""
+    """Remarks on waves outside the model's tables, for the sea state with most energy there."""
     ranges = table_ranges(model)
     if not ranges:
         return
@@ -62,7 +65,7 @@ def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Rem
 
 
 def impossible(setup: Setup) -> dict[State, str]:
-    """Why the runs of a sea state will fail, of those that cannot be: its waves break, or hardly any are in the band."""
+    """Reasons why the runs of some sea states will fail: breaking waves, or hardly any energy in the band."""
     found: dict[State, str] = {}
     for state, case in {case.state: case for case in setup.plan.cases}.items():
         stop_if_asked()
@@ -74,7 +77,14 @@ def impossible(setup: Setup) -> dict[State, str]:
 
 
 def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: dict[State, str]) -> Iterator[str]:
-    """One sentence each, of a plan with the `shares_in_band` of its cases and its `impossible` sea states."""
+    """Notes on a plan, one sentence each.
+
+    Args:
+        plan: The plan.
+        model: The platform.
+        shares: `shares_in_band` of its cases.
+        failing: `impossible` sea states.
+    """
     seas = {case.state: float(share) for case, share in zip(plan.cases, shares)}
     if failing:
         state, reason = next(iter(failing.items()))

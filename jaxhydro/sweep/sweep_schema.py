@@ -1,4 +1,4 @@
-"""The sweep file: which seas, how often, for how long. Checked, and as plain values; s, Hz, m, degrees."""
+"""Schema of the sweep file: checked, plain values in s, Hz, m and degrees."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self, TypeAlias
@@ -19,7 +19,14 @@ COLUMNS = ("hs", "tp", "probability", "gamma")  # of a scatter table
 
 
 class SeaState(Schema):
-    """Significant height, m, peak period, s, its share of the time in any unit, and JONSWAP's gamma (left out: IEC's)."""
+    """Sea state of a scatter table.
+
+    Attributes:
+        hs: Significant wave height (m).
+        tp: Peak period (s).
+        probability: Share of the time, in any unit.
+        gamma: JONSWAP's peak enhancement (-); None: IEC's.
+    """
 
     hs: Positive
     tp: Positive
@@ -28,7 +35,7 @@ class SeaState(Schema):
 
 
 class Grid(Schema):
-    """Every height, m, with every period, s; a row of shares for each height."""
+    """Every wave height (m) with every period (s), and a row of probabilities for each height."""
 
     hs: Annotated[tuple[Positive, ...], Field(min_length=1)]
     tp: Annotated[tuple[Positive, ...], Field(min_length=1)]
@@ -45,7 +52,7 @@ class Grid(Schema):
         return self
 
     def states(self) -> tuple[SeaState, ...]:
-        """Row by row."""
+        """Sea states of the grid, row by row."""
         shares = self.probability or ((1.0,) * len(self.tp),) * len(self.hs)
         return tuple(
             SeaState(hs=hs, tp=tp, probability=share) for hs, row in zip(self.hs, shares) for tp, share in zip(self.tp, row)
@@ -53,14 +60,14 @@ class Grid(Schema):
 
 
 class Heading(Schema):
-    """Where waves run to, deg from x towards y, and its share of the time in any unit."""
+    """Direction that the waves travel to (deg, from x towards y), and its share of the time in any unit."""
 
     heading: Number
     probability: NonNegative = 1.0
 
 
 class Fatigue(Schema):
-    """Slopes m of S-N curves, and the frequency, Hz, of the even ranges that do the same damage."""
+    """Slopes m of S-N curves, and the frequency (Hz) of the damage-equivalent ranges."""
 
     exponents: Annotated[tuple[Exponent, ...], Field(min_length=1)] = (3.0, 4.0, 5.0)
     equivalent_frequency: Positive = 1.0
@@ -86,7 +93,7 @@ Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")],
 
 
 def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
-    """Those of a list of sea states or headings that have no probability, where others have one."""
+    """Sea states or headings of a list without a probability, where others have one."""
     given = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows]
     if any(given):
         for i, there in enumerate(given):
@@ -95,7 +102,10 @@ def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
 
 
 class Sweep(Consistent):
-    """A sweep file: every sea state with every heading and every seed. What is left out is as in `jaxhydro simulate`."""
+    """Checked contents of a sweep file: every sea state with every heading and every seed.
+
+    Defaults are those of `jaxhydro simulate`.
+    """
 
     platform: Text
     calibration: Text | None = None
@@ -151,10 +161,10 @@ class Sweep(Consistent):
 
     @property
     def towards(self) -> tuple[Heading, ...]:
-        """The headings, each with its share."""
+        """Headings with their probabilities."""
         return tuple(one if isinstance(one, Heading) else Heading(heading=float(one)) for one in self.headings)
 
     @property
     def start(self) -> float:
-        """Time (s) from which on statistics are taken."""
+        """Time (s) from which statistics are taken."""
         return usual_transient(self.duration) if self.transient is None else self.transient

@@ -1,4 +1,4 @@
-"""A record of waves beyond its end, so that its Fourier components do not ring where its end does not meet its start."""
+"""Periodic continuation of a wave record, so that its Fourier components do not ring at its ends."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -12,14 +12,27 @@ RINGS = 2.0  # times what the components of a continued record miss there: a rec
 
 
 def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: float, length: int) -> Float[np.ndarray, " n"]:
-    """A record (m) at even steps (s), of mean 0, and what most likely follows until it begins anew after `length` steps; the
-    record alone where its end meets its start: where what it has above the band is no larger there than in between, or its
-    components follow its ends no better for it.
+    """A wave record and its most likely continuation until it repeats.
 
-    Of all continuations p it is the one with the least energy outside the band from `low` to `cutoff` (Hz), and little of its
-    own, |(1 - B)(x, p)|^2 + `RIDGE` |p|^2 with B the band-pass over record and continuation: (1 - B)_pp p + RIDGE p = B_px x.
-    Without a ridge it is the limit of Papoulis 1975 (IEEE Transactions on Circuits and Systems 22, 735-742): band-limited
-    extrapolation, of a record whose noise and bound waves outside the band are left as they are.
+    Of all continuations p it is the one with the least energy outside the band, and little energy of its own: it minimises
+    |(1 - B)(x, p)|² + `RIDGE` |p|² with B the band-pass over record and continuation. So (1 - B)_pp p + RIDGE p = B_px x.
+    Without a ridge it is Papoulis' limit, for a record whose noise and bound waves outside the band are left as they are.
+
+    The record is returned alone where its end meets its start: where its content above the band is no larger there than
+    elsewhere, or where the continuation would not improve its ends.
+
+    Args:
+        record: Elevation (m) at even steps, of mean 0, (t,).
+        step: Sampling interval (s).
+        low: Lower limit of the band (Hz).
+        cutoff: Upper limit of the band (Hz).
+        length: Number of samples after which the continued record repeats.
+
+    Returns:
+        The record continued to `length` samples (m), or the record.
+
+    References:
+        Papoulis (1975), IEEE Transactions on Circuits and Systems 22, 735-742.
     """
     count = len(record)
     edge = int(np.ceil(1 / (cutoff * step)))

@@ -1,4 +1,4 @@
-"""Difference-frequency quadratic transfer functions, as few squared envelopes of filtered waves."""
+"""Difference-frequency quadratic transfer functions, as squared envelopes of filtered waves."""
 
 from typing import Self
 
@@ -34,8 +34,16 @@ class Transfer(eqx.Module):
 
     @classmethod
     def of(cls, omega: Float[np.ndarray, " n"], table: Complex[np.ndarray, "6 n n"], newman: bool = False) -> Self:
-        """From T at all pairs of frequencies; of its Hermitian part. `newman`: from its diagonal alone, the drift in regular
-        waves: T_kl = (T_kk + T_ll) / 2 (Newman 1974, Second-order, slowly-varying forces on vessels in irregular waves)."""
+        """Transfer function from a table at all pairs of frequencies; its Hermitian part is used.
+
+        Args:
+            omega: Angular frequencies (rad/s), ascending, (n,).
+            table: T (N/m², N m/m²), (6, n, n).
+            newman: Use the diagonal alone, the drift in regular waves: T_kl = (T_kk + T_ll) / 2.
+
+        References:
+            Newman (1974), Second-order, slowly-varying forces on vessels in irregular waves.
+        """
         table = 0.5 * (table + np.conj(np.swapaxes(table, 1, 2)))
         if newman:
             curve = np.einsum("ikk->ik", table).real
@@ -49,12 +57,12 @@ class Transfer(eqx.Module):
         return cls(jnp.asarray(omega), jnp.asarray(value), jnp.asarray(np.swapaxes(vector, 1, 2)))
 
     def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 m w"]:
-        """The filters at other frequencies (rad/s)."""
+        """Filters at other frequencies (rad/s), (6, m, w)."""
         place, share, inside = within(self.omega, omega)
         found = (1 - share) * self.filters[..., place] + share * self.filters[..., place + 1]
         return jnp.where(inside, found, 0.0)
 
     def force(self, filtered: Complex[Array, "6 m ..."]) -> Float[Array, "6 ..."]:
-        """The force, or moment, of filtered waves."""
+        """Force (N, N m), (6, ...), of filtered waves, (6, m, ...)."""
         square = (filtered * filtered.conj()).real
         return jnp.einsum("im,im...->i...", self.eigenvalue, square)

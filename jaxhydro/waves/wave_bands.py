@@ -1,7 +1,8 @@
-"""The band of a sea's first-order waves where nobody states one: one rule for records, spectra and tables of sea states.
+"""Frequency band of first-order waves where none is given.
 
-It is 0.03 to 0.3 Hz where the waves lie there. Else it is the same band at the hull's pace (`jaxhydro.scales`), where they lie
-in that. Else it is the band that holds the waves.
+One rule serves records, spectra and tables of sea states. The band is 0.03 to 0.3 Hz where the waves lie there. Otherwise it
+is the same band at the hull's pace (`jaxhydro.scales`), where they lie in that. Otherwise it is the band that holds the
+waves.
 """
 
 import math
