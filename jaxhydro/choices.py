@@ -1,4 +1,4 @@
-"""Words of which a few are known: what is none of them is refused, with the nearest that is."""
+"""Checks of options that are one of a few words, with the nearest word as a hint."""
 
 import difflib
 from collections.abc import Iterable

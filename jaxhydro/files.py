@@ -1,4 +1,4 @@
-"""Result folders: a set of files that appears whole or not at all."""
+"""Result folders, written whole or not at all."""
 
 import os
 import re

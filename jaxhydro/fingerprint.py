@@ -1,4 +1,4 @@
-"""What a result was computed with and of, as one hash: what goes on from earlier results compares it first."""
+"""Hash of the inputs and programs of a result, compared before earlier results are resumed."""
 
 import dataclasses
 import functools

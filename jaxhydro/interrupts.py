@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM, which schedulers of clusters send before they kill: both stop a command, and it says what is kept."""
+"""Ctrl-C and SIGTERM: how a command stops and reports what is saved."""
 
 import signal
 import threading

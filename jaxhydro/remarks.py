@@ -1,4 +1,4 @@
-"""What a user should know of an input, beside what is wrong in it."""
+"""Remarks on inputs that are not errors."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""How large a platform is: what every length and time that nobody states goes with, by Froude's similarity.
+"""Length and time scale of a platform relative to VolturnUS-S, by Froude's similarity.
 
 A hull and its model at 1:50 then have the same numbers. Lengths in the code are those of VolturnUS-S, whose size is 1. What
 is left in metres and seconds is listed in docs/constants.md.

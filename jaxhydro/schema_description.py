@@ -1,4 +1,4 @@
-"""What a schema declares at the place where pydantic found an error: its path in the file, its type in plain words."""
+"""Description of a schema at the path where pydantic found an error."""
 
 import types
 from dataclasses import dataclass, replace

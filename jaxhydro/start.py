@@ -1,4 +1,4 @@
-"""How `import jaxhydro` sets JAX up: float64, quick compilation, and a compilation cache on disk."""
+"""JAX settings at import: float64, quick compilation, compilation cache on disk."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Units of files, and those in which people read motions: m, and degrees where the program has radians."""
+"""Units of files and of printed motions (m and degrees)."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The command line. What is heavy is imported by the command that needs it."""
+"""Command-line application; each command imports what it needs."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any

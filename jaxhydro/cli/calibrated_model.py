@@ -1,4 +1,4 @@
-"""A model with the values, laws and effects of a calibration."""
+"""Model with the parameter values, sea-state laws and effects of a calibration."""
 
 from pathlib import Path
 from typing import Any, NamedTuple

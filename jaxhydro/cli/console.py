@@ -1,4 +1,7 @@
-"""What the command line prints: tables, messages, progress. Text that comes from files is never read as markup."""
+"""Printed output of the command line: tables, messages and progress.
+
+Text that comes from files is never read as markup.
+"""
 
 import math
 import os

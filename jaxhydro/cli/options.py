@@ -1,4 +1,4 @@
-"""Checks of command-line options. What is wrong is told with the option's name."""
+"""Checks of command-line options; errors name the option."""
 
 import math
 from pathlib import Path

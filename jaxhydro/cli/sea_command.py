@@ -1,4 +1,4 @@
-"""The simulate command in irregular seas: from options to files, tables and figures."""
+"""`jaxhydro simulate` in irregular seas: files, tables and figures."""
 
 import time as clock
 from typing import Any

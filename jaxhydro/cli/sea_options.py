@@ -1,4 +1,4 @@
-"""An irregular sea as the command line asks for it. What is wrong is told with its option."""
+"""Irregular sea from the command-line options."""
 
 from collections.abc import Mapping
 from dataclasses import replace

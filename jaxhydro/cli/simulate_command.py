@@ -1,4 +1,4 @@
-"""The simulate command: from options to files and tables."""
+"""`jaxhydro simulate`: files and tables."""
 
 import math
 from collections.abc import Collection, Iterable

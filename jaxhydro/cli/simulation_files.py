@@ -1,4 +1,4 @@
-"""What a simulation leaves behind: simulated.nc, motion.csv and figures, in m and deg, whole or not at all."""
+"""Output files of a simulation: simulated.nc, motion.csv and figures, in m and deg."""
 
 import json
 from collections.abc import Callable, Iterable, Mapping

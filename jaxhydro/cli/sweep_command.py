@@ -1,4 +1,4 @@
-"""The sweep command: from a sweep file to its store, tables and figures."""
+"""`jaxhydro sweep`: store, tables and figures."""
 
 import os
 from collections.abc import Callable

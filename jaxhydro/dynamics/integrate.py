@@ -1,4 +1,4 @@
-"""Fixed-step time integration, and output at any times."""
+"""Fixed-step time integration with output at any times."""
 
 from collections.abc import Callable
 from functools import partial

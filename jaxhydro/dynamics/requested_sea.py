@@ -1,4 +1,4 @@
-"""An irregular sea as asked for, of a spectrum or a wave record, and the sea that is made of it."""
+"""Irregular sea from a requested spectrum or wave record."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Solution of a symmetric positive definite 6 x 6 system by blocks."""
+"""Solver of a symmetric positive definite 6 x 6 system by blocks."""
 
 import jax
 import jax.numpy as jnp

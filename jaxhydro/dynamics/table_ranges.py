@@ -1,4 +1,4 @@
-"""Waves that tables of other programs do not have: frequencies outside those that a platform's loads were computed at."""
+"""Waves outside the frequency range of the tables that a platform's loads come from."""
 
 import math
 from typing import NamedTuple

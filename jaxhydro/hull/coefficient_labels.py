@@ -1,4 +1,4 @@
-"""Labels of members' coefficients, such as column.Cd_t, where groups may share one."""
+"""Labels of member coefficients, such as column.Cd_t, and coefficients that groups share."""
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple

@@ -1,7 +1,7 @@
-"""The hull: elements, strips and ends, and the constant matrices between the platform's motion and theirs.
+"""Hull: elements, strips and ends, and matrices that map the platform's motion to theirs.
 
-A *line* is a strip's direction or an end's axis. Its velocity is `lever . (u, v, w, p, q, r)`, so the velocities of all lines
-are one matrix product and the load on the platform is its transpose.
+A *line* is a strip's direction or an end's axis. Its velocity is `lever . (u, v, w, p, q, r)`, so the velocities of all
+lines are one matrix product and the load on the platform is its transpose.
 """
 
 from collections.abc import Sequence

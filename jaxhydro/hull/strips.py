@@ -1,4 +1,4 @@
-"""Members cut into load elements, and these into the points that every hydrodynamic load is integrated over.
+"""Members cut into load elements, and these into strips (Gauss points).
 
 Everything is in body axes about the reference point; the strip is the last axis. A strip is loaded in the two directions
 across its member's axis, an end along it. A member steeper than 45 degrees is a column: both directions take the transverse

@@ -1,8 +1,8 @@
-"""Members that lie at the surface: boxes and cylinders within 10 degrees of the horizontal that still water cuts.
+"""Members within 10 degrees of the horizontal that still water cuts.
 
-They are wet by the depth of every part of their length. Strips have the wet section's volume, at its centroid. The pressure of
-the waves on the lid that still water makes of the section, which a wet body does not have, is a load of its own: without it the
-force would be that on a closed body under water.
+They are wet by the depth of every part of their length. Strips have the wet section's volume, at its centroid. The pressure
+of the waves on the lid that still water makes of the section, which a wet body does not have, is a load of its own: without
+it the force would be that on a closed body under water.
 """
 
 from collections.abc import Sequence

@@ -1,7 +1,9 @@
-"""The four-step Adams-Bashforth scheme at fixed steps, differentiable forward and reverse: one evaluation per step.
+"""Four-step Adams-Bashforth scheme at fixed steps, one evaluation per step.
 
-What a sea costs is its kinematics, and these are known at even times: so half the evaluations of any Runge-Kutta scheme of that
-order. Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section III.1, eq. (1.5).
+It is differentiable forward and in reverse. The cost of a sea is its kinematics, which are known at even times. The scheme
+needs half the evaluations of any Runge-Kutta scheme of that order.
+
+References: Hairer, Norsett and Wanner (1993), Solving Ordinary Differential Equations I, section III.1, eq. (1.5).
 """
 
 from typing import Any

@@ -1,7 +1,7 @@
-"""Explicit Runge-Kutta schemes at fixed steps as loops of our own, differentiable forward and reverse.
+"""Explicit Runge-Kutta schemes at fixed steps, differentiable forward and in reverse.
 
-diffrax has the same schemes. These loops are kept for what this package does most, many simulations of different lengths with
-free initial states: one compilation, from the persistent cache too, and Jacobians in which initial states cost nothing.
+diffrax has the same schemes. These loops are kept for what this package does most, many simulations of different lengths
+with free initial states: one compilation, from the persistent cache too, and Jacobians in which initial states cost nothing.
 """
 
 import functools

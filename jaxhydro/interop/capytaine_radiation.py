@@ -1,4 +1,7 @@
-"""Capytaine's datasets (https://capytaine.org, `assemble_dataset`) in NetCDF: added mass and radiation damping."""
+"""Added mass and radiation damping from Capytaine's NetCDF datasets (`assemble_dataset`).
+
+Capytaine: https://capytaine.org.
+"""
 
 from os import PathLike
 from pathlib import Path

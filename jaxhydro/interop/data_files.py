@@ -1,8 +1,8 @@
-"""Data files to tables: delimited text, MATLAB .mat, NetCDF, Excel, OpenFAST .out and .outb. The content says which, then
-the ending; what has another ending and is text is read as delimited text.
+"""Tables from data files: text, MATLAB .mat, NetCDF, Excel, OpenFAST .out and .outb.
 
-`read_table` is the only public name. Columns keep the file's names and their order; a text file without a header gets
-"0", "1", ... Values are as written: no units, no signs, no repairs.
+The content decides the format, then the ending. Text with another ending is read as delimited text. `read_table` is the only
+public name. Columns keep the file's names and their order; a text file without a header gets "0", "1", ... Values are as
+written: no units, no signs, no repairs.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The retardation function of computed radiation damping, and a state space that has it."""
+"""Retardation function of computed radiation damping, and its state-space realisation."""
 
 import math
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Hydrostatics that WAMIT writes: the stiffness of a .hst file, stiffness and volume of an .out file."""
+"""Hydrostatics from WAMIT: stiffness of a .hst file, stiffness and volume of an .out file."""
 
 import re
 from os import PathLike

@@ -1,4 +1,7 @@
-"""WAMIT's `.1` file: added mass and radiation damping, by the conventions of its manual as HydroDyn reads them (WAMIT.f90)."""
+"""Added mass and radiation damping from WAMIT's .1 files.
+
+Conventions are those of WAMIT's manual, as HydroDyn reads them (WAMIT.f90).
+"""
 
 import math
 from os import PathLike

@@ -1,4 +1,4 @@
-"""WAMIT's numeric output files that tabulate forces by period, or by frequency, and heading."""
+"""WAMIT's numeric output files: forces by period or frequency, and heading."""
 
 import math
 from os import PathLike

@@ -1,4 +1,4 @@
-"""Drag whose coefficients go with the speed and differ between slow and fast motion: two laws in one."""
+"""Drag with speed-dependent coefficients and another coefficient for slow motion."""
 
 from collections.abc import Mapping
 from typing import ClassVar
@@ -26,7 +26,9 @@ from jaxhydro.loads.drag import (
 
 
 class ChangingDrag(AbstractLoad):
-    """`SlowDrag` times the factor of `PowerDrag`: where a model may need either, or both. At both nulls plain drag.
+    """Drag that combines `SlowDrag` and `PowerDrag`.
+
+    `SlowDrag` times the factor of `PowerDrag`: where a model may need either, or both. At both nulls plain drag.
 
     Sources are those of the two: OpenFAST HydroDyn, Morison.f90; Keulegan and Carpenter 1958; Graham 1980.
     """
@@ -37,14 +39,14 @@ class ChangingDrag(AbstractLoad):
 
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "ChangingDrag":
-        """The law on the lines whose drag coefficients are in `values`; its own parameters are null where they are not."""
+        """Load on the lines whose drag coefficients are in `values`; missing parameters are neutral."""
         own = {label: jnp.asarray(about.null) for label, about in OF_SHARE.items()}
         own |= {f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)}
         return cls(own | dict(values), coupled)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "ChangingDrag":
-        """Plain drag with the coefficients in `values`."""
+        """Load at its neutral value: plain drag with the coefficients in `values`."""
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def rest(self) -> Float[Array, "6"]:

@@ -1,4 +1,4 @@
-"""Cubic damping per degree of freedom."""
+"""Cubic damping in each degree of freedom."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -12,7 +12,9 @@ PARAMETERS = {"coefficient": both("N s3/m3", "N m s3/rad3", "cubic damping in {d
 
 
 class CubicDamping(AbstractLoad):
-    """F_i = -c_i v_i^3 along body axes.
+    """Cubic damping in each degree of freedom.
+
+    F_i = -c_i v_i^3 along body axes.
 
     v is the velocity of the reference point (m/s) and the angular velocity (rad/s). An empirical third term after linear and
     quadratic damping, or a smooth one in place of the quadratic: a ship's roll at large angles, viscous damping whose
@@ -27,7 +29,7 @@ class CubicDamping(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str]) -> Self:
-        """No cubic damping, in some degrees of freedom."""
+        """Load at its neutral value, in some degrees of freedom."""
         return cls(nulls("cubic_damping", dofs, PARAMETERS))
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""Rate-independent hysteresis."""
+"""Rate-independent hysteresis (Bouc-Wen) in each degree of freedom."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -18,17 +18,19 @@ PARAMETERS = {
 
 
 class Hysteresis(AbstractLoad):
-    """F_i = -f_i z_i, dz/dt = (v - (|v| z + v |z|)/2)/Y along earth axes: Bouc and Wen's law with n = 1, beta = gamma = 1/2.
+    """Bouc-Wen hysteresis in each degree of freedom.
 
-    v is the velocity of the reference point (m/s) and the angular velocity (rad/s), which for small angles is the rate of roll,
-    pitch, yaw. z lies within -1 and 1. Moved one way it loads by an exponential, z = 1 - exp(-x/Y) from z = 0; turned round, it
-    unloads with stiffness f/Y. What it does depends on the path and not on how fast it goes: the loss per cycle is the same at
-    every frequency. Small motion feels a stiffness f/Y and loses the third power of its amplitude, a large one feels dry
-    friction f. Chains on the ground, mooring lines that slide, cables, synthetic ropes.
+    F_i = -f_i z_i, dz/dt = (v - (|v| z + v |z|)/2)/Y along earth axes: Bouc and Wen's law with n = 1, beta = gamma = 1/2.
 
-    Over part of a cycle that does not reverse fully the law drifts (it is not a Preisach model): offsets under waves on a slow
-    motion are approximate. Wen 1976, Method for random vibration of hysteretic systems (Journal of the Engineering Mechanics
-    Division 102, 249-263). Labels are `hysteresis.surge.force` (f; N, N m) and `.yield_displacement` (Y; m, rad).
+    v is the velocity of the reference point (m/s) and the angular velocity (rad/s), which for small angles is the rate of
+    roll, pitch, yaw. z lies within -1 and 1. Moved one way it loads by an exponential, z = 1 - exp(-x/Y) from z = 0; turned
+    round, it unloads with stiffness f/Y. What it does depends on the path and not on how fast it goes: the loss per cycle is
+    the same at every frequency. Small motion feels a stiffness f/Y and loses the third power of its amplitude, a large one
+    feels dry friction f. Chains on the ground, mooring lines that slide, cables, synthetic ropes.
+
+    Over part of a cycle that does not reverse fully the law drifts (it is not a Preisach model): offsets under waves on a
+    slow motion are approximate. Wen 1976, Method for random vibration of hysteretic systems (Journal of the Engineering
+    Mechanics Division 102, 249-263). Labels are `hysteresis.surge.force` (f; N, N m) and `.yield_displacement` (Y; m, rad).
     """
 
     values: dict[str, Float[Array, ""]]
@@ -36,7 +38,7 @@ class Hysteresis(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str], yield_displacement: float | None = None) -> Self:
-        """No hysteresis, in some degrees of freedom; `yield_displacement` (m, rad): 0.5 m, 0.01 rad where not given."""
+        """Load at its neutral value; `yield_displacement` is 0.5 m, 0.01 rad where not given."""
         return cls(nulls("hysteresis", dofs, PARAMETERS, {"yield_displacement": yield_displacement}))
 
     def rest(self) -> Float[Array, " k"]:

@@ -1,4 +1,4 @@
-"""Drag whose coefficient follows the amplitude of the flow."""
+"""Drag with coefficients that depend on the Keulegan-Carpenter number."""
 
 import math
 from collections.abc import Mapping
@@ -20,8 +20,7 @@ EXPONENT = Parameter("-", "exponent of the {way} drag coefficient of {group} in 
 
 
 class Swept(NamedTuple):
-    """The recent past of some lines: how long it is (s), the water's displacement past them from its mean (m), and its
-    variance (m2)."""
+    """Recent flow past some lines: duration (s), displacement from its mean (m), variance (m²)."""
 
     elapsed: Float[Array, ""]
     displacement: Float[Array, " k"]
@@ -29,13 +28,15 @@ class Swept(NamedTuple):
 
 
 class KeuleganCarpenterDrag(AbstractLoad):
-    """f = 1/2 rho A Cd ((K^2 + e^2)/(K0^2 + e^2))^(n/2) |u| u on strips and ends, K their Keulegan-Carpenter number.
+    """Drag with coefficients that are a power of the Keulegan-Carpenter number.
 
-    K = U T/D = 2 pi a/D (Keulegan and Carpenter 1958, J. Res. Nat. Bur. Standards 60, 423-440), D the extent across the flow,
-    of an end its diameter. That Cd depends on K is theirs and Sarpkaya and Isaacson's (1981, Mechanics of Wave Forces on
-    Offshore Structures, chapter 3); a power of it is what Graham (1980, J. Fluid Mech. 97, 331-346) derives for vortices shed
-    by edges at low K: n = -1/3 at a plate's, 0 at a right angle's. Cd is the coefficient at K = K0, the `reference`; n = 0 is
-    plain Morison drag. e = 0.1 keeps it bounded at rest.
+    f = 1/2 rho A Cd ((K^2 + e^2)/(K0^2 + e^2))^(n/2) |u| u on strips and ends, K their Keulegan-Carpenter number.
+
+    K = U T/D = 2 pi a/D (Keulegan and Carpenter 1958, J. Res. Nat. Bur. Standards 60, 423-440), D the extent across the
+    flow, of an end its diameter. That Cd depends on K is theirs and Sarpkaya and Isaacson's (1981, Mechanics of Wave Forces
+    on Offshore Structures, chapter 3); a power of it is what Graham (1980, J. Fluid Mech. 97, 331-346) derives for vortices
+    shed by edges at low K: n = -1/3 at a plate's, 0 at a right angle's. Cd is the coefficient at K = K0, the `reference`; n
+    = 0 is plain Morison drag. e = 0.1 keeps it bounded at rest.
 
     How K is known at every instant is ours. The amplitude a is that of the water's displacement past the strip, which needs
     no period, so that one law serves a slow decay and waves: a^2 = 2 s, s the displacement's variance in a window that
@@ -43,9 +44,9 @@ class KeuleganCarpenterDrag(AbstractLoad):
 
         dd/dt = u - d/w,   ds/dt = (d^2 - s)/w,   w = W (1 - (1 - 1/30) exp(-t/W)),
 
-    d the displacement from its mean there, W the `window` (s). w is what there is of it since the start: half a cycle after a
-    release a is about right. A harmonic flow has K = (U T/D)/(1 + (T/(2 pi W))^2)^0.5 in the mean, and s swings about it by
-    1/(1 + (4 pi W/T)^2)^0.5: W about the longest period. A current counts as 2 pi 2^0.5 u W/D. `coupled`: a of both
+    d the displacement from its mean there, W the `window` (s). w is what there is of it since the start: half a cycle after
+    a release a is about right. A harmonic flow has K = (U T/D)/(1 + (T/(2 pi W))^2)^0.5 in the mean, and s swings about it
+    by 1/(1 + (4 pi W/T)^2)^0.5: W about the longest period. A current counts as 2 pi 2^0.5 u W/D. `coupled`: a of both
     directions together.
     """
 
@@ -102,7 +103,7 @@ class KeuleganCarpenterDrag(AbstractLoad):
 
 
 def extents(now: Instant) -> Float[Array, "2 n"]:
-    """Extent (m) of strips across the flow along either direction."""
+    """Size (m) of strips across the flow along either direction, (2, n)."""
     strips, away = now.hull.strips, now.hull.split(now.lines.away)[0]
     return (strips.size + strips.taper * away)[::-1]
 

@@ -1,4 +1,4 @@
-"""Restoring that is not linear."""
+"""Nonlinear mooring restoring in each degree of freedom."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -17,13 +17,15 @@ PARAMETERS = {
 
 
 class MooringNonlinearity(AbstractLoad):
-    """F_i = -(c2 x |x| + s2 x^2 + c3 x^3), x = x_i the displacement along earth axes (m, rad) from the reference position.
+    """Nonlinear restoring in each degree of freedom, beyond the model's stiffness.
 
-    What a mooring's tension does beyond the stiffness that the model has. Each degree of freedom has its own potential, so no
-    energy is lost, and surge does not stiffen by sway. c2 and c3 change the period with amplitude (by the first power and the
-    second), s2 shifts the mean and is what a mooring with one line fore and two aft has. Polynomials: good within the
-    displacements that they were fitted to, and with a negative sign unstable beyond some. x counts from the reference position,
-    not from the equilibrium: with a mean offset, all three change the stiffness there.
+    F_i = -(c2 x |x| + s2 x^2 + c3 x^3), x = x_i the displacement along earth axes (m, rad) from the reference position.
+
+    What a mooring's tension does beyond the stiffness that the model has. Each degree of freedom has its own potential, so
+    no energy is lost, and surge does not stiffen by sway. c2 and c3 change the period with amplitude (by the first power and
+    the second), s2 shifts the mean and is what a mooring with one line fore and two aft has. Polynomials: good within the
+    displacements that they were fitted to, and with a negative sign unstable beyond some. x counts from the reference
+    position, not from the equilibrium: with a mean offset, all three change the stiffness there.
 
     Nayfeh and Mook 1979, Nonlinear Oscillations, chapter 2, systems with quadratic and cubic nonlinearities. Labels are
     `mooring_nonlinearity.surge.odd_quadratic` (c2), `.even_quadratic` (s2), `.cubic` (c3).
@@ -34,7 +36,7 @@ class MooringNonlinearity(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str]) -> Self:
-        """Linear, in some degrees of freedom."""
+        """Load at its neutral value, in some degrees of freedom."""
         return cls(nulls("mooring_nonlinearity", dofs, PARAMETERS))
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""Hydrostatic restoring that is not linear, and the change of pitch stiffness with heave."""
+"""Nonlinear hydrostatic restoring, and heave-dependent pitch stiffness."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -19,16 +19,19 @@ ONLY_HEAVE = ("even_quadratic", "pitch_squared")
 
 
 class NonlinearHydrostatics(AbstractLoad):
-    """F_i = -(C2 x^2 + C3 x^3 + C5 x^5) in heave, roll, pitch, and from U = D z theta^2/2: F3 = -D theta^2/2, F5 = -D z theta.
+    """Nonlinear hydrostatic restoring in heave, roll and pitch.
+
+    F_i = -(C2 x^2 + C3 x^3 + C5 x^5) in heave, roll, pitch, and from U = D z theta^2/2: F3 = -D theta^2/2, F5 = -D z theta.
 
     x is the displacement along earth axes (m, rad) from the reference position, z heave, theta pitch; C2 is for heave alone,
     where the waterplane grows or shrinks with draught. It is what the model's buoyancy lacks: members that are wetted
     instantaneously have their own geometry's share of it already, a stiffness matrix has none.
 
-    D is the change of pitch stiffness per metre of heave, d(rho g V GM)/dz: heave at twice the natural frequency of pitch makes
-    pitch grow, Mathieu's instability (Haslum and Faltinsen 1999, OTC 10953). Roll with C3 of a wall-sided hull, GZ = (GM + BM/2
-    tan^2) sin (Barrass and Derrett, Ship Stability for Masters and Mates, the wall-sided formula), has, by expansion and beyond
-    rho g V GM x, C3 = rho g V (BM/2 - GM/6) and C5 = rho g V (BM/4 + GM/120): within 1 % of GZ at 30 degrees where BM = 2 GM.
+    D is the change of pitch stiffness per metre of heave, d(rho g V GM)/dz: heave at twice the natural frequency of pitch
+    makes pitch grow, Mathieu's instability (Haslum and Faltinsen 1999, OTC 10953). Roll with C3 of a wall-sided hull, GZ =
+    (GM + BM/2 tan^2) sin (Barrass and Derrett, Ship Stability for Masters and Mates, the wall-sided formula), has, by
+    expansion and beyond rho g V GM x, C3 = rho g V (BM/2 - GM/6) and C5 = rho g V (BM/4 + GM/120): within 1 % of GZ at 30
+    degrees where BM = 2 GM.
 
     Haslum and Faltinsen 1999, OTC 10953, for the coupling; polynomials are empirical, and good only within what they were
     fitted to. Labels are `nonlinear_hydrostatics.heave.even_quadratic`, `.heave.pitch_squared`, and `.cubic`, `.quintic` for
@@ -40,7 +43,7 @@ class NonlinearHydrostatics(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str] = ("heave", "roll", "pitch")) -> Self:
-        """Linear, in some of heave, roll and pitch."""
+        """Load at its neutral value, in some of heave, roll and pitch."""
         if wrong := set(dofs) - {"heave", "roll", "pitch"}:
             raise ValueError(f"nonlinear hydrostatics are those of heave, roll and pitch, found {sorted(wrong)[0]!r}")
         every = nulls("nonlinear_hydrostatics", dofs, PARAMETERS)

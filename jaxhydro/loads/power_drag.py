@@ -1,4 +1,4 @@
-"""Drag that goes with another power of the speed than the second."""
+"""Drag with another power of the speed than the second."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -25,7 +25,9 @@ from jaxhydro.loads.drag import (
 
 
 class PowerDrag(AbstractLoad):
-    """f = 1/2 rho A Cd ((u^2 + e^2)/(U0^2 + e^2))^(n/2) |u| u on strips and ends, u the water's relative velocity.
+    """Drag with coefficients that are a power of the speed.
+
+    f = 1/2 rho A Cd ((u^2 + e^2)/(U0^2 + e^2))^(n/2) |u| u on strips and ends, u the water's relative velocity.
 
     In place of `StripDrag` and `EndDrag`, whose coefficients it has; one exponent n for each group, n = 0 is plain drag
     exactly. Cd is that at the `speed` U0; e = 0.02 m/s keeps it bounded at rest. |u| is that of the vector, or with
@@ -46,12 +48,12 @@ class PowerDrag(AbstractLoad):
 
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True, speed: float = SPEED) -> "PowerDrag":
-        """The law on the lines whose drag coefficients are in `values`; exponents that are not there are 0."""
+        """Load on the lines whose drag coefficients are in `values`; missing exponents are 0."""
         return cls({f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)} | dict(values), coupled, speed)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "PowerDrag":
-        """Plain drag with the coefficients in `values`."""
+        """Load at its neutral value: plain drag with the coefficients in `values`."""
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""Quadratic damping per degree of freedom."""
+"""Quadratic damping in each degree of freedom."""
 
 from typing import Any, ClassVar
 
@@ -11,7 +11,9 @@ from jaxhydro.loads.matrix import assemble, meaning, unit
 
 
 class QuadraticDamping(AbstractLoad):
-    """F_i = -Q_ii |v_i| v_i along body axes: a body's drag without members, or what its members do not give.
+    """Quadratic damping in each degree of freedom.
+
+    F_i = -Q_ii |v_i| v_i along body axes: a body's drag without members, or what its members do not give.
 
     Labels are `quadratic_damping.B44` and so on, as in the platform file. Himeno 1981, Prediction of Ship Roll Damping
     (University of Michigan, report 239).

@@ -1,4 +1,4 @@
-"""Drag in which the platform's slow motion has a coefficient of its own, by six states."""
+"""Drag with another coefficient for the platform's slow motion (six states)."""
 
 import math
 from collections.abc import Mapping
@@ -13,7 +13,9 @@ from jaxhydro.loads.drag import OF_SHARE, SHARE, about, end_area, quadratic, str
 
 
 class SlowDrag(AbstractLoad):
-    """f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u + w, w that of the low-passed motion.
+    """Drag with one coefficient for the platform's low-passed motion and another for the rest.
+
+    f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u + w, w that of the low-passed motion.
 
     u is the water's relative velocity, w a strip's own velocity by the platform's low-passed one: dm/dt = 2 pi fc (v - m), m
     and v of six components in body axes. So u' is u without the platform's slow motion, and that motion feels r Cd where
@@ -34,12 +36,12 @@ class SlowDrag(AbstractLoad):
 
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
-        """The law on the lines whose drag coefficients are in `values`; its own parameters are null where they are not."""
+        """Load on the lines whose drag coefficients are in `values`; missing parameters are neutral."""
         return cls({label: jnp.asarray(about.null) for label, about in OF_SHARE.items()} | dict(values), coupled)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
-        """Plain drag with the coefficients in `values`."""
+        """Load at its neutral value: plain drag with the coefficients in `values`."""
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def rest(self) -> Float[Array, "6"]:

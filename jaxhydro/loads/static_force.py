@@ -1,4 +1,4 @@
-"""A constant force."""
+"""Constant force and moment."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -12,11 +12,13 @@ PARAMETERS = {"force": both("N", "N m", "constant load on the reference point in
 
 
 class StaticForce(AbstractLoad):
-    """F_i = f_i, constant along earth axes, at the reference point.
+    """Constant force and moment at the reference point.
 
-    A mean that nobody declared: a cable's pull, a rotor's thrust, wrong ballast or trim, a pretension, a steady wind. Where the
-    stiffness is constant it is the same as a zero of the instrument that is off (f/C): only a period that changes with the
-    offset tells the two apart.
+    F_i = f_i, constant along earth axes, at the reference point.
+
+    A mean that nobody declared: a cable's pull, a rotor's thrust, wrong ballast or trim, a pretension, a steady wind. Where
+    the stiffness is constant it is the same as a zero of the instrument that is off (f/C): only a period that changes with
+    the offset tells the two apart.
 
     Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 6, Current and wind loads. Labels are
     `static_offset.surge.force` and so on (N; N m for rotations).
@@ -27,7 +29,7 @@ class StaticForce(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str]) -> Self:
-        """No force, in some degrees of freedom."""
+        """Load at its neutral value, in some degrees of freedom."""
         return cls(nulls("static_offset", dofs, PARAMETERS))
 
     def about(self, label: str) -> Parameter:

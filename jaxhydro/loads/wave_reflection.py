@@ -1,4 +1,4 @@
-"""Waves that a beach or a wall sends back."""
+"""Waves reflected by a beach or wall."""
 
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -16,8 +16,10 @@ LATER, LATEST = 60.0, 600.0  # s
 
 
 class ReflectedSea(AbstractSea):
-    """A sea and, `coefficient` (-) times, its mirror image about the origin, `delay` (s) later; less, `seen` (-) times that,
-    the sea itself so much later."""
+    """A sea with its reflection: the mirror image about the origin, `coefficient` (-) times, `delay` (s) later.
+
+    From the reflection, `seen` (-) times the sea itself so much later is subtracted.
+    """
 
     sea: Any  # AbstractSea
     along: Float[Array, "2"]
@@ -72,18 +74,20 @@ class ReflectedSea(AbstractSea):
 
 
 class WaveReflection(AbstractLoad):
-    """eta(x, t) = eta_g(x, t) + r (eta_g(-x, t - T) - s eta_g(x, t - T)): the sea of the wave record, r times its mirror image
+    """Reflection of the waves by a beach.
+
+    eta(x, t) = eta_g(x, t) + r (eta_g(-x, t - T) - s eta_g(x, t - T)): the sea of the wave record, r times its mirror image
     about the origin, T later, and less what of that the record has already.
 
-    x is along the waves, T from the platform to the beach and back. s is 0 where the record is of incident waves alone, as
-    a row of gauges separates them, and 1 where it is of one gauge at the origin, which saw what came back, too: then the
-    elevation there is as measured, and the flow is not; of r^2 is neglected. One real r for all frequencies: beaches
-    reflect long waves more, and their r is measured by component (Goda and Suzuki 1976, Estimation of incident and
-    reflected waves in random wave experiments, Coastal Engineering Proceedings 15). With dispersion the delay is the group
-    velocity's at one period and the phase is not the beach's: r of either sign and a search over T stand for that. Bound
-    waves are sent back as they are, where a beach sets them free: of order r times second order. In a prepared sea T is
-    between the steps of its clock by interpolation, nothing comes back before T, and what comes back costs little. The squared
-    envelope stays that of the incident waves, and so does a computed excitation.
+    x is along the waves, T from the platform to the beach and back. s is 0 where the record is of incident waves alone, as a
+    row of gauges separates them, and 1 where it is of one gauge at the origin, which saw what came back, too: then the
+    elevation there is as measured, and the flow is not; of r^2 is neglected. One real r for all frequencies: beaches reflect
+    long waves more, and their r is measured by component (Goda and Suzuki 1976, Estimation of incident and reflected waves
+    in random wave experiments, Coastal Engineering Proceedings 15). With dispersion the delay is the group velocity's at one
+    period and the phase is not the beach's: r of either sign and a search over T stand for that. Bound waves are sent back
+    as they are, where a beach sets them free: of order r times second order. In a prepared sea T is between the steps of its
+    clock by interpolation, nothing comes back before T, and what comes back costs little. The squared envelope stays that of
+    the incident waves, and so does a computed excitation.
 
     Labels are `wave_reflection.coefficient` (r; -), `wave_reflection.delay` (T; s) and `wave_reflection.seen` (s; -).
     """
@@ -93,7 +97,7 @@ class WaveReflection(AbstractLoad):
 
     @classmethod
     def null(cls, delay: float = LATER) -> "WaveReflection":
-        """Nothing comes back, `delay` (s) after it has passed."""
+        """Load at its neutral value: no reflection; `delay` (s) is where it starts."""
         return cls({COEFFICIENT: jnp.zeros(()), DELAY: jnp.asarray(float(delay)), SEEN: jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""The body in a platform file: its mass and its members, checked, and as plain values. SI; headings in degrees."""
+"""Schema of the body in a platform file: mass and members, in SI, headings in degrees."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self

@@ -1,4 +1,4 @@
-"""Hydrostatics of other programs, read from the file that a platform file names."""
+"""Hydrostatics of other programs, from the file that a platform file names."""
 
 from pathlib import Path
 from typing import NamedTuple

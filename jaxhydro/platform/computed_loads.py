@@ -1,4 +1,4 @@
-"""Radiation, excitation and drift of other programs, read from the files that a platform file names and made into loads."""
+"""Radiation, excitation and drift loads from other programs' files."""
 
 from functools import lru_cache
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Laws of drag coefficients, by their labels: which a model has, and others in place of plain Morison drag."""
+"""Drag laws of a model by coefficient label, and their replacement."""
 
 import math
 from collections.abc import Mapping

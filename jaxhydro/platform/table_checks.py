@@ -1,4 +1,4 @@
-"""Whether tables of other programs fit together and to their platform, which tells a column that is another than declared."""
+"""Consistency of other programs' tables with each other and with their platform."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""The figures of a motion in an irregular sea: the whole record, a window of it, spectra."""
+"""Figures of a motion in an irregular sea: record, window and spectra."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
