@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-NEAR = 0.6  # `difflib`'s ratio from which words are alike
-LISTED = 40  # known words that a message lists at most
+MIN_SIMILARITY = 0.6  # `difflib`'s ratio from which words are alike
+MAX_LISTED_WORDS = 40  # known words that a message lists at most
 
 
 class UnknownName(KeyError, ValueError):
@@ -20,7 +20,7 @@ class UnknownName(KeyError, ValueError):
 def nearest(word: str, known: Iterable[str]) -> str:
     """The known word nearest to `word`, case aside; empty where none is near."""
     by_lower = {name.lower(): name for name in known}
-    near = difflib.get_close_matches(word[:80].lower(), by_lower, n=1, cutoff=NEAR)
+    near = difflib.get_close_matches(word[:80].lower(), by_lower, n=1, cutoff=MIN_SIMILARITY)
     return by_lower[near[0]] if near else ""
 
 
@@ -30,7 +30,7 @@ def unknown(kind: str, word: object, known: Iterable[str], hint: str = "") -> Un
     A `hint` is told in place of the nearest name.
     """
     known = list(known)
-    listed = ", ".join(known[:LISTED]) + (", ..." if len(known) > LISTED else "") or "none"
+    listed = ", ".join(known[:MAX_LISTED_WORDS]) + (", ..." if len(known) > MAX_LISTED_WORDS else "") or "none"
     near = nearest(word, known) if isinstance(word, str) else ""
     hint = hint or (f"Did you mean {near!r}?" if near else "")
     return UnknownName(f"no {kind} {word!r}; there are: {listed}" + (f". {hint}" if hint else ""))

@@ -26,7 +26,7 @@ Text = Annotated[str, Field(strict=True, min_length=1)]
 Vector = tuple[Number, Number, Number]
 
 M = TypeVar("M", bound=BaseModel)
-SHOWN = 20  # problems printed before the rest is only counted
+MAX_PRINTED_PROBLEMS = 20  # problems printed before the rest is only counted
 
 
 class Schema(BaseModel):
@@ -77,9 +77,9 @@ class InputError(Exception):
     def __str__(self) -> str:
         if len(self.problems) == 1:
             return f"{self.source}: {self.problems[0]}"
-        lines = [f"  {problem}" for problem in self.problems[:SHOWN]]
-        if len(self.problems) > SHOWN:
-            lines.append(f"  and {len(self.problems) - SHOWN} more")
+        lines = [f"  {problem}" for problem in self.problems[:MAX_PRINTED_PROBLEMS]]
+        if len(self.problems) > MAX_PRINTED_PROBLEMS:
+            lines.append(f"  and {len(self.problems) - MAX_PRINTED_PROBLEMS} more")
         return "\n".join([f"{self.source}: {len(self.problems)} problems", *lines])
 
 

@@ -8,18 +8,18 @@ from typing import Any
 
 from jaxtyping import Array, Float
 
-VOLUME = 20093000.0 / 1025.0  # m3, mass of VolturnUS-S over density: NREL/TP-5000-76773
-GRAVITY = 9.80665  # m/s2
+REFERENCE_VOLUME = 20093000.0 / 1025.0  # m3, mass of VolturnUS-S over density: NREL/TP-5000-76773
+REFERENCE_GRAVITY = 9.80665  # m/s2
 
 
 def size_of(mass: Any, density: Any) -> Any:
     """Length (-) over that of VolturnUS-S: the cube root of mass (kg) over the water's density (kg/m3), over the same there."""
-    return (mass / density / VOLUME) ** (1 / 3)
+    return (mass / density / REFERENCE_VOLUME) ** (1 / 3)
 
 
 def pace_of(size: Any, gravity: Any) -> Any:
     """Time (-) over that of VolturnUS-S, by Froude: (L/g)^(1/2)."""
-    return (size * (GRAVITY / gravity)) ** 0.5
+    return (size * (REFERENCE_GRAVITY / gravity)) ** 0.5
 
 
 def entered(depth: Float[Array, "..."], width: Float[Array, ""] | float) -> Float[Array, "..."]:

@@ -10,9 +10,23 @@ from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum, sta
 from jaxhydro.environment import DOFS
 from jaxhydro.units import unit_of
 
-STILL = 1e-9  # m, deg: what moves less does not move
-SHOWN = ("mean", "standard_deviation", "minimum", "maximum", "significant_double_amplitude", "zero_crossing_period")
-HEADS = ("Mean", "Standard deviation", "Least", "Largest", "Significant double amplitude", "Zero-crossing period (s)")
+MIN_RANGE = 1e-9  # m, deg: what moves less does not move
+PRINTED_STATISTICS = (
+    "mean",
+    "standard_deviation",
+    "minimum",
+    "maximum",
+    "significant_double_amplitude",
+    "zero_crossing_period",
+)
+PRINTED_HEADINGS = (
+    "Mean",
+    "Standard deviation",
+    "Least",
+    "Largest",
+    "Significant double amplitude",
+    "Zero-crossing period (s)",
+)
 
 
 def bands_of(channel: str, peak_period: float | None) -> dict[str, tuple[float, float]]:
@@ -47,8 +61,8 @@ def summary(time: np.ndarray, channels: Mapping[str, np.ndarray], peak_period: f
 
 
 def still(values: np.ndarray) -> np.ndarray:
-    """The values; where they vary by less than `STILL`, their rounded mean throughout."""
-    return np.full_like(values, np.round(values.mean(), 9) + 0.0) if np.ptp(values) < STILL else values
+    """The values; where they vary by less than `MIN_RANGE`, their rounded mean throughout."""
+    return np.full_like(values, np.round(values.mean(), 9) + 0.0) if np.ptp(values) < MIN_RANGE else values
 
 
 def _statistics(time: np.ndarray, channel: str, values: np.ndarray) -> dict[str, Any]:
@@ -68,7 +82,7 @@ def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tup
     """Headings and rows of the two printed tables: statistics, and band energies of every moving channel."""
     rows, energy = [], []
     for channel, found in document["statistics"].items():
-        rows.append((f"{channel} ({found['unit']})", *(_number(found[name]) for name in SHOWN)))
+        rows.append((f"{channel} ({found['unit']})", *(_number(found[name]) for name in PRINTED_STATISTICS)))
         deviation = found["standard_deviation"]
         if not deviation or channel not in document["bands"]:
             continue
@@ -79,11 +93,11 @@ def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tup
             cells += [_band(one["band"]), _number(one["integral"]), f"{share:.0%}"] if one else ["-", "-", "-"]
         energy.append((f"{channel} ({found['unit']}²)", *cells))
     of_bands = ("Low frequency (Hz)", "Integral", "of all", "Wave frequency (Hz)", "Integral", "of all")
-    return (("Channel", *HEADS), rows), (("Channel", *of_bands), energy)
+    return (("Channel", *PRINTED_HEADINGS), rows), (("Channel", *of_bands), energy)
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}" if abs(value) > STILL else "0"
+    return "-" if value is None else f"{value:.4g}" if abs(value) > MIN_RANGE else "0"
 
 
 def _band(band: list[float]) -> str:

@@ -14,7 +14,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import sampling_interval
 
 SEGMENT = 1000.0  # s: 0.001 Hz between frequencies, so that the lowest band, 0.005 to 0.025 Hz, has twenty of them
-FEWEST = 8  # segments' lengths in a record for a transfer function: its coherence is biased by about 1 / number
+MIN_TRANSFER_SEGMENTS = 8  # segments' lengths in a record for a transfer function: its coherence is biased by about 1 / number
 
 BANDS = {  # Hz, low and high
     "surge": (0.005, 0.025),
@@ -25,7 +25,9 @@ BANDS = {  # Hz, low and high
 }
 """Low-frequency bands of surge, heave and pitch, and the wave-frequency bands of a moderate and of a high sea: the paper's."""
 
-LONG = 0.7 / 0.06  # s: from this peak period on a sea has energy below 0.06 Hz (JONSWAP has next to none below 0.7 of its peak)
+LONG_PEAK_PERIOD = (
+    0.7 / 0.06
+)  # s: from this peak period on a sea has energy below 0.06 Hz (JONSWAP has next to none below 0.7 of its peak)
 
 
 class PowerSpectrum(NamedTuple):
@@ -216,7 +218,7 @@ def bands(dof: str, peak_period: float) -> dict[str, tuple[float, float]]:
         raise ValueError(f"bands are known for surge, sway, heave, roll and pitch, found {dof!r}")
     if not peak_period > 0:
         raise ValueError(f"peak_period is above 0 s, found {peak_period}")
-    return {"low_frequency": BANDS[same], "wave_frequency": BANDS["wave, long" if peak_period >= LONG else "wave"]}
+    return {"low_frequency": BANDS[same], "wave_frequency": BANDS["wave, long" if peak_period >= LONG_PEAK_PERIOD else "wave"]}
 
 
 class TransferFunction(NamedTuple):
@@ -270,7 +272,7 @@ def transfer_function(
     """
     step, wave = _record(time, wave)
     _, motion = _record(time, motion)
-    segment = min(SEGMENT, len(wave) * step / FEWEST) if segment is None else segment
+    segment = min(SEGMENT, len(wave) * step / MIN_TRANSFER_SEGMENTS) if segment is None else segment
     count, shared, window = _segments(len(wave), step, segment, overlap, window)
     if len(wave) < 2 * count - shared:
         raise ValueError(f"two segments or more expected, found a record of {len(wave) * step:g} s, segments of {segment:g} s")

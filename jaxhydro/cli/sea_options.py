@@ -20,7 +20,7 @@ OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
-STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
+MAX_STEEPNESS = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
 
@@ -163,7 +163,7 @@ def with_record(sea: Asked, file: Path, table: Any, given: Mapping[str, Any]) ->
         raise wrong_file(f"column {time_name}", "times in s", f"{stated[time_name]}, as the file states")
     elevation = elevation * UNITS[unit]
     height, length = 4 * float(np.std(elevation)), _peak_length(times, elevation)
-    if height > STEEPEST * length:
+    if height > MAX_STEEPNESS * length:
         found = f"waves {height:.3g} m high and {length:.3g} m long"
         expected = "waves less than 1/7 as high as long, at full scale"
         raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")

@@ -16,7 +16,7 @@ from jaxhydro.sweep.store import RESULTS, alone, open_results
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.write_sweep import Summary, summary_of, write_outputs
 
-LISTED = 5  # failures that are printed, of runs that failed alike
+MAX_PRINTED_FAILURES = 5  # failures that are printed, of runs that failed alike
 
 
 class Stopped(Exception):
@@ -146,7 +146,7 @@ def _print_results(summary: Summary, exponents) -> None:
     if summary.failed:
         share = f"; cases of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
         complain(f"{summary.failed} of {summary.total} runs failed{share}")
-        listed, others = summary.failures[:LISTED], summary.failures[LISTED:]
+        listed, others = summary.failures[:MAX_PRINTED_FAILURES], summary.failures[MAX_PRINTED_FAILURES:]
         for failure in listed:
             complain(f"{failure.where}: {failure.reason}")
         if others:

@@ -18,9 +18,9 @@ from jaxhydro.waves.support_sea import Clock
 
 Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]
-MORE = 2  # steps, so that differences at the last one are central
-MOTION = 12  # entries of the state before the loads' memories: position and velocity
-LONG = 32  # entries of a state beyond which a forward derivative runs along with the simulation
+EXTRA_STEPS = 2  # steps, so that differences at the last one are central
+MOTION_SIZE = 12  # entries of the state before the loads' memories: position and velocity
+MAX_SEPARATE_STATE = 32  # entries of a state beyond which a forward derivative runs along with the simulation
 Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
@@ -77,11 +77,11 @@ def _by_loop(method: Method, model: Model, sea: AbstractSea, state: State, start
     loop = adams_bashforth if method == "ab4" else runge_kutta
     options: dict[str, Any] = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
     run: Any = loop.forward if adjoint == "forward" else loop.backward
-    if adjoint == "forward" and y.shape[0] > LONG:
-        run, options["shown"] = loop.direct, MOTION
+    if adjoint == "forward" and y.shape[0] > MAX_SEPARATE_STATE:
+        run, options["shown"] = loop.direct, MOTION_SIZE
 
     path = run((model, sea), y, start, step, count, rate=_rate_of(unravel), capacity=capacity, **options)
-    return path[:, :6], path[:, 6:MOTION]
+    return path[:, :6], path[:, 6:MOTION_SIZE]
 
 
 def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
@@ -127,7 +127,7 @@ def integrate(
     check(method=(method, get_args(Method)), adjoint=(adjoint, get_args(Adjoint)))
     count = jnp.asarray(capacity) if count is None else count
     run = _by_diffrax if method == "diffrax" else partial(_by_loop, method)
-    position, velocity = run(model, sea, state, start, step, count + MORE, capacity + MORE, adjoint)
+    position, velocity = run(model, sea, state, start, step, count + EXTRA_STEPS, capacity + EXTRA_STEPS, adjoint)
     rate = jax.vmap(model.position_rate)(position, velocity)
     return Grid(start, step, count, position, rate, differences(rate, step))
 
@@ -146,14 +146,14 @@ def clock(method: Method, start: float, step: float, count: int) -> Clock:
     """When an integration over `count` steps asks for the sea."""
     check(method=(method, get_args(Method)))
     if method == "ab4":
-        return Clock(start, step, count + MORE, (0.0,), adams_bashforth.START)
+        return Clock(start, step, count + EXTRA_STEPS, (0.0,), adams_bashforth.START_STEPS)
     if method == "diffrax":
         import diffrax
 
         nodes = (0.0, *map(float, diffrax.Tsit5.tableau.c))
     else:
         nodes = (runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()).nodes
-    return Clock(start, step, count + MORE + 1, tuple(sorted({node for node in nodes if node < 1.0})))
+    return Clock(start, step, count + EXTRA_STEPS + 1, tuple(sorted({node for node in nodes if node < 1.0})))
 
 
 def differences(values: Float[Array, "n 6"], step: Float[Array, ""]) -> Float[Array, "n 6"]:

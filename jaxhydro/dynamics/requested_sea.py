@@ -19,10 +19,10 @@ from jaxhydro.waves.irregular import separated_record, spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
 
-MISSED = 0.01  # of a record in the band, that first and second order may miss by root mean square
-CUT = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
-NEARLY_NONE = 0.05  # share, below which it is a mistake
-LEAST = 100  # samples after the transient
+MAX_RECORD_MISMATCH = 0.01  # of a record in the band, that first and second order may miss by root mean square
+NOTED_SHARE = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
+MIN_SHARE = 0.05  # share, below which it is a mistake
+MIN_SAMPLES = 100  # samples after the transient
 TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
 
 
@@ -126,7 +126,7 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         record = asked.record
         left = record.elevation - record.elevation.mean() - sea.gauge(record.times, record.position)
         about["share_of_record"] = 1 - float(np.var(left) / np.var(record.elevation))
-        if about["share_of_record"] < CUT:
+        if about["share_of_record"] < NOTED_SHARE:
             notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
     return Built(sea, about, target, notes)
 
@@ -176,10 +176,10 @@ def _from_spectrum(
             raise InputError("--hs", [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
         raise impossible("--cutoff", error) from None
     share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
-    if share < NEARLY_NONE:
+    if share < MIN_SHARE:
         expected = f"a band, here {low:g} to {cutoff:g} Hz, with waves in it"
         raise InputError("--cutoff", [Problem("", expected, f"one with {share:.1%} of the spectrum")])
-    if share < CUT:
+    if share < NOTED_SHARE:
         notes.append(f"{share:.1%} of the spectrum lies from {low:g} to {cutoff:g} Hz: see --low and --cutoff")
     about = {
         "spectrum": asked.spectrum,
@@ -208,7 +208,7 @@ def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -
     except ValueError as error:
         option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
         raise impossible(option, error) from None
-    if found.mismatch > MISSED:
+    if found.mismatch > MAX_RECORD_MISMATCH:
         missed = f"first and second order miss {found.mismatch:.1%} of the record in the band, and the nearest found is used"
         notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
     spectrum = power_spectrum(record.times, record.elevation)

@@ -10,7 +10,9 @@ from jaxtyping import Array, Float
 from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
 
-EDGE = 0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
+MIN_DISTANCE_FROM_END = (
+    0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
+)
 
 
 class Response(eqx.Module):
@@ -85,7 +87,7 @@ def extremes(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[
         span = slice(clear[first], clear[last - 1] + 1)
         t, x = time[span], motion[span]
         tip = int(np.argmax(np.abs(x)))
-        clearance = EDGE * (t[-1] - t[0])
+        clearance = MIN_DISTANCE_FROM_END * (t[-1] - t[0])
         at_end = t[tip] - time[0] < clearance or time[-1] - t[tip] < clearance
         if len(t) < 5 or at_end or tip in (0, len(t) - 1):
             continue  # cut off by an end of the record, or too short to be a half cycle

@@ -27,11 +27,11 @@ from jaxhydro.waves.support_sea import SupportSea
 
 SEA_STEP = 0.25  # s times the platform's pace, in irregular seas where no step is asked for
 LONGEST_STEP, STEP_AT_REST = 1.0, 0.5  # the same elsewhere: the longest, and that of a platform which nothing restores
-ALIKE = 1.001  # of a step: hulls of nearly one size take the same
+STEP_MARGIN = 1.001  # of a step: hulls of nearly one size take the same
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
-RESOLVED = 0.075  # of the shortest waves' period: the longest step
-STABLE = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
-STABLE_ELSE = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
+STEP_PER_WAVE_PERIOD = 0.075  # of the shortest waves' period: the longest step
+STABILITY_LIMIT = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
+DEFAULT_STABILITY_LIMIT = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
 
 
 def default_step(model: Model, method: Method = "tsit5") -> float:
@@ -58,12 +58,12 @@ def memory_step(model: Model, method: Method = "tsit5") -> float:
     """
     check(method=(method, get_args(Method)))
     fastest = max(load.fastest() for load in model.loads)
-    return STABLE.get(method, STABLE_ELSE) / fastest if fastest else math.inf
+    return STABILITY_LIMIT.get(method, DEFAULT_STABILITY_LIMIT) / fastest if fastest else math.inf
 
 
 def sea_step(model: Model) -> float:
     """Default time step (s) in irregular seas: 0.25 s at the size of VolturnUS-S."""
-    return ALIKE * SEA_STEP * float(model.pace)
+    return STEP_MARGIN * SEA_STEP * float(model.pace)
 
 
 def excursion_of(model: Model) -> float:
@@ -78,7 +78,7 @@ def largest_step(model: Model, cutoff: float) -> float:
         model: The platform.
         cutoff: Highest frequency of the waves (Hz).
     """
-    return min(sea_step(model), default_step(model, "ab4"), RESOLVED / cutoff)
+    return min(sea_step(model), default_step(model, "ab4"), STEP_PER_WAVE_PERIOD / cutoff)
 
 
 @eqx.filter_jit
@@ -240,7 +240,7 @@ def steps_in(sea: IrregularSea, duration: float, limit: float) -> tuple[float, i
     """
     period = float(sea.components.period)
     step = period / fourier_length(period / limit)
-    return step, max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
+    return step, max(adams_bashforth.START_STEPS, math.ceil(duration / step - 1e-9))
 
 
 def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: SupportSea) -> Float[Array, ""]:

@@ -14,13 +14,13 @@ from jaxhydro.dynamics.model import Model, State
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea import StillWater
 
-CLOSE = 1e-12  # of the position: the last step
+NEWTON_TOLERANCE = 1e-12  # of the position: the last step
 ITERATIONS = 64
-UNCOUPLED = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
-ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
-SUNK = 20.0  # the same: heave in which a platform does not float, if it is not less deep
-WIDTH = 50.0  # the same: VolturnUS-S's half width, by which modes compare rotations with displacements
-FREE = 1e-12  # of the stiffest motion's restoring: what is below is none
+MIN_COUPLING = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
+MOMENT_ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
+MAX_HEAVE = 20.0  # the same: heave in which a platform does not float, if it is not less deep
+ROTATION_LENGTH = 50.0  # the same: VolturnUS-S's half width, by which modes compare rotations with displacements
+MIN_RESTORING = 1e-12  # of the stiffest motion's restoring: what is below is none
 
 
 class EquilibriumError(RuntimeError):
@@ -28,9 +28,9 @@ class EquilibriumError(RuntimeError):
 
 
 def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
-    """Net force over weight, net moment over weight times `ARM`."""
+    """Net force over weight, net moment over weight times `MOMENT_ARM`."""
     weight = model.body.mass * model.environment.gravity
-    arm = jnp.ones(6).at[3:].set(ARM * model.size)
+    arm = jnp.ones(6).at[3:].set(MOMENT_ARM * model.size)
     return model.force_at_rest(position) / (weight * arm)
 
 
@@ -63,13 +63,13 @@ def _root(model: Model, held: _Held | None) -> Float[Array, "6"]:
 
     def going(at: tuple[Array, Array, Array]) -> Array:
         root, step, count = at
-        return (jnp.abs(step).max() > CLOSE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
+        return (jnp.abs(step).max() > NEWTON_TOLERANCE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
 
     def newton(at: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         root, _, count = at
         slopes, found = jax.jacfwd(balance, has_aux=True)(root)
         # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
-        step = jnp.linalg.pinv(slopes, rtol=FREE) @ found
+        step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ found
         return root - step, step, count + 1
 
     return jax.lax.while_loop(going, newton, (jnp.zeros(6), jnp.full(6, jnp.inf), jnp.asarray(0)))[0]
@@ -80,7 +80,7 @@ def _root_jvp(primals, tangents):
     """By the implicit function theorem."""
     root = _root(*primals)
     _, balance = eqx.filter_jvp(lambda *at: _unbalanced(root, *at), primals, tangents)
-    return root, -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=FREE) @ balance
+    return root, -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=MIN_RESTORING) @ balance
 
 
 @eqx.filter_jit
@@ -110,13 +110,13 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
     at = np.asarray(position)
     worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
     if not np.abs(np.asarray(residual)).max() < 1e-8:
-        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else ARM * float(model.size))
+        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else MOMENT_ARM * float(model.size))
         raise EquilibriumError(
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
             f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
         )
     draught = np.abs(np.asarray(model.hull.elements.start)[2]).max(initial=0.0)
-    if abs(at[2]) > max(draught, SUNK * float(model.size)) or (np.abs(at[3:5]) > 1.0).any():
+    if abs(at[2]) > max(draught, MAX_HEAVE * float(model.size)) or (np.abs(at[3:5]) > 1.0).any():
         where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], at[2:5], ("m", "rad", "rad")))
         raise EquilibriumError(f"the platform only balances at {where}: check mass, centre of mass, volume and mooring")
     return position
@@ -210,7 +210,7 @@ def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, 
 
 def widths(model: Model) -> np.ndarray:
     """Factors by which displacements (1) and rotations (m) are compared, (6,)."""
-    return np.array([1.0, 1.0, 1.0, *3 * [WIDTH * float(model.size)]])
+    return np.array([1.0, 1.0, 1.0, *3 * [ROTATION_LENGTH * float(model.size)]])
 
 
 def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Modes:
@@ -248,8 +248,8 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
 def _coupled(model: Model, moved: Collection[str]) -> set[str]:
     """Degrees of freedom coupled with some in small motion, directly or through others."""
     both = [np.abs(np.asarray(matrix)) for matrix in linearised(model, equilibrium(model))]
-    scales = [np.sqrt(np.maximum(np.diag(matrix), UNCOUPLED * matrix.max())) for matrix in both]
-    goes = np.any([matrix > UNCOUPLED * np.outer(s, s) for matrix, s in zip(both, scales)], axis=0)
+    scales = [np.sqrt(np.maximum(np.diag(matrix), MIN_COUPLING * matrix.max())) for matrix in both]
+    goes = np.any([matrix > MIN_COUPLING * np.outer(s, s) for matrix, s in zip(both, scales)], axis=0)
     reached = np.linalg.matrix_power(goes | np.eye(6, dtype=bool), 6)
     return {dof for i, dof in enumerate(DOFS) if any(reached[DOFS.index(name), i] for name in moved)}
 

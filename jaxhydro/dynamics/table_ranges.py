@@ -10,11 +10,11 @@ from jaxtyping import Float
 from jaxhydro.dynamics.model import Model
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import Components
-from jaxhydro.waves.excitation import CLOSE
+from jaxhydro.waves.excitation import TABLE_END_TOLERANCE
 from jaxhydro.waves.sea import AbstractSea, WaveSea
 
-WARNED = 0.01  # of a sea's energy outside a table, from which it is a warning
-SAID = 5e-5  # of a sea's energy outside a table, from which it is said at all
+WARNING_SHARE = 0.01  # of a sea's energy outside a table, from which it is a warning
+NOTE_SHARE = 5e-5  # of a sea's energy outside a table, from which it is said at all
 WHAT = {
     "excitation": "these waves do not excite the platform",
     "drift": "these waves do not make it drift",
@@ -39,7 +39,7 @@ class TableRange(NamedTuple):
 
     def outside(self, omega: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
         """Which frequencies (rad/s) the table has not."""
-        return (omega < self.low * (1 - CLOSE)) | (omega > self.high * (1 + CLOSE))
+        return (omega < self.low * (1 - TABLE_END_TOLERANCE)) | (omega > self.high * (1 + TABLE_END_TOLERANCE))
 
     def share_outside(self, omega: Float[np.ndarray, " w"], energy: Float[np.ndarray, " w"]) -> float:
         """Share of the energy (any unit) at frequencies (rad/s) that the table has not."""
@@ -48,10 +48,10 @@ class TableRange(NamedTuple):
 
     def remark(self, share: float, where: str = "the sea") -> Remark | None:
         """What is said of a share of a sea's energy outside; None: it is nothing to speak of."""
-        if share < SAID:
+        if share < NOTE_SHARE:
             return None
         outside = f"{share:.2%} of the energy of {where} lies outside the {self.key} table"
-        return Remark(f"{outside}, which has {self.words}: {WHAT[self.key]}", warning=share > WARNED)
+        return Remark(f"{outside}, which has {self.words}: {WHAT[self.key]}", warning=share > WARNING_SHARE)
 
 
 def table_ranges(model: Model, candidates: bool = False) -> tuple[TableRange, ...]:

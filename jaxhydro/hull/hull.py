@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.ends import Ends, ends
-from jaxhydro.hull.strips import COVERING, ENTERING, Elements, Member, Strips, cut
+from jaxhydro.hull.strips import END_WETTING_LENGTH, FACE_WETTING_LENGTH, Elements, Member, Strips, cut
 from jaxhydro.hull.waterplane import Leaning, Waterplane, leaning, segment, waterplane
 from jaxhydro.scales import covered, entered
 from jaxhydro.waves.flow import Cylinders
@@ -120,7 +120,7 @@ class Hull(eqx.Module):
         steep = jnp.where(column, jnp.maximum(slope, 1e-3), 1.0)
         rise = jnp.where(column, steep * elements.length, jnp.abs(slope) * elements.length + elements.thickness)
         low = depth + jnp.where(column, 0.0, 0.5 * elements.thickness + jnp.maximum(-slope, 0.0) * elements.length)
-        width = ENTERING * self.size
+        width = END_WETTING_LENGTH * self.size
         under = entered(low, width) - entered(low - rise, width)
         share = under / rise
         if self.waterplane is not None:
@@ -130,7 +130,7 @@ class Hull(eqx.Module):
 
     def ends_wetted(self, depth: Float[Array, " m"]) -> Float[Array, " m"]:
         """Share of ends at a `depth` (m) that is under water."""
-        return covered(depth, COVERING * self.size)
+        return covered(depth, FACE_WETTING_LENGTH * self.size)
 
 
 def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tuple[Array, Array, Array]:

@@ -27,14 +27,16 @@ from jaxhydro.hull.coefficient_labels import Shares, parameter_labels, shares_of
 from jaxhydro.hull.waterplane import wet_section
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
-UPRIGHT = math.cos(math.radians(10.0))  # of an axis that counts as vertical
-SPACING = 2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
+VERTICAL_COSINE = math.cos(math.radians(10.0))  # of an axis that counts as vertical
+COLUMN_SPACING = (
+    2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
+)
 PONTOON_SPACING = 5.0  # the same of a pontoon
 PARTLY_WET = 0.05  # of the height of a pontoon: less, under or above still water, does not matter
-FLOATING = 8  # load elements at least along a member that lies at the surface
-NEARLY = 0.05  # of a strip, that a hull may ask for beyond a whole number
-ENTERING = 0.1  # m times the size of the hull, in which an element's end enters the water
-COVERING = 0.5  # the same, in which water covers a face
+MIN_FLOATING_ELEMENTS = 8  # load elements at least along a member that lies at the surface
+WHOLE_NUMBER_TOLERANCE = 0.05  # of a strip, that a hull may ask for beyond a whole number
+END_WETTING_LENGTH = 0.1  # m times the size of the hull, in which an element's end enters the water
+FACE_WETTING_LENGTH = 0.5  # the same, in which water covers a face
 
 
 class Member(NamedTuple):
@@ -103,7 +105,7 @@ class Member(NamedTuple):
         if self.maccamy_fuchs is not None:
             return self.maccamy_fuchs
         low, high = sorted((self.a[2], self.b[2]))
-        return self.circular and self.axis[2] > UPRIGHT and low < 0 <= high
+        return self.circular and self.axis[2] > VERTICAL_COSINE and low < 0 <= high
 
     def kinks(self) -> list[float]:
         """Fractions of the length, strictly inside, at which the change of size along the axis is another."""
@@ -135,8 +137,8 @@ class Member(NamedTuple):
     @property
     def upward(self) -> int | None:
         """Which of its two directions is near vertical, where it lies level enough to be wet by its local depth; else None."""
-        steep = [abs(float(direction[2])) > UPRIGHT for direction in self._across(self._along)]
-        if abs(float(self._along[2])) > math.sqrt(1 - UPRIGHT**2) or not (any(steep) or self.circular):
+        steep = [abs(float(direction[2])) > VERTICAL_COSINE for direction in self._across(self._along)]
+        if abs(float(self._along[2])) > math.sqrt(1 - VERTICAL_COSINE**2) or not (any(steep) or self.circular):
             return None
         return 0 if steep[0] else 1
 
@@ -164,7 +166,7 @@ class Member(NamedTuple):
         """
         length = float(np.linalg.norm(self.b - self.a))
         if self.floats:
-            at = np.linspace(0.0, 1.0, max(self.elements or 0, FLOATING) + 1)
+            at = np.linspace(0.0, 1.0, max(self.elements or 0, MIN_FLOATING_ELEMENTS) + 1)
             far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
             return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
         if self.elements is not None:
@@ -175,8 +177,8 @@ class Member(NamedTuple):
         for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
             under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.fills else 1.0
-            spacing = size * (SPACING if self.column else PONTOON_SPACING)
-            count = math.ceil(under * (hi - lo) * length / spacing - NEARLY)
+            spacing = size * (COLUMN_SPACING if self.column else PONTOON_SPACING)
+            count = math.ceil(under * (hi - lo) * length / spacing - WHOLE_NUMBER_TOLERANCE)
             found.append((float(lo), float(hi), max(2, min(count, 20))))
         return found
 

@@ -16,10 +16,10 @@ from jaxtyping import Array, Float, Int
 
 from jaxhydro.integrators.runge_kutta import RK4, Rate, linearised
 
-BLOCK = 64  # steps per checkpointed block of a reverse gradient
+CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
 BATCH = 4  # evaluations linearised together: their flow fills the cache
-START = 3  # steps by RK4, of four evaluations each
-MEMORY = 4 * START + 1  # slopes that are remembered
+START_STEPS = 3  # steps by RK4, of four evaluations each
+STORED_SLOPES = 4 * START_STEPS + 1  # slopes that are remembered
 
 
 class _Rows:
@@ -29,22 +29,22 @@ class _Rows:
     """
 
     def __init__(self) -> None:
-        rows = 4 * START + 4  # the last one repeats
-        self.at, self.add = np.zeros((rows, MEMORY)), np.zeros((rows, MEMORY))
+        rows = 4 * START_STEPS + 4  # the last one repeats
+        self.at, self.add = np.zeros((rows, STORED_SLOPES)), np.zeros((rows, STORED_SLOPES))
         self.time, self.step = np.zeros(rows), np.zeros(rows, int)
         table = RK4.coefficients()
-        for i in range(4 * START):
+        for i in range(4 * START_STEPS):
             stage, self.step[i] = i % 4, i // 4
             self.at[i, :stage] = table[stage, :stage][::-1]
             self.time[i] = i // 4 + RK4.nodes[stage]
             if stage == 3:
                 self.add[i, :4] = RK4.weights[::-1]
-        for i in range(4 * START, rows):
-            step = i - 4 * START + START
+        for i in range(4 * START_STEPS, rows):
+            step = i - 4 * START_STEPS + START_STEPS
             self.time[i] = self.step[i] = step
             for back, weight in enumerate((55 / 24, -59 / 24, 37 / 24, -9 / 24)):
                 taken = step - back
-                self.add[i, i - (4 * taken if taken < START else 4 * START + taken - START)] = weight
+                self.add[i, i - (4 * taken if taken < START_STEPS else 4 * START_STEPS + taken - START_STEPS)] = weight
 
 
 ROWS = _Rows()
@@ -52,7 +52,7 @@ ROWS = _Rows()
 
 def evaluations(steps: int | Int[Array, ""]) -> Any:
     """Evaluations that `steps` steps take."""
-    return steps + 3 * START
+    return steps + 3 * START_STEPS
 
 
 def _row(index: Int[Array, ""]) -> tuple[Array, Array, Array, Array]:
@@ -80,7 +80,7 @@ def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool,
 
     size = y.shape[0]
     taken = jnp.zeros((evaluations(capacity + 1), size)) if keep else None
-    carry = (y, jnp.zeros((MEMORY, size)), jnp.zeros((capacity + 1, y[:shown].shape[0])), taken)
+    carry = (y, jnp.zeros((STORED_SLOPES, size)), jnp.zeros((capacity + 1, y[:shown].shape[0])), taken)
     _, _, path, taken = jax.lax.fori_loop(0, evaluations(count + 1), body, carry)
     return path, taken
 
@@ -126,9 +126,9 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int):
         return _advance(d_y, slopes, d_slope, add, step), d_y
 
     d_y = jnp.zeros_like(y) if d_y is None else d_y
-    _, found = jax.lax.scan(body, (d_y, jnp.zeros((MEMORY, y.shape[0]))), (slope, push, at, add))
+    _, found = jax.lax.scan(body, (d_y, jnp.zeros((STORED_SLOPES, y.shape[0]))), (slope, push, at, add))
     # the state before the first evaluation of every step
-    first = np.concatenate([4 * np.arange(START), np.arange(4 * START, total)])
+    first = np.concatenate([4 * np.arange(START_STEPS), np.arange(4 * START_STEPS, total)])
     return path, found[first]
 
 
@@ -143,9 +143,9 @@ def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Flo
         return _advance(y, slopes, slope, add, step), y
 
     total = evaluations(capacity + 1)
-    blocks = -(-total // BLOCK)
-    index = jnp.arange(blocks * BLOCK).reshape(blocks, BLOCK)
-    carry = (y, jnp.zeros((MEMORY, y.shape[0])))
+    blocks = -(-total // CHECKPOINT_STEPS)
+    index = jnp.arange(blocks * CHECKPOINT_STEPS).reshape(blocks, CHECKPOINT_STEPS)
+    carry = (y, jnp.zeros((STORED_SLOPES, y.shape[0])))
     _, saved = jax.lax.scan(jax.checkpoint(lambda c, i: jax.lax.scan(advance, c, i)), carry, index)
-    first = np.concatenate([4 * np.arange(START), np.arange(4 * START, total)])
+    first = np.concatenate([4 * np.arange(START_STEPS), np.arange(4 * START_STEPS, total)])
     return saved.reshape(-1, y.shape[0])[first]

@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-BLOCK = 64  # steps per checkpointed block of a reverse gradient
+CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
 BATCH = 32  # stages linearised together: fills the vector units and stays in the cache
 
 Rate = Callable[[Any, Float[Array, ""], Float[Array, " s"]], tuple[Float[Array, " _"], ...]]  # part by part
@@ -178,7 +178,7 @@ def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capac
     def advance(y, index):
         return _step(driver, y, start + step * index, step, rate, scheme, False)[0], y
 
-    blocks = -(-(capacity + 1) // BLOCK)
-    index = jnp.arange(blocks * BLOCK, dtype=float).reshape(blocks, BLOCK)
+    blocks = -(-(capacity + 1) // CHECKPOINT_STEPS)
+    index = jnp.arange(blocks * CHECKPOINT_STEPS, dtype=float).reshape(blocks, CHECKPOINT_STEPS)
     _, saved = jax.lax.scan(jax.checkpoint(lambda y, index: jax.lax.scan(advance, y, index)), y, index)
     return saved.reshape(-1, y.shape[0])[: capacity + 1]

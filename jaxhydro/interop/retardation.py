@@ -8,16 +8,16 @@ from jaxtyping import Complex, Float
 
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 
-TAIL = 4  # power of 1/omega with which damping ends: that of an even kernel without a kink at t = 0
-BEYOND = 3.0  # times the last frequency, where the tail is let go
-FINENESS = 8  # integration steps between the two nearest frequencies
-LEFT = 2e-5  # of the squares: what lies above the frequencies that are sampled for, and after the last sample
-SAMPLES = 1.5  # per half period of the highest of these frequencies
-SHORTEST, LONGEST = 16, 480  # samples
-UNCOUPLED = 0.003  # of the motions' own: what is coupled less is taken apart
-SILENT = 1e-6  # of the largest of translations or of rotations
-GIVES = 0.02  # of the largest damping: what of it may be below zero, as computed coefficients are
-SWEEP = 400  # frequencies at which that is looked for
+TAIL_POWER = 4  # power of 1/omega with which damping ends: that of an even kernel without a kink at t = 0
+TAIL_END = 3.0  # times the last frequency, where the tail is let go
+STEPS_PER_INTERVAL = 8  # integration steps between the two nearest frequencies
+MAX_MISSED_ENERGY = 2e-5  # of the squares: what lies above the frequencies that are sampled for, and after the last sample
+SAMPLES_PER_HALF_PERIOD = 1.5  # per half period of the highest of these frequencies
+MIN_SAMPLES, MAX_SAMPLES = 16, 480  # samples
+MIN_COUPLING = 0.003  # of the motions' own: what is coupled less is taken apart
+NEGLIGIBLE_DAMPING = 1e-6  # of the largest of translations or of rotations
+MAX_NEGATIVE_DAMPING = 0.02  # of the largest damping: what of it may be below zero, as computed coefficients are
+CHECKED_FREQUENCIES = 400  # frequencies at which that is looked for
 
 
 class Realisation(NamedTuple):
@@ -60,9 +60,9 @@ class Damping(NamedTuple):
         known = np.concatenate([-coefficients.omega[::-1], [0.0], coefficients.omega])
         symmetric = 0.5 * (coefficients.damping + coefficients.damping.transpose(0, 2, 1))
         even = np.concatenate([symmetric[::-1], np.zeros((1, 6, 6)), symmetric])
-        omega = np.arange(0.0, BEYOND * last, float(np.diff(known).min()) / FINENESS)
+        omega = np.arange(0.0, TAIL_END * last, float(np.diff(known).min()) / STEPS_PER_INTERVAL)
         inside = CubicSpline(known, even)(np.minimum(omega, last))
-        return cls(omega, inside * (last / np.maximum(omega, last))[:, None, None] ** TAIL)
+        return cls(omega, inside * (last / np.maximum(omega, last))[:, None, None] ** TAIL_POWER)
 
     def kernel(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 6 6"]:
         """K(t) = 2/pi int_0^inf B cos(omega t) d omega (N/m, N, N m/rad) at times (s)."""
@@ -90,7 +90,7 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
     properties of Perez and Fossen 2008, Modeling, Identification and Control 29, 1-19). The step response rather than K is
     followed because it weighs an error in force by 1/omega, as added mass does: slow motion, where a platform resonates, is
     met best, and what is too fast for a simulation's step counts least. Poles that grow are never taken, nor a state space
-    whose damping goes below zero by more than `GIVES` of the largest.
+    whose damping goes below zero by more than `MAX_NEGATIVE_DAMPING` of the largest.
 
     Only damping is used: A(omega) of the file is left for a check. Raises ValueError where there is no damping, or no such
     state space.
@@ -98,15 +98,15 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
     damping = Damping.of(coefficients)
     fine = (damping.damping[1:] / damping.omega[1:, None, None]).diagonal(axis1=1, axis2=2) ** 2
     size = fine.sum(axis=0)
-    active = np.flatnonzero(size > SILENT**2 * np.repeat([size[:3].max(), size[3:].max()], 3))
+    active = np.flatnonzero(size > NEGLIGIBLE_DAMPING**2 * np.repeat([size[:3].max(), size[3:].max()], 3))
     if not active.size:
         raise ValueError("no radiation damping")
     highest = damping.omega[1 + _enough((fine[:, active] / size[active]).sum(axis=1))]
-    step = math.pi / (SAMPLES * highest)
-    response = damping.step_response(step * np.arange(LONGEST))[:, active[:, None], active]
+    step = math.pi / (SAMPLES_PER_HALF_PERIOD * highest)
+    response = damping.step_response(step * np.arange(MAX_SAMPLES))[:, active[:, None], active]
     size = (response**2).sum(axis=0).diagonal() ** 0.25
     power = ((response / np.outer(size, size)) ** 2).sum(axis=(1, 2))
-    half = min(max(_enough(power) + 1, SHORTEST), LONGEST) // 2
+    half = min(max(_enough(power) + 1, MIN_SAMPLES), MAX_SAMPLES) // 2
     response = response[: 2 * half]
     size = (response**2).mean(axis=0).diagonal() ** 0.25
     hankel = _Hankel(response / np.outer(size, size), step)
@@ -114,7 +114,11 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
     best: Realisation | None = None
     for n in range(2, min(order, len(hankel.values)) + 1):
         rates, drive, output, misfit = hankel.space(n)
-        if len(rates) and (best is None or misfit < best.misfit) and (least := _least(rates, drive, output)) > -GIVES:
+        if (
+            len(rates)
+            and (best is None or misfit < best.misfit)
+            and (least := _least(rates, drive, output)) > -MAX_NEGATIVE_DAMPING
+        ):
             best = Realisation(rates, drive @ onto.T, onto @ output, misfit, least)
             if misfit < tolerance:
                 break
@@ -130,7 +134,7 @@ class _Hankel:
         self.response, self.step, self.time = response, step, step * np.arange(len(response))
         half, self.motions = len(response) // 2, response.shape[1]
         values, vectors = [], []
-        for group in _groups(np.sqrt((response**2).mean(axis=0)) > UNCOUPLED):
+        for group in _groups(np.sqrt((response**2).mean(axis=0)) > MIN_COUPLING):
             blocks = response[:, group[:, None], group][np.add.outer(np.arange(half), np.arange(half))]
             found, mine = np.linalg.eigh(blocks.transpose(0, 2, 1, 3).reshape(half * group.size, -1))
             whole = np.zeros((half, self.motions, len(found)))
@@ -175,9 +179,9 @@ class _Hankel:
 
 
 def _enough(power: np.ndarray) -> int:
-    """Index after which no more than `LEFT` of the whole is left."""
+    """Index after which no more than `MAX_MISSED_ENERGY` of the whole is left."""
     total = power.cumsum()
-    return int(np.searchsorted(total, (1 - LEFT) * total[-1]))
+    return int(np.searchsorted(total, (1 - MAX_MISSED_ENERGY) * total[-1]))
 
 
 def _groups(coupled: np.ndarray) -> list[np.ndarray]:
@@ -194,6 +198,6 @@ def _transfer(rates: np.ndarray, drive: np.ndarray, output: np.ndarray, omega: n
 def _least(rates: np.ndarray, drive: np.ndarray, output: np.ndarray) -> float:
     """Least eigenvalue of the damping of a state space, over its largest."""
     poles = np.abs(np.linalg.eigvals(rates))
-    transfer = _transfer(rates, drive, output, np.geomspace(0.05 * poles.min(), 20 * poles.max(), SWEEP))
+    transfer = _transfer(rates, drive, output, np.geomspace(0.05 * poles.min(), 20 * poles.max(), CHECKED_FREQUENCIES))
     values = np.linalg.eigvalsh(0.5 * (transfer + transfer.conj().transpose(0, 2, 1)))
     return float(values.min() / np.abs(values).max())

@@ -12,8 +12,8 @@ from jaxhydro.errors import InputError, Problem
 
 By = Literal["period", "rad/s", "Hz"]
 UNITS: dict[str, str] = {"period": "s", "rad/s": "rad/s", "Hz": "Hz"}
-SAME = 1e-6  # of a degree
-CONTRADICTION = 0.02  # of a value's modulus, by which MOD and PHASE may differ from RE and IM
+HEADING_TOLERANCE = 1e-6  # of a degree
+MAX_MODULUS_MISMATCH = 0.02  # of a value's modulus, by which MOD and PHASE may differ from RE and IM
 
 
 def to_omega(values: Any, by: str) -> Any:
@@ -108,7 +108,7 @@ def contradictions(rows: Float[np.ndarray, "r c"], first: int, source: str) -> l
     polar = rows[:, first] * np.exp(1j * np.radians(rows[:, first + 1]))
     value = rows[:, first + 2] + 1j * rows[:, first + 3]
     size = np.maximum(np.abs(polar), np.abs(value))
-    bad = np.abs(polar - value) > CONTRADICTION * size + 1e-4 * size.max(initial=0.0)
+    bad = np.abs(polar - value) > MAX_MODULUS_MISMATCH * size + 1e-4 * size.max(initial=0.0)
     if not bad.any():
         return []
     row = " ".join(f"{x:g}" for x in rows[int(np.argmax(bad))])
@@ -126,7 +126,7 @@ def _is_number(word: str) -> bool:
 
 def same_heading(one: float | Float[np.ndarray, "..."], other: float) -> Any:
     """Whether waves run the same way (deg), whole turns aside."""
-    return np.abs((one - other + 180) % 360 - 180) < SAME
+    return np.abs((one - other + 180) % 360 - 180) < HEADING_TOLERANCE
 
 
 def of_heading(
@@ -135,7 +135,7 @@ def of_heading(
     """The rows for waves of one heading (deg). Raises InputError where there are none."""
     mine = rows[same_heading(rows[:, headings], heading).all(axis=1)]
     if not len(mine):
-        same = np.ptp(rows[:, headings], axis=1) < SAME
+        same = np.ptp(rows[:, headings], axis=1) < HEADING_TOLERANCE
         known = ", ".join(f"{beta:g}" for beta in np.unique(rows[same, headings.start]))
         raise InputError(str(path), [Problem("BETA", f"waves of heading {heading:g} deg", f"{known} deg")])
     return mine

@@ -9,9 +9,9 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import (
-    OF_SHARE,
-    POWER,
-    SHARE,
+    POWER_LABEL,
+    SLOW_DRAG_LABEL,
+    SLOW_DRAG_PARAMETERS,
     about,
     about_exponent,
     end_area,
@@ -40,8 +40,8 @@ class ChangingDrag(AbstractLoad):
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "ChangingDrag":
         """Load on the lines whose drag coefficients are in `values`; missing parameters are neutral."""
-        own = {label: jnp.asarray(about.null) for label, about in OF_SHARE.items()}
-        own |= {f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)}
+        own = {label: jnp.asarray(about.null) for label, about in SLOW_DRAG_PARAMETERS.items()}
+        own |= {f"{POWER_LABEL}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)}
         return cls(own | dict(values), coupled)
 
     @classmethod
@@ -53,13 +53,13 @@ class ChangingDrag(AbstractLoad):
         return jnp.zeros(6)
 
     def about(self, label: str) -> Parameter:
-        if label.startswith(f"{POWER}."):
+        if label.startswith(f"{POWER_LABEL}."):
             return about_exponent(label)
-        return OF_SHARE[label] if label in OF_SHARE else about(label, {})
+        return SLOW_DRAG_PARAMETERS[label] if label in SLOW_DRAG_PARAMETERS else about(label, {})
 
     def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
-        share = values[f"{SHARE}.low_share"]
+        share = values[f"{SLOW_DRAG_LABEL}.low_share"]
         still, turning = (memory @ hull.motion).reshape(2, -1)
         slow_strip, slow_end = hull.split(still + turning * now.lines.away)
         own = exponents(values)
@@ -75,5 +75,5 @@ class ChangingDrag(AbstractLoad):
         return Action(
             strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled, strips),
             end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False, ends),
-            memory_rate=2 * jnp.pi * values[f"{SHARE}.cutoff"] * (now.velocity - memory),
+            memory_rate=2 * jnp.pi * values[f"{SLOW_DRAG_LABEL}.cutoff"] * (now.velocity - memory),
         )

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Parameter
 
-FASTEST = 5.0  # m/s
+MAX_SPEED = 5.0  # m/s
 
 
 class Current(AbstractLoad):
@@ -31,7 +31,7 @@ class Current(AbstractLoad):
         return cls({"current.x": jnp.zeros(()), "current.y": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
-        return Parameter("m/s", f"velocity of the current along earth's {label[-1]}", -FASTEST, FASTEST)
+        return Parameter("m/s", f"velocity of the current along earth's {label[-1]}", -MAX_SPEED, MAX_SPEED)
 
     def stream(self) -> Float[Array, "3"]:
         return jnp.stack([*(jnp.asarray(self.values[f"current.{axis}"]) for axis in "xy"), jnp.zeros(())])

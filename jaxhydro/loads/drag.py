@@ -14,17 +14,21 @@ from jaxhydro.loads.base import Instant, Parameter
 from jaxhydro.loads.end_inertia import spread_ends
 from jaxhydro.loads.strip_inertia import spread
 
-REST = 1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere
+MIN_SQUARED_SPEED = (
+    1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere
+)
 COEFFICIENT = Parameter("-", "{way} drag coefficient of {group}, on {area} area", 0.0, 30.0)
 SUCTION = Parameter("-", "share of the drag of the ends of {group} that moves to where the flow leaves them", 0.0, 1.0)
 
-POWER = "amplitude_dependent_drag"  # labels of coefficients that go with a power of the speed
-SPEED = 0.5  # m/s at which Cd is what it says
-SLOW = 0.04  # of that speed, below which the coefficient no longer changes
-SHARE = "sea_state_dependent_drag"  # labels of drag in which slow motion has a coefficient of its own
-OF_SHARE = {
-    f"{SHARE}.low_share": Parameter("-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0),
-    f"{SHARE}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, 0.03),
+POWER_LABEL = "amplitude_dependent_drag"  # labels of coefficients that go with a power of the speed
+REFERENCE_SPEED = 0.5  # m/s at which Cd is what it says
+MIN_SPEED_RATIO = 0.04  # of that speed, below which the coefficient no longer changes
+SLOW_DRAG_LABEL = "sea_state_dependent_drag"  # labels of drag in which slow motion has a coefficient of its own
+SLOW_DRAG_PARAMETERS = {
+    f"{SLOW_DRAG_LABEL}.low_share": Parameter(
+        "-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0
+    ),
+    f"{SLOW_DRAG_LABEL}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, 0.03),
 }
 
 Values = Mapping[str, Float[Array, ""]]
@@ -44,7 +48,7 @@ def quadratic(
     square = relative**2
     if coupled:
         square = square.sum(axis=0)
-    return 0.5 * density * area * jnp.sqrt(square + REST) * relative
+    return 0.5 * density * area * jnp.sqrt(square + MIN_SQUARED_SPEED) * relative
 
 
 def one_sided(
@@ -134,7 +138,7 @@ def about(label: str, more: Mapping[str, Parameter]) -> Parameter:
     return found._replace(meaning=found.meaning.format(way=way, group=group, area=area))
 
 
-def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float = SPEED) -> Float[Array, "..."]:
+def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float = REFERENCE_SPEED) -> Float[Array, "..."]:
     """Factor ((u² + e²)/(U0² + e²))^(n/2) of the drag; exactly 1 for n = 0.
 
     Args:
@@ -142,7 +146,7 @@ def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: flo
         exponent: n (-).
         speed: U0 (m/s); e is a small fraction of it.
     """
-    slow = (SLOW * speed) ** 2
+    slow = (MIN_SPEED_RATIO * speed) ** 2
     return jnp.exp(0.5 * exponent * jnp.log((square + slow) / (speed**2 + slow)))
 
 
@@ -153,11 +157,13 @@ def groups_of(values: Iterable[str]) -> tuple[str, ...]:
 
 def exponents(values: Values) -> dict[str, Float[Array, ""]]:
     """Exponents of the speed, by the labels that `of_strips` and `of_ends` ask for."""
-    named = {label.removeprefix(f"{POWER}."): value for label, value in values.items() if label.startswith(f"{POWER}.")}
+    named = {
+        label.removeprefix(f"{POWER_LABEL}."): value for label, value in values.items() if label.startswith(f"{POWER_LABEL}.")
+    }
     return {label + way: value for label, value in named.items() for way in ("_t", "_z")}
 
 
-def about_exponent(label: str, speed: float = SPEED) -> Parameter:
+def about_exponent(label: str, speed: float = REFERENCE_SPEED) -> Parameter:
     """Unit, meaning and bounds of an exponent of the speed."""
-    group = label.removeprefix(f"{POWER}.").removesuffix(".exponent")
+    group = label.removeprefix(f"{POWER_LABEL}.").removesuffix(".exponent")
     return Parameter("-", f"exponent of the drag coefficients of {group} in the speed over {speed:g} m/s", -1.0, 1.0)

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.waves.irregular_sea import IrregularSea
-from jaxhydro.waves.sea import DRIFTS, AbstractSea, WaveSea
+from jaxhydro.waves.sea import DRIFT_ENTRIES, AbstractSea, WaveSea
 from jaxhydro.waves.transfer import Transfer
 
 
@@ -50,6 +50,6 @@ class DriftTransfer(AbstractLoad):
     def act(self, now: Instant, memory: Any) -> Action:
         if now.drift is None:
             return Action()
-        if now.drift.shape[0] == DRIFTS:
+        if now.drift.shape[0] == DRIFT_ENTRIES:
             raise ValueError("the sea was made without the platform's transfer function: prepare it with `Model.transfer`")
-        return Action(force=self.values["drift_transfer.share"] * now.drift[DRIFTS:])
+        return Action(force=self.values["drift_transfer.share"] * now.drift[DRIFT_ENTRIES:])

@@ -24,13 +24,13 @@ from jaxhydro.loads.drag import (
 )
 
 # A first-order filter faster than this is no filter in waves, and at 0.25 s leaves what Adams-Bashforth can follow (0.19 Hz).
-FASTEST = 0.15  # Hz
-LARGEST_SHARE = 10.0  # of slow motion; HydroDyn takes 0 to 1
+MAX_CUTOFF = 0.15  # Hz
+MAX_SLOW_SHARE = 10.0  # of slow motion; HydroDyn takes 0 to 1
 
 PARAMETERS = {
-    "drag_cutoff": Parameter("Hz", "frequency above which {group} has its whole {way} drag coefficient", 0.0, FASTEST),
+    "drag_cutoff": Parameter("Hz", "frequency above which {group} has its whole {way} drag coefficient", 0.0, MAX_CUTOFF),
     "drag_low_share": Parameter(
-        "-", "share of the {way} drag coefficient of {group} that slow motion feels", 0.0, LARGEST_SHARE, 1.0
+        "-", "share of the {way} drag coefficient of {group} that slow motion feels", 0.0, MAX_SLOW_SHARE, 1.0
     ),
     "drag_suction": SUCTION,
 }

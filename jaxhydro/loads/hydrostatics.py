@@ -10,13 +10,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.hull.strips import ENTERING, Member
+from jaxhydro.hull.strips import END_WETTING_LENGTH, Member
 from jaxhydro.hull.waterplane import chord, segment
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
 
-ALONG, ACROSS = 16, 4  # slabs and slices of a member that lies at the surface
+SLABS_ALONG, SLICES_ACROSS = 16, 4  # slabs and slices of a member that lies at the surface
 
 
 class Buoyancy(AbstractLoad):
@@ -74,7 +74,7 @@ class Buoyancy(AbstractLoad):
         rise = jnp.abs(slope) * self.length
         low = heave + low + 0.5 * (slope * self.length - rise) - 0.5 * self.thickness
         height = rise + self.thickness
-        width = ENTERING * self.hull_size
+        width = END_WETTING_LENGTH * self.hull_size
         wet = (entered(-low, width) - entered(-low - height, width)) / height
         # a column fills from its lower end; a pontoon loses volume evenly
         column = self.thickness == 0
@@ -226,11 +226,11 @@ def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
     span, upward = member.b - member.a, directions[:, up] * np.sign(directions[2, up])
     across = directions[:, 1 - up]
     found = []
-    for s in (np.arange(ALONG) + 0.5) / ALONG:
+    for s in (np.arange(SLABS_ALONG) + 0.5) / SLABS_ALONG:
         size = member.size(np.array(s))
         height, width = float(size[up]), float(size[1 - up])
-        extent = np.array([np.linalg.norm(span) / ALONG, width / ACROSS])
-        for u in (np.arange(ACROSS) + 0.5) / ACROSS - 0.5:
+        extent = np.array([np.linalg.norm(span) / SLABS_ALONG, width / SLICES_ACROSS])
+        for u in (np.arange(SLICES_ACROSS) + 0.5) / SLICES_ACROSS - 0.5:
             lower = member.a + span * s + u * width * across - 0.5 * height * upward
             frame = np.stack([member.axis, across], axis=1)
             found.append((lower, upward, height, extent, np.zeros(2), 1.0, 1 / 12, frame, 0.0))
@@ -239,7 +239,7 @@ def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
 
 def _slices(member: Member, directions: np.ndarray) -> list[tuple]:
     """Slices of a cylinder that lies at the surface, at Gauss points of its length."""
-    point, weight = np.polynomial.legendre.leggauss(ALONG)
+    point, weight = np.polynomial.legendre.leggauss(SLABS_ALONG)
     span = member.b - member.a
     return [
         (member.a + span * s, directions, 0.5 * float(member.size(np.array(s))[0]), float(np.linalg.norm(span)) * w)

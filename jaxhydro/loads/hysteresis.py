@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.per_dof import about, both, entries, magnitude, nulls, on_six, those
 
-RESTING = 1e-12  # m2/s2, rad2/s2 and of z^2 under roots: speeds well below 1e-6 m/s do not count as motion
+MIN_SQUARED_SPEED = 1e-12  # m2/s2, rad2/s2 and of z^2 under roots: speeds well below 1e-6 m/s do not count as motion
 YIELD = "displacement in which the hysteretic force in {dof} comes to its limit"
 PARAMETERS = {
     "force": both("N", "N m", "largest hysteretic force in {dof}", 0.0),
@@ -54,6 +54,6 @@ class Hysteresis(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         v, z = those(now.earth_velocity(), self.values), memory
-        bent = 0.5 * (magnitude(v, RESTING) * z + v * magnitude(z, RESTING))
+        bent = 0.5 * (magnitude(v, MIN_SQUARED_SPEED) * z + v * magnitude(z, MIN_SQUARED_SPEED))
         rate = (v - bent) / entries(self.values, "yield_displacement")
         return Action(force=on_six(-entries(self.values, "force") * z, self.values), memory_rate=rate)

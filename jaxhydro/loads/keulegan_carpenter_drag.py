@@ -13,8 +13,8 @@ from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import about, end_area, lines_of, of_ends, of_strips, on_all, quadratic, strip_area
 
-SLIGHT = 0.1  # the Keulegan-Carpenter number below which the coefficient no longer changes
-YOUNG = 1 / 30  # share of the window that is open at the start
+MIN_NUMBER = 0.1  # the Keulegan-Carpenter number below which the coefficient no longer changes
+INITIAL_WINDOW_SHARE = 1 / 30  # share of the window that is open at the start
 
 EXPONENT = Parameter("-", "exponent of the {way} drag coefficient of {group} in the Keulegan-Carpenter number", -1.0, 1.0)
 
@@ -84,7 +84,7 @@ class KeuleganCarpenterDrag(AbstractLoad):
     def act(self, now: Instant, memory: Swept) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
         relative = hull.join(now.strip_flow.relative, now.end_flow.relative)
-        age = self.window * (1 - (1 - YOUNG) * jnp.exp(-memory.elapsed / self.window))
+        age = self.window * (1 - (1 - INITIAL_WINDOW_SHARE) * jnp.exp(-memory.elapsed / self.window))
         swept, own = memory.displacement, jnp.array(self.lines, dtype=int)
         rate = Swept(jnp.ones(()), relative[own] - swept / age, (swept**2 - memory.variance) / age)
 
@@ -116,4 +116,4 @@ def _power(variance: Array, extent: Array, reference: Array, exponent: Array) ->
 
 def log_ratio(square: Array | float, reference: Array | float) -> Array:
     """ln of what is raised to the exponent: of ((K^2 + e^2)/(K0^2 + e^2))^(1/2), from K^2."""
-    return 0.5 * jnp.log((square + SLIGHT**2) / (reference**2 + SLIGHT**2))
+    return 0.5 * jnp.log((square + MIN_NUMBER**2) / (reference**2 + MIN_NUMBER**2))

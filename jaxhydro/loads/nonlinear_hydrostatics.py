@@ -15,7 +15,7 @@ PARAMETERS = {
     "quintic": both("N/m5", "N m/rad5", "restoring in {dof} with the fifth power of the displacement"),
     "pitch_squared": both("N/rad2", "", "pitch stiffness per metre of heave, and force in {dof} with the square of pitch"),
 }
-ONLY_HEAVE = ("even_quadratic", "pitch_squared")
+HEAVE_ONLY_PARAMETERS = ("even_quadratic", "pitch_squared")
 
 
 class NonlinearHydrostatics(AbstractLoad):
@@ -47,7 +47,7 @@ class NonlinearHydrostatics(AbstractLoad):
         if wrong := set(dofs) - {"heave", "roll", "pitch"}:
             raise ValueError(f"nonlinear hydrostatics are those of heave, roll and pitch, found {sorted(wrong)[0]!r}")
         every = nulls("nonlinear_hydrostatics", dofs, PARAMETERS)
-        return cls({k: v for k, v in every.items() if "heave" in k or not k.endswith(ONLY_HEAVE)})
+        return cls({k: v for k, v in every.items() if "heave" in k or not k.endswith(HEAVE_ONLY_PARAMETERS)})
 
     def about(self, label: str) -> Parameter:
         return about(label, PARAMETERS)

@@ -9,8 +9,8 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import (
-    POWER,
-    SPEED,
+    POWER_LABEL,
+    REFERENCE_SPEED,
     about,
     about_exponent,
     end_area,
@@ -43,13 +43,15 @@ class PowerDrag(AbstractLoad):
 
     values: dict[str, Float[Array, ""]]
     coupled: bool = eqx.field(static=True, default=True)
-    speed: float = eqx.field(static=True, default=SPEED)
+    speed: float = eqx.field(static=True, default=REFERENCE_SPEED)
     source: ClassVar[str] = "Keulegan and Carpenter 1958; Graham 1980 (the power); that of the instant's speed is ours"
 
     @classmethod
-    def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True, speed: float = SPEED) -> "PowerDrag":
+    def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True, speed: float = REFERENCE_SPEED) -> "PowerDrag":
         """Load on the lines whose drag coefficients are in `values`; missing exponents are 0."""
-        return cls({f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)} | dict(values), coupled, speed)
+        return cls(
+            {f"{POWER_LABEL}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)} | dict(values), coupled, speed
+        )
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "PowerDrag":
@@ -57,7 +59,7 @@ class PowerDrag(AbstractLoad):
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def about(self, label: str) -> Parameter:
-        return about_exponent(label, self.speed) if label.startswith(f"{POWER}.") else about(label, {})
+        return about_exponent(label, self.speed) if label.startswith(f"{POWER_LABEL}.") else about(label, {})
 
     def act(self, now: Instant, memory: Any) -> Action:
         values, density = self.values, now.environment.density

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.drag import REST
+from jaxhydro.loads.drag import MIN_SQUARED_SPEED
 from jaxhydro.loads.matrix import assemble, meaning, unit
 
 
@@ -27,4 +27,4 @@ class QuadraticDamping(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         velocity = now.velocity
-        return Action(body_force=-jnp.diagonal(assemble(self.values)) * jnp.sqrt(velocity**2 + REST) * velocity)
+        return Action(body_force=-jnp.diagonal(assemble(self.values)) * jnp.sqrt(velocity**2 + MIN_SQUARED_SPEED) * velocity)

@@ -12,8 +12,8 @@ from jaxhydro.choices import check, unknown
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.waves.sea_state import SeaState
 
-OVER = {"significant_height": "Hs", "peak_period": "Tp"}
-LARGEST = 3.0  # of an exponent, either way
+EXPONENT_BASES = {"significant_height": "Hs", "peak_period": "Tp"}
+MAX_EXPONENT = 3.0  # of an exponent, either way
 
 
 class SeaStateLaw(AbstractLoad):
@@ -37,7 +37,7 @@ class SeaStateLaw(AbstractLoad):
     def of(cls, load: AbstractLoad, exponents: Mapping[str, Any], reference: SeaState) -> "SeaStateLaw":
         """Load with exponents for some of its coefficients, by label (`exponent_label`)."""
         added = {label: jnp.asarray(value, float) for label, value in exponents.items()}
-        return cls({**load.values, **added}, load, reference, {symbol: jnp.zeros(()) for symbol in OVER.values()})
+        return cls({**load.values, **added}, load, reference, {symbol: jnp.zeros(()) for symbol in EXPONENT_BASES.values()})
 
     def rest(self) -> Any:
         return self.load.rest()
@@ -51,11 +51,11 @@ class SeaStateLaw(AbstractLoad):
         base, symbol = split(label)
         height, period = self.reference
         scale = f"{height:.3g} m" if symbol == "Hs" else f"{period:.3g} s"
-        return Parameter("-", f"exponent of {base} in {symbol}/{scale}", -LARGEST, LARGEST)
+        return Parameter("-", f"exponent of {base} in {symbol}/{scale}", -MAX_EXPONENT, MAX_EXPONENT)
 
     def in_sea(self, state: SeaState) -> "SeaStateLaw":
         logs = [jnp.log(now / then) for now, then in zip(state, self.reference, strict=True)]
-        return eqx.tree_at(lambda law: law.logs, self, dict(zip(OVER.values(), logs, strict=True)))
+        return eqx.tree_at(lambda law: law.logs, self, dict(zip(EXPONENT_BASES.values(), logs, strict=True)))
 
     def present(self) -> dict[str, Float[Array, ""]]:
         """Coefficients of the load in the present sea state."""
@@ -71,8 +71,8 @@ class SeaStateLaw(AbstractLoad):
 
 def exponent_label(label: str, over: str) -> str:
     """Label of a coefficient's exponent over "significant_height" or "peak_period"."""
-    check(over=(over, OVER))
-    return f"{label}.{OVER[over]}_exponent"
+    check(over=(over, EXPONENT_BASES))
+    return f"{label}.{EXPONENT_BASES[over]}_exponent"
 
 
 def split(label: str) -> tuple[str, str]:
@@ -83,7 +83,7 @@ def split(label: str) -> tuple[str, str]:
 
 def is_exponent(label: str) -> bool:
     """Whether a label is that of an exponent."""
-    return label.endswith(tuple(f".{symbol}_exponent" for symbol in OVER.values()))
+    return label.endswith(tuple(f".{symbol}_exponent" for symbol in EXPONENT_BASES.values()))
 
 
 def coefficients(loads: tuple[AbstractLoad, ...]) -> dict[str, Float[Array, ""]]:

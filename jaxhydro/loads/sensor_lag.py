@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Parameter
 
-LONGEST = 60.0  # s
+MAX_LAG = 60.0  # s
 
 
 class SensorLag(AbstractLoad):
@@ -30,7 +30,7 @@ class SensorLag(AbstractLoad):
         return cls({"sensor_lag.delay": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
-        return Parameter("s", "delay of the recorded motions behind the waves: y_rec(t) = y(t - delay)", -LONGEST, LONGEST)
+        return Parameter("s", "delay of the recorded motions behind the waves: y_rec(t) = y(t - delay)", -MAX_LAG, MAX_LAG)
 
     def clock_lag(self) -> Float[Array, ""]:
         return jnp.asarray(self.values["sensor_lag.delay"])

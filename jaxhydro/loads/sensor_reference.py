@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Parameter
 from jaxhydro.rotations import rotation
 
-FARTHEST = 200.0  # m
+MAX_OFFSET = 200.0  # m
 
 
 class SensorReference(AbstractLoad):
@@ -31,7 +31,7 @@ class SensorReference(AbstractLoad):
         return cls({"sensor_reference.x": jnp.zeros(()), "sensor_reference.z": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
-        return Parameter("m", f"{label[-1]} of the tracked point from the reference point, body axes", -FARTHEST, FARTHEST)
+        return Parameter("m", f"{label[-1]} of the tracked point from the reference point, body axes", -MAX_OFFSET, MAX_OFFSET)
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
         x, z = (jnp.asarray(self.values[f"sensor_reference.{axis}"]) for axis in "xz")

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.drag import OF_SHARE, SHARE, about, end_area, quadratic, strip_area
+from jaxhydro.loads.drag import SLOW_DRAG_LABEL, SLOW_DRAG_PARAMETERS, about, end_area, quadratic, strip_area
 
 
 class SlowDrag(AbstractLoad):
@@ -37,7 +37,7 @@ class SlowDrag(AbstractLoad):
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
         """Load on the lines whose drag coefficients are in `values`; missing parameters are neutral."""
-        return cls({label: jnp.asarray(about.null) for label, about in OF_SHARE.items()} | dict(values), coupled)
+        return cls({label: jnp.asarray(about.null) for label, about in SLOW_DRAG_PARAMETERS.items()} | dict(values), coupled)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
@@ -48,11 +48,11 @@ class SlowDrag(AbstractLoad):
         return jnp.zeros(6)
 
     def about(self, label: str) -> Parameter:
-        return OF_SHARE[label] if label in OF_SHARE else about(label, {})
+        return SLOW_DRAG_PARAMETERS[label] if label in SLOW_DRAG_PARAMETERS else about(label, {})
 
     def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
-        share = values[f"{SHARE}.low_share"]
+        share = values[f"{SLOW_DRAG_LABEL}.low_share"]
         still, turning = (memory @ hull.motion).reshape(2, -1)
         slow_strip, slow_end = hull.split(still + turning * now.lines.away)
 
@@ -63,5 +63,5 @@ class SlowDrag(AbstractLoad):
         return Action(
             strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled),
             end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False),
-            memory_rate=2 * math.pi * values[f"{SHARE}.cutoff"] * (now.velocity - memory),
+            memory_rate=2 * math.pi * values[f"{SLOW_DRAG_LABEL}.cutoff"] * (now.velocity - memory),
         )

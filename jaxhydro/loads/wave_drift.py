@@ -9,12 +9,12 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.waves.sea import MIDDLE
+from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY
 
 WAYS = {
     "envelope": "in phase with the squared envelope |a|^2",
     "quadrature": "a quarter of a beat behind the squared envelope",
-    "frequency_weighted": f"in phase with the squared envelope weighted by (omega/{MIDDLE:g})^2",
+    "frequency_weighted": f"in phase with the squared envelope weighted by (omega/{DRIFT_REFERENCE_FREQUENCY:g})^2",
 }
 """By what stands last in a label, in the order of `AbstractSea.drift`."""
 

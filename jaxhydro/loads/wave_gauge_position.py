@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Parameter
 from jaxhydro.waves.sea import AbstractSea
 
-FARTHEST = 50.0  # m
+MAX_OFFSET = 50.0  # m
 
 
 class WaveGaugePosition(AbstractLoad):
@@ -34,7 +34,7 @@ class WaveGaugePosition(AbstractLoad):
 
     def about(self, label: str) -> Parameter:
         words = "how much further along the waves the gauge stood than was said"
-        return Parameter("m", words, -FARTHEST, FARTHEST, of_hull=False)
+        return Parameter("m", words, -MAX_OFFSET, MAX_OFFSET, of_hull=False)
 
     def through(self, sea: AbstractSea) -> AbstractSea:
         return sea.moved(jnp.asarray(self.values["wave_gauge_position.distance"]))

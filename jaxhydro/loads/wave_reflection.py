@@ -12,7 +12,7 @@ from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.support_sea import Returned, SupportSea
 
 COEFFICIENT, DELAY, SEEN = "wave_reflection.coefficient", "wave_reflection.delay", "wave_reflection.seen"
-LATER, LATEST = 60.0, 600.0  # s
+DEFAULT_DELAY, MAX_DELAY = 60.0, 600.0  # s
 
 
 class ReflectedSea(AbstractSea):
@@ -96,13 +96,13 @@ class WaveReflection(AbstractLoad):
     source: ClassVar[str] = "Goda and Suzuki 1976 (incident and reflected waves); one r, a delay and what a gauge saw are ours"
 
     @classmethod
-    def null(cls, delay: float = LATER) -> "WaveReflection":
+    def null(cls, delay: float = DEFAULT_DELAY) -> "WaveReflection":
         """Load at its neutral value: no reflection; `delay` (s) is where it starts."""
         return cls({COEFFICIENT: jnp.zeros(()), DELAY: jnp.asarray(float(delay)), SEEN: jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
         if label == DELAY:
-            return Parameter("s", "from the platform to the beach and back", 0.0, LATEST, LATER)
+            return Parameter("s", "from the platform to the beach and back", 0.0, MAX_DELAY, DEFAULT_DELAY)
         if label == SEEN:
             return Parameter("-", "share of what comes back that the wave record has", 0.0, 1.0)
         return Parameter("-", "share of the waves' height that comes back", -0.3, 0.3)

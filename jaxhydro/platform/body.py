@@ -8,9 +8,9 @@ from jaxtyping import Float
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from jaxhydro.errors import Consistent, Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
-from jaxhydro.loads.high_pass_drag import FASTEST, LARGEST_SHARE
+from jaxhydro.loads.high_pass_drag import MAX_CUTOFF, MAX_SLOW_SHARE
 
-STEP = 1e-6  # of a member's length, over which a step in its size is made
+STEP_LENGTH = 1e-6  # of a member's length, over which a step in its size is made
 Matrix3 = Float[np.ndarray, "3 3"]
 
 
@@ -171,8 +171,8 @@ class Member(Consistent):
         stations = np.array(self.stations)
         at = (stations - stations[0]) / (stations[-1] - stations[0])
         steps = np.flatnonzero(np.diff(stations) == 0)
-        at[steps] -= 0.5 * STEP
-        at[steps + 1] += 0.5 * STEP
+        at[steps] -= 0.5 * STEP_LENGTH
+        at[steps + 1] += 0.5 * STEP_LENGTH
         return at, sizes
 
 
@@ -194,8 +194,8 @@ class HighPass(Schema):
     (`jaxhydro.loads.HighPassDrag`)."""
 
     law: Literal["high_pass"]
-    cutoff: Annotated[float, Field(strict=True, ge=0, le=FASTEST)]
-    low_share: Annotated[float, Field(strict=True, ge=0, le=LARGEST_SHARE)]
+    cutoff: Annotated[float, Field(strict=True, ge=0, le=MAX_CUTOFF)]
+    low_share: Annotated[float, Field(strict=True, ge=0, le=MAX_SLOW_SHARE)]
 
 
 class HighPassAtEnds(HighPass):

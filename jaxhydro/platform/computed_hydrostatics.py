@@ -18,8 +18,8 @@ from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.rotations import rotation
 
 COUPLED = ("C34", "C35", "C45")
-CLEARLY = 5.0  # times nearer, for a doubt about the weight
-ASIDE = 1e-3  # of C44 and C55, from which C46 and C56 are worth a note
+CLEAR_RATIO = 5.0  # times nearer, for a doubt about the weight
+MIN_NOTED_STIFFNESS = 1e-3  # of C44 and C55, from which C46 and C56 are worth a note
 
 
 class StaticsOfFile(NamedTuple):
@@ -50,7 +50,7 @@ def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> Stati
         raise InputError(declared.file, [Problem("C33", "a stiffness >= 0", f"{values['C33']:.4g} N/m")])
     given = {key: value for key, value in values.items() if getattr(declared, key) is None}
     off = np.abs(found.stiffness[[3, 4], 5]).max()
-    if off > ASIDE * np.abs(np.diag(found.stiffness)).max():
+    if off > MIN_NOTED_STIFFNESS * np.abs(np.diag(found.stiffness)).max():
         notes.append(f"{declared.file}: C46 and C56 are left out: they follow from mass and buoyancy off the centreline")
     told = tuple(map(Remark, [*notes, *said]))
     return StaticsOfFile(declared.model_copy(update=given), found.stiffness, told)
@@ -122,7 +122,7 @@ def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.n
     missed = {"included": abs(stiffness[3, 3] + weight - own[3, 3]), "excluded": abs(stiffness[3, 3] - own[3, 3])}
     taken = declared.weight or "included"
     other = "excluded" if taken == "included" else "included"
-    if missed[taken] < CLEARLY * missed[other] or missed[taken] < 0.05 * abs(own[3, 3]):
+    if missed[taken] < CLEAR_RATIO * missed[other] or missed[taken] < 0.05 * abs(own[3, 3]):
         return []
     return [
         f"{declared.file}: C44 {stiffness[3, 3]:.4g} N m/rad fits the members with the weight {other}, not {taken}: see "

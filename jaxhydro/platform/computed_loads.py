@@ -28,7 +28,7 @@ from jaxhydro.platform.table_checks import (
 )
 from jaxhydro.remarks import Remark, as_warnings
 
-POOR = 0.25  # misfit from which on a state space is none of the coefficients
+MAX_MISFIT = 0.25  # misfit from which on a state space is none of the coefficients
 
 
 class Realised(NamedTuple):
@@ -68,7 +68,7 @@ def _realised(declared: schema.Radiation, stamp: int, density: float) -> Realise
         expected = "radiation damping that takes energy, and that a state space can follow"
         raise InputError(source, [Problem("", expected, str(error), _column(declared))]) from None
     doubts = radiation_column(found, space, declared.by if declared.kind == "wamit" else None, source)
-    if space.misfit > POOR:
+    if space.misfit > MAX_MISFIT:
         wrong = f"a misfit of {100 * space.misfit:.0f} % with {space.order}"
         hint = doubts[0].removeprefix(f"{source}: ") if doubts else _column(declared)
         raise InputError(source, [Problem("radiation.order", "enough states to follow the coefficients", wrong, hint)])

@@ -296,8 +296,8 @@ class Excitation(OfFile):
     use: Literal["load", "candidate"] = "load"
 
 
-BESIDE = ("hydrostatics", "radiation", "excitation", "drift")  # keys that may name a file
-OF_WAVES = ("excitation", "drift")  # ... that is of waves of one heading
+FILE_KEYS = ("hydrostatics", "radiation", "excitation", "drift")  # keys that may name a file
+WAVE_FILE_KEYS = ("excitation", "drift")  # ... that is of waves of one heading
 
 
 class ReferenceSea(Schema):
@@ -357,11 +357,11 @@ class Platform(Consistent):
 
     def files(self) -> dict[str, str]:
         """Paths of the files that the platform file names, by key."""
-        return {key: one.file for key in BESIDE if (one := getattr(self, key)) is not None and one.file}
+        return {key: one.file for key in FILE_KEYS if (one := getattr(self, key)) is not None and one.file}
 
     def of_other_waves(self, heading: float) -> tuple[str, float] | None:
         """Key and heading (deg) of a table that was computed for another wave heading than this, or None."""
-        tables = {f"{key}.heading": one.heading for key in OF_WAVES if (one := getattr(self, key)) is not None}
+        tables = {f"{key}.heading": one.heading for key in WAVE_FILE_KEYS if (one := getattr(self, key)) is not None}
         return next(((key, own) for key, own in tables.items() if not same_heading(own, heading)), None)
 
     def _faults(self) -> Iterator[Problem]:

@@ -8,7 +8,7 @@ from jaxhydro.errors import InputError, Problem
 from jaxhydro.sweep.worker import Found, fail_runs, simulate_runs
 
 RETRIES = 3
-PATIENCE = 30.0  # s, for the scheduler to answer
+SCHEDULER_TIMEOUT = 30.0  # s, for the scheduler to answer
 
 
 def client_of(scheduler: str) -> Any:
@@ -26,7 +26,7 @@ def client_of(scheduler: str) -> Any:
         problem = Problem("", "dask.distributed", "no such package", "pip install 'jaxhydro[distributed]'")
         raise InputError("--scheduler", [problem]) from None
     try:
-        return Client(scheduler, timeout=PATIENCE)
+        return Client(scheduler, timeout=SCHEDULER_TIMEOUT)
     except (OSError, ValueError) as error:
         said = " ".join(str(error).split())[:200] or type(error).__name__
         raise InputError("--scheduler", [Problem("", "a scheduler that answers", f"{scheduler!r} ({said})")]) from None

@@ -15,13 +15,13 @@ from jaxhydro.sweep.at_once import power_of_two
 from jaxhydro.sweep.batch import Setup
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import fourier_length, harmonics, repeat_period
-from jaxhydro.waves.supports import MOST, Box, supports
+from jaxhydro.waves.supports import MAX_SUPPORTS, Box, supports
 
-COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
-PROCESS = 700e6  # bytes of a worker before its first sea
-SHARE = 0.6  # of what is available, that is used
-MOST_AT_ONCE = 512  # runs: that progress is seen
-PER_GPU = 4  # workers: while one makes statistics on its core, the others keep the GPU busy
+MEMORY_COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
+PROCESS_BYTES = 700e6  # bytes of a worker before its first sea
+MEMORY_SHARE = 0.6  # of what is available, that is used
+MAX_RUNS_AT_ONCE = 512  # runs: that progress is seen
+WORKERS_PER_GPU = 4  # workers: while one makes statistics on its core, the others keep the GPU busy
 
 
 class Chosen(NamedTuple):
@@ -61,7 +61,7 @@ def supports_of(setup: Setup, source: str = "sweep") -> int:
         try:
             most = max(most, supports(box, free, 2 * free if plan.order == 2 else 0.0).wavenumber.size)
         except ValueError:
-            highest = 2 * (MOST - 8) / box.half  # rad/m, that about so many supports do for
+            highest = 2 * (MAX_SUPPORTS - 8) / box.half  # rad/m, that about so many supports do for
             usual = math.sqrt(gravity * highest / plan.order) / (2 * math.pi)
             expected = f"about {usual:.2g} Hz or less at order {plan.order} for so large a hull"
             hint = "Shorter waves need too many support wavenumbers."
@@ -76,15 +76,15 @@ def bytes_of_run(setup: Setup) -> float:
     steps = fourier_length(period / setup.limit) * plan.duration / period
     radii = 0 if cylinders is None else cylinders.radius.size * (2 if cylinders.ramp else 1)
     rows = 6 + 2 * radii + (0 if model.excitation is None else 6)
-    complex_numbers = COPIES * steps + 3 * plan.order * plan.cutoff * period
+    complex_numbers = MEMORY_COPIES * steps + 3 * plan.order * plan.cutoff * period
     return complex_numbers * rows * supports_of(setup) * 16 + len(setup.times) * 50 * 8
 
 
 def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Chosen:
     """Number of processes and of runs at a time, as given or as fits the machine.
 
-    On the CPU each core takes one run at a time; more at once are no faster. Each GPU has `PER_GPU` processes and as many
-    runs as its memory holds, a power of two, at most `MOST_AT_ONCE`.
+    On the CPU each core takes one run at a time; more at once are no faster. Each GPU has `WORKERS_PER_GPU` processes.
+    It takes as many runs as its memory holds, a power of two, at most `MAX_RUNS_AT_ONCE`.
 
     Args:
         setup: The sweep.
@@ -97,11 +97,11 @@ def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> C
     gpus = [device for device in jax.local_devices() if device.platform == "gpu"]
     if gpus:
         available = min(float((device.memory_stats() or {}).get("bytes_limit", 8e9)) for device in gpus)
-        count = workers or max(len(gpus), min(PER_GPU * len(gpus), cores))
+        count = workers or max(len(gpus), min(WORKERS_PER_GPU * len(gpus), cores))
         each = -(-count // len(gpus))  # workers of one GPU
         names = os.environ.get("CUDA_VISIBLE_DEVICES", "").split(",")
         names = names if len(names) == len(gpus) and all(names) else [str(i) for i in range(len(gpus))]
-        fits = max(1, min(MOST_AT_ONCE, int(SHARE * available / each / size)))
+        fits = max(1, min(MAX_RUNS_AT_ONCE, int(MEMORY_SHARE * available / each / size)))
         taken = min(1 << (fits.bit_length() - 1), power_of_two(-(-runs // count))) if batch is None else batch
         count = min(count, -(-runs // taken))
         words = (
@@ -111,10 +111,10 @@ def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> C
         return Chosen(count, taken, tuple(names[i % len(gpus)] for i in range(count)), size, words)
     available = float(psutil.virtual_memory().available)
     taken = 1 if batch is None else batch
-    fits = max(1, min(cores, int(SHARE * available / (size + PROCESS))))
+    fits = max(1, min(cores, int(MEMORY_SHARE * available / (size + PROCESS_BYTES))))
     count = max(1, min(fits if workers is None else workers, -(-runs // taken)))
     words = (
         f"{count} process{'es' * (count > 1)} on {cores} cores, {taken} run{'s' * (taken > 1)} at a time each: "
-        f"{count * (size + PROCESS) / 1e9:.2g} of {available / 1e9:.0f} GB"
+        f"{count * (size + PROCESS_BYTES) / 1e9:.2g} of {available / 1e9:.0f} GB"
     )
     return Chosen(count, taken, (), size, words)

@@ -15,7 +15,7 @@ from jaxhydro.units import unit_of
 
 STATISTICS = Statistics._fields
 BANDS = ("low_frequency", "wave_frequency")
-HIGHEST = 0.5  # Hz, that spectra are kept to
+MAX_FREQUENCY = 0.5  # Hz, that spectra are kept to
 
 
 class Kept(NamedTuple):
@@ -42,9 +42,9 @@ def unit(channel: str) -> str:
 
 
 def frequencies(time: Float[np.ndarray, " t"]) -> Float[np.ndarray, " f"]:
-    """Frequencies (Hz) of `power_spectrum` for records at these times (s), up to `HIGHEST`."""
+    """Frequencies (Hz) of `power_spectrum` for records at these times (s), up to `MAX_FREQUENCY`."""
     found = power_spectrum(time, np.zeros(len(time))).frequency
-    return found[found <= HIGHEST * (1 + 1e-9)]
+    return found[found <= MAX_FREQUENCY * (1 + 1e-9)]
 
 
 def bands_in(channel: str, peak_period: float) -> dict[str, tuple[float, float]]:

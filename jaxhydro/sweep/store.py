@@ -29,8 +29,8 @@ from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, Kept, bands_in, fre
 
 RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2
-SHORT = 16  # characters of a fingerprint in files
-KEPT = {  # variable: its dimensions after case and seed, and what it is
+FINGERPRINT_LENGTH = 16  # characters of a fingerprint in files
+RESULT_VARIABLES = {  # variable: its dimensions after case and seed, and what it is
     "statistics": (("channel", "statistic"), "in units of the channel; skewness and kurtosis 1, zero_crossing_period s"),
     "density": (("channel", "frequency"), "one-sided power spectral density, unit of the channel squared per Hz"),
     "bands": (("channel", "band"), "integral of the density over the band, unit of the channel squared"),
@@ -55,7 +55,7 @@ class Inputs(NamedTuple):
     @property
     def fingerprint(self) -> str:
         """Hash of the inputs and of the program that computes them."""
-        return fingerprint(self.plan.to_json(), self.platform, self.calibration)[:SHORT]
+        return fingerprint(self.plan.to_json(), self.platform, self.calibration)[:FINGERPRINT_LENGTH]
 
 
 @contextmanager
@@ -129,12 +129,12 @@ def check_same(folder: Path, inputs: Inputs) -> None:
         )
     except (OSError, ValueError, TypeError, KeyError) as error:
         found = f"{str(there)!r}, which cannot be read ({error})"
-        raise InputError("--out", [Problem("", "a folder with a sweep's inputs", found, WAYS)]) from None
+        raise InputError("--out", [Problem("", "a folder with a sweep's inputs", found, RESTART_HINT)]) from None
     for key, before, now in old.plan.differences(inputs.plan):
-        problems.append(Problem(key, f"{before}, as in the runs that are there", now, WAYS))
+        problems.append(Problem(key, f"{before}, as in the runs that are there", now, RESTART_HINT))
     for name, what in (("platform", "platform file"), ("calibration", "calibration")):
         if getattr(old, name) != getattr(inputs, name):
-            problems.append(Problem(name, f"the {what} of the runs that are there", "another", WAYS))
+            problems.append(Problem(name, f"the {what} of the runs that are there", "another", RESTART_HINT))
     try:
         group = zarr.open_group(folder / RESULTS, mode="r", zarr_format=3, use_consolidated=False)
         made_by: Any = group.attrs.get("computed_with")
@@ -145,12 +145,12 @@ def check_same(folder: Path, inputs: Inputs) -> None:
         if earlier != now:
             told = "another" if name == "source code" else now
             were = "that" if name == "source code" else f"{earlier or 'that'},"
-            problems.append(Problem(name, f"{were} which made the runs that are there", told, WAYS))
+            problems.append(Problem(name, f"{were} which made the runs that are there", told, RESTART_HINT))
     if problems:
         raise InputError(f"--out {folder}", problems[:1])
 
 
-WAYS = "Another --out keeps both; --restart begins anew."
+RESTART_HINT = "Another --out keeps both; --restart begins anew."
 
 
 class Store:
@@ -173,7 +173,7 @@ class Store:
             return False
         if self.arrays["status"][at] == FAILED:
             self.arrays["reason"][at] = ""
-        for name in KEPT:
+        for name in RESULT_VARIABLES:
             values = getattr(found, name)
             if values is not None:
                 self.arrays[name][at] = values
@@ -233,7 +233,7 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, 
                 dimension_names=("case", "seed"),
                 attributes=about,
             )
-        for name, (dims, text) in KEPT.items():
+        for name, (dims, text) in RESULT_VARIABLES.items():
             if name == "series" and not plan.time_series:
                 continue
             shape = tuple(len(sizes[dim]) for dim in dims)
@@ -275,8 +275,10 @@ def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
         | {
             "source": f"jaxhydro {jaxhydro.__version__}",
             "fingerprint": inputs.fingerprint,
-            "fingerprint_platform": content_hash(inputs.platform)[:SHORT],
-            "fingerprint_calibration": content_hash(inputs.calibration)[:SHORT] if inputs.calibration is not None else "",
+            "fingerprint_platform": content_hash(inputs.platform)[:FINGERPRINT_LENGTH],
+            "fingerprint_calibration": content_hash(inputs.calibration)[:FINGERPRINT_LENGTH]
+            if inputs.calibration is not None
+            else "",
             "computed_with": computed_with(),
             "units": "m, s, Hz, deg, N",
             "coordinates": coordinates,

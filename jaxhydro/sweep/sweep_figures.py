@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, stack
 from jaxhydro.sweep.lifetime import Runs, exceedance
 
-WRITTEN = 16  # sea states, up to which their probability is written into the diagram
+MAX_LABELLED_STATES = 16  # sea states, up to which their probability is written into the diagram
 COLOURS = "viridis"
 Figure = Any
 
@@ -62,7 +62,7 @@ def scatter_figure(
     if not solid.all():
         at = states[~solid]
         ax.scatter(at[:, 1], at[:, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3, clip_on=False)
-    if len(states) <= WRITTEN:
+    if len(states) <= MAX_LABELLED_STATES:
         for (height, period), one, area in zip(states, share, size):
             said = "100" if one > 0.995 else f"{100 * one:.2g}"
             ax.annotate(

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import CUT, usual_cutoff
+from jaxhydro.dynamics.requested_sea import NOTED_SHARE, usual_cutoff
 from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.remarks import Remark
@@ -16,7 +16,7 @@ from jaxhydro.sweep.cases import Plan, Run, State, named
 from jaxhydro.waves.irregular import harmonics, repeat_period
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
 
-AT_ONCE = 256  # sea states whose spectra are in memory
+STATES_IN_MEMORY = 256  # sea states whose spectra are in memory
 
 
 def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
@@ -35,8 +35,8 @@ def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float
     first, last = harmonics(plan.low, plan.cutoff, period)
     omega = jnp.asarray(2 * np.pi / period * np.arange(first, last + 1))
     states = list(dict.fromkeys(case.state for case in plan.cases))
-    for i in range(0, len(states), AT_ONCE):
-        some = states[i : i + AT_ONCE]
+    for i in range(0, len(states), STATES_IN_MEMORY):
+        some = states[i : i + STATES_IN_MEMORY]
         hs, tp = (jnp.array([state[k] for state in some])[:, None] for k in (0, 1))
         if plan.spectrum == "jonswap":
             asked = jnp.array([[np.nan if state[2] is None else state[2]] for state in some])
@@ -102,11 +102,11 @@ def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: di
 
 
 def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
-    if cut := {state: share for state, share in seas.items() if share < CUT}:
+    if cut := {state: share for state, share in seas.items() if share < NOTED_SHARE}:
         state = min(cut, key=cut.__getitem__)
         yield (
-            f"{_in(len(cut), total)} less than {CUT:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, and "
-            f"the rest is left out; least in {named(state)}, {cut[state]:.1%} or Hs {state[0] * cut[state] ** 0.5:.3g} m: see "
+            f"{_in(len(cut), total)} less than {NOTED_SHARE:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, "
+            f"and the rest is left out; least in {named(state)}, {cut[state]:.1%} or Hs {state[0] * cut[state] ** 0.5:.3g} m: see "
             "low and cutoff"
         )
 

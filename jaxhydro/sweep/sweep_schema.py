@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from jaxhydro.dynamics.requested_sea import LEAST, usual_transient
+from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, usual_transient
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
 from jaxhydro.waves.sea import Stretching
@@ -14,7 +14,7 @@ Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
 Exponent = Annotated[float, Field(strict=True, ge=1, le=20)]
 Dof: TypeAlias = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
-LONGEST = 5_000_000  # samples of a run
+MAX_SAMPLES = 5_000_000  # samples of a run
 COLUMNS = ("hs", "tp", "probability", "gamma")  # of a scatter table
 
 
@@ -87,8 +87,8 @@ Scatter = Annotated[
 ]
 OneHeading = Annotated[Annotated[Number, Tag("one")] | Annotated[Heading, Tag("more")], Discriminator(_number_or)]
 Many: TypeAlias = Annotated[tuple[Seed, ...], Field(min_length=1)]
-MOST_SEEDS = 100_000
-Number1 = Annotated[int, Field(strict=True, ge=1, le=MOST_SEEDS)]
+MAX_SEEDS = 100_000
+Number1 = Annotated[int, Field(strict=True, ge=1, le=MAX_SEEDS)]
 Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")], Discriminator(_number_or)]
 
 
@@ -113,7 +113,7 @@ class Sweep(Consistent):
     spectrum: Literal["jonswap", "pierson_moskowitz"] = "jonswap"
     amplitudes: Literal["deterministic", "rayleigh"] = "deterministic"
     headings: Annotated[tuple[OneHeading, ...], Field(min_length=1)] = (0.0,)
-    seeds: Seeds = Field(default=1, description=f"a number of seeds, 1 to {MOST_SEEDS}, or a list of whole numbers >= 0")
+    seeds: Seeds = Field(default=1, description=f"a number of seeds, 1 to {MAX_SEEDS}, or a list of whole numbers >= 0")
     duration: Positive = 3600.0
     transient: NonNegative | None = None
     time_step: Positive = 0.5
@@ -135,13 +135,13 @@ class Sweep(Consistent):
             return
         for key in ("time_step", "step"):
             value = getattr(self, key)
-            if value is not None and not 1 <= self.duration / value <= LONGEST:
-                limits = f"a number from {self.duration / LONGEST:g} to {self.duration:g} s"
+            if value is not None and not 1 <= self.duration / value <= MAX_SAMPLES:
+                limits = f"a number from {self.duration / MAX_SAMPLES:g} to {self.duration:g} s"
                 yield Problem(key, f"{limits}, for a duration of {self.duration:g} s", f"{value:g}")
                 return
         left = (self.duration - self.start) / self.time_step
-        if left < LEAST:
-            expected = f"{LEAST} samples or more after the transient of {self.start:g} s"
+        if left < MIN_SAMPLES:
+            expected = f"{MIN_SAMPLES} samples or more after the transient of {self.start:g} s"
             yield Problem("duration", expected, f"{left:.0f} of them {self.time_step:g} s apart")
         if self.spectrum != "jonswap" and not isinstance(self.scatter, str | Grid):
             for i, state in enumerate(self.scatter):

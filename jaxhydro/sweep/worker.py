@@ -14,15 +14,15 @@ from functools import lru_cache
 from pathlib import Path
 
 Found = list[tuple[int, bool]]  # numbers of runs, and whether they are done
-FLAG = "--xla_cpu_multi_thread_eigen=false"
+SINGLE_THREAD_FLAG = "--xla_cpu_multi_thread_eigen=false"
 
 
 def environment(device: str | None = None) -> dict[str, str]:
     """Environment variables of a worker: one thread of arithmetic, on the GPU `device` if named."""
     found = dict(os.environ)
     found["NPROC"] = "1"  # threads of XLA's pool
-    if FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
-        found["XLA_FLAGS"] = f"{flags} {FLAG}".strip()
+    if SINGLE_THREAD_FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
+        found["XLA_FLAGS"] = f"{flags} {SINGLE_THREAD_FLAG}".strip()
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         found[name] = "1"
     found.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # of GPU memory, which the processes share

@@ -19,7 +19,7 @@ from jaxhydro.sweep.store import DONE, FAILED
 from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
 
 PANELS = ("surge", "heave", "pitch")  # whose maxima are drawn, where they move
-FAILURES = 1000  # listed in sweep.json; all are in the store
+MAX_LISTED_FAILURES = 1000  # listed in sweep.json; all are in the store
 OPTIONS = (
     "duration",
     "start",
@@ -34,7 +34,7 @@ OPTIONS = (
     "diffraction",
     "equivalent_frequency",
 )
-STILL = 1e-6  # m, deg
+MIN_DEVIATION = 1e-6  # m, deg
 
 
 class Failure(NamedTuple):
@@ -165,7 +165,7 @@ def _document(data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> str:
         "options": {name: data.attrs[name] for name in OPTIONS if name in data.attrs},
         "probability_without_runs": summary.missing,
         "lifetime": lifetimes,
-        "failures": [one._asdict() for one in summary.failures[:FAILURES]],
+        "failures": [one._asdict() for one in summary.failures[:MAX_LISTED_FAILURES]],
     }
     return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -182,7 +182,7 @@ def _table(summary: Summary, exponents: np.ndarray) -> list[list[str]]:
 def _figures(folder: Path, data: xr.Dataset, summary: Summary, platform: str) -> None:
     names = [str(name) for name in data.statistic.values]
     found, probability = data.statistics, data.probability.values
-    moving = {name: one for name, one in summary.lifetimes.items() if name in DOFS and one.standard_deviation > STILL}
+    moving = {name: one for name, one in summary.lifetimes.items() if name in DOFS and one.standard_deviation > MIN_DEVIATION}
     first = "surge" if "surge" in moving else next(iter(moving), "wave")
     square = found.sel(channel=first).values[..., names.index("standard_deviation")] ** 2
     count = np.isfinite(square).sum(axis=1)

@@ -6,9 +6,9 @@ from jax.scipy.sparse.linalg import cg
 from jaxtyping import Array, Float
 
 RIDGE = 1e-4  # share of the continuation's energy that counts beside what is outside the band
-ACCURACY, ROUNDS = 1e-6, 1000  # of the equations, and of conjugate gradients
-NEAR = 3.0  # of the shortest waves: how far from an end a record rings most
-RINGS = 2.0  # times what the components of a continued record miss there: a record whose own miss more is continued
+ACCURACY, MAX_ITERATIONS = 1e-6, 1000  # of the equations, and of conjugate gradients
+END_LENGTH = 3.0  # of the shortest waves: how far from an end a record rings most
+MIN_RINGING = 2.0  # times what the components of a continued record miss there: a record whose own miss more is continued
 
 
 def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: float, length: int) -> Float[np.ndarray, " n"]:
@@ -46,14 +46,14 @@ def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: 
         return jnp.fft.irfft(inside * jnp.fft.rfft(whole), length)[count:]
 
     none, nothing = jnp.zeros(length - count), jnp.zeros(count)
-    found = cg(lambda p: (1 + RIDGE) * p - passed(p, nothing), passed(none, jnp.asarray(record)), tol=ACCURACY, maxiter=ROUNDS)[
-        0
-    ]
+    found = cg(
+        lambda p: (1 + RIDGE) * p - passed(p, nothing), passed(none, jnp.asarray(record)), tol=ACCURACY, maxiter=MAX_ITERATIONS
+    )[0]
     whole = np.concatenate([record, np.asarray(found)])
-    near = min(int(np.ceil(NEAR / (cutoff * step))), count // 2)
+    near = min(int(np.ceil(END_LENGTH / (cutoff * step))), count // 2)
     ends = np.r_[:near, count - near : count]
     missed = [float(np.linalg.norm((x - _passed(x, step, low, cutoff))[ends])) for x in (record, whole)]
-    return whole if missed[0] > RINGS * missed[1] else record
+    return whole if missed[0] > MIN_RINGING * missed[1] else record
 
 
 def _inside(count: int, step: float, low: float, cutoff: float) -> np.ndarray:

@@ -7,7 +7,7 @@ from jaxtyping import Array, Complex, Float
 
 from jaxhydro.waves.bessel import scaled_bessel_primes
 
-LONG = 0.3  # ka (rad) of the waves for which a cylinder's tuned coefficient has faded out by 1/e in `long_waves`
+LONG_WAVE_KA = 0.3  # ka (rad) of the waves for which a cylinder's tuned coefficient has faded out by 1/e in `long_waves`
 
 
 def maccamy_fuchs(ka: Float[Array, "..."]) -> Complex[Array, "..."]:
@@ -47,4 +47,4 @@ def long_waves(ka: Float[Array, "..."]) -> Float[Array, "..."]:
     Args:
         ka: Wavenumber times radius (rad).
     """
-    return jnp.exp(-((ka / LONG) ** 2))
+    return jnp.exp(-((ka / LONG_WAVE_KA) ** 2))

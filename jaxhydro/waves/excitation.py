@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
 
-CLOSE = 1e-4  # of a table's first and last frequency, by which waves may be outside it
+TABLE_END_TOLERANCE = 1e-4  # of a table's first and last frequency, by which waves may be outside it
 
 
 class Excitation(eqx.Module):
@@ -55,13 +55,13 @@ def within(
 ) -> tuple[Int[Array, " w"], Float[Array, " w"], Bool[Array, " w"]]:
     """Place of frequencies in a table: index below, fraction of the way to the next, and whether inside.
 
-    A frequency outside by less than `CLOSE` counts as the end of the table: periods are written with few digits.
+    A frequency outside by less than `TABLE_END_TOLERANCE` counts as the end of the table: periods are written with few digits.
 
     Args:
         table: Frequencies of the table (rad/s), ascending, (n,).
         omega: Frequencies to look up (rad/s), (w,).
     """
-    inside = (omega >= table[0] * (1 - CLOSE)) & (omega <= table[-1] * (1 + CLOSE))
+    inside = (omega >= table[0] * (1 - TABLE_END_TOLERANCE)) & (omega <= table[-1] * (1 + TABLE_END_TOLERANCE))
     place = jnp.clip(jnp.searchsorted(table, omega, side="right") - 1, 0, len(table) - 2)
     share = (omega - table[place]) / (table[place + 1] - table[place])
     return place, jnp.clip(share, 0.0, 1.0), inside

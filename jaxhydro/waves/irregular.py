@@ -20,10 +20,11 @@ from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.second_order import KINDS, Kind, elevation_spectrum
 
-JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
+MAX_JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
 TOLERANCE = 1e-4  # of the record in the band, by root mean square, that first and second order together may miss
-BEYOND, LONGEST = 20.0, 1.5  # of the shortest waves: how far records are continued at least; times a record, at most
-ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
+MIN_CONTINUATION = 20.0  # of the shortest waves: how far records are continued at least
+MAX_LENGTHENING = 1.5  # times a record, that it may have when continued
+MAX_ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
 
 _second_order = eqx.filter_jit(elevation_spectrum)  # once per band and record length, not once per round
 
@@ -243,8 +244,10 @@ def separated_record(
     if cutoff > 0.5 / step:
         raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
     level = elevation - elevation.mean()
-    if cutoff > 0 and (length := fourier_length(len(times) + BEYOND / (cutoff * step))) <= LONGEST * len(times):
-        level = continued(level, step, low, cutoff, length)
+    if cutoff > 0:
+        length = fourier_length(len(times) + MIN_CONTINUATION / (cutoff * step))
+        if length <= MAX_LENGTHENING * len(times):
+            level = continued(level, step, low, cutoff, length)
     count = len(level)
     period = count * step
     first, last = harmonics(low, cutoff, period)
@@ -266,7 +269,7 @@ def separated_record(
     size = np.linalg.norm(measured)
     best, trial, share, rounds = measured, measured, 1.0, 0
     left, least = measured, np.inf  # what the best trial misses, and its norm over the record's
-    while rounds < ROUNDS and least > 0.1 * tolerance and share > 1e-3:
+    while rounds < MAX_ROUNDS and least > 0.1 * tolerance and share > 1e-3:
         rounds += 1
         second = np.asarray(_second_order(waves(trial), environment, position, kinds, highest_difference))[band]
         missed = measured - trial - second
@@ -294,7 +297,7 @@ def sampling_interval(times: Float[np.ndarray, " t"]) -> float:
     step = (times[-1] - times[0]) / (len(times) - 1)
     worst = int(np.argmax(np.abs(times - times[0] - step * np.arange(len(times)))))
     off = abs(times[worst] - times[0] - step * worst)
-    if not (step > 0 and off <= JITTER * step):
+    if not (step > 0 and off <= MAX_JITTER * step):
         raise ValueError(f"evenly sampled times expected, found {times[worst]:g} s {off:g} s off an even step of {step:g} s")
     return float(step)
 

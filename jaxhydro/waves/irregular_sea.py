@@ -14,7 +14,7 @@ from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.preparation import Preparation
-from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth
+from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY, AbstractSea, Stretching, WaveSea, direction, growth
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum
 from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import Box, supports
@@ -198,7 +198,7 @@ class IrregularSea(AbstractSea):
             (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp),
             exciting,
             transfer,
-            jnp.asarray((np.asarray(waves.omega) / MIDDLE) ** 2),
+            jnp.asarray((np.asarray(waves.omega) / DRIFT_REFERENCE_FREQUENCY) ** 2),
             jnp.asarray(share),
             2 * math.pi / period,
             size,

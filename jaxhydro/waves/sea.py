@@ -22,8 +22,8 @@ from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.transfer import Transfer
 
 Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
-MIDDLE = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
-DRIFTS = 4  # entries of `AbstractSea.drift` without a transfer function
+DRIFT_REFERENCE_FREQUENCY = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
+DRIFT_ENTRIES = 4  # entries of `AbstractSea.drift` without a transfer function
 
 
 class AbstractSea(eqx.Module):
@@ -60,11 +60,11 @@ class AbstractSea(eqx.Module):
 
         - the squared envelope |a|²;
         - its Hilbert transform, which turns cos into sin and a mean into 0;
-        - Re(a_w conj(a)), a_w the waves weighted by (omega / `MIDDLE`)²;
+        - Re(a_w conj(a)), a_w the waves weighted by (omega / `DRIFT_REFERENCE_FREQUENCY`)²;
         - the mean of |a|², Hs²/8.
 
         They contain difference frequencies only. A sea made with a platform's transfer function appends its six forces (N, N
-        m) to these `DRIFTS` entries.
+        m) to these `DRIFT_ENTRIES` entries.
         """
         return None
 
@@ -190,7 +190,9 @@ class WaveSea(AbstractSea):
         sooner = jnp.sign(omega[:, None] - omega)
         pairs = (sooner * (one[:, None] * one.conj()).imag).sum()
         mean = (one * one.conj()).real.sum()
-        plain = jnp.stack([(every * every.conj()).real, pairs, (((omega / MIDDLE) ** 2 * one).sum() * every).real, mean])
+        plain = jnp.stack(
+            [(every * every.conj()).real, pairs, (((omega / DRIFT_REFERENCE_FREQUENCY) ** 2 * one).sum() * every).real, mean]
+        )
         if self.transfer is None:
             return plain
         return jnp.concatenate([plain, self.transfer.force(self.transfer.at(omega) @ one)])

@@ -6,7 +6,7 @@ import numpy as np
 
 from jaxhydro.waves.components import Components
 
-SMOOTHED = 0.005  # Hz, half the width over which a spectrum is averaged
+SMOOTHING_HALF_WIDTH = 0.005  # Hz, half the width over which a spectrum is averaged
 
 
 class SeaState(NamedTuple):
@@ -33,7 +33,9 @@ def peak_period(frequency: np.ndarray, density: np.ndarray) -> float:
     References:
         Young (1995), Ocean Engineering 22, 669-686, equation (3).
     """
-    edges = np.searchsorted(frequency, np.add.outer((-SMOOTHED, SMOOTHED), frequency) + np.array([[-1e-9], [1e-9]]))
+    edges = np.searchsorted(
+        frequency, np.add.outer((-SMOOTHING_HALF_WIDTH, SMOOTHING_HALF_WIDTH), frequency) + np.array([[-1e-9], [1e-9]])
+    )
     summed = np.concatenate([[0.0], np.cumsum(density)])
     mean = (summed[edges[1]] - summed[edges[0]]) / (edges[1] - edges[0])
     weight = (mean / mean.max()) ** 4

@@ -27,7 +27,7 @@ Reduce = Callable[[Float[Array, " n"], Float[Array, "2 n"], Complex[Array, " n"]
 
 KINDS: tuple[Kind, ...] = ("sum", "difference")
 SIGN = {"sum": 1.0, "difference": -1.0}
-STATIONARY = 1e-9  # beats slower than this part of their frequencies are those of equal frequencies, but for rounding
+MIN_BEAT = 1e-9  # beats slower than this part of their frequencies are those of equal frequencies, but for rounding
 TILE = 128  # pairs at a time in `fold`: long enough for the overhead of a step, short enough for the cache
 
 
@@ -78,7 +78,7 @@ def _transfer(
     square = (k**2).sum(axis=0)
     size = jnp.sqrt(jnp.where(square > 0, square, 1.0))
     # equal frequencies: K = 0 whatever the headings, and of one heading nothing but a constant is left
-    moving = exist & (square > 0) & (jnp.abs(omega) > STATIONARY * (omega_i + omega_j))
+    moving = exist & (square > 0) & (jnp.abs(omega) > MIN_BEAT * (omega_i + omega_j))
     detuning = jnp.where(moving, omega**2 - g * size * jnp.tanh(size * environment.depth), 1.0)
     potential = jnp.where(moving, (g * kinematic - omega * dynamic) / detuning, 0.0)
     return jnp.where(exist, (dynamic + omega * potential) / g, 0.0), potential

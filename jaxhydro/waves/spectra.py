@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 Scalar = Float[Array, ""] | float
-SHARPEST = 7.0  # peak enhancement up to which the normalisation of `jonswap` holds
+MAX_ENHANCEMENT = 7.0  # peak enhancement up to which the normalisation of `jonswap` holds
 
 
 def peak_enhancement(significant_height: Scalar, peak_period: Scalar) -> Float[Array, ""]:
@@ -103,8 +103,8 @@ def jonswap(
     """
     smooth = pierson_moskowitz(omega, significant_height, peak_period)
     gamma = _default_enhancement(significant_height, peak_period) if peak_enhancement is None else peak_enhancement
-    if _concrete(gamma) and not np.all((np.asarray(gamma) >= 1) & (np.asarray(gamma) <= SHARPEST)):
-        raise ValueError(f"peak_enhancement lies from 1 to {SHARPEST:g}, found {gamma}")
+    if _concrete(gamma) and not np.all((np.asarray(gamma) >= 1) & (np.asarray(gamma) <= MAX_ENHANCEMENT)):
+        raise ValueError(f"peak_enhancement lies from 1 to {MAX_ENHANCEMENT:g}, found {gamma}")
     return smooth * _peaked(jnp.asarray(omega), jnp.asarray(peak_period), jnp.asarray(gamma))
 
 

@@ -13,7 +13,7 @@ from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, Stretching, stretched
 from jaxhydro.waves.supports import field, surface
 
-POINTS = 8  # steps of a clock between which a sea is interpolated
+INTERPOLATION_STEPS = 8  # steps of a clock between which a sea is interpolated
 
 
 class Clock(NamedTuple):
@@ -57,11 +57,11 @@ def between(place: Float[Array, "..."], total: int) -> tuple[Int[Array, "... h"]
         place: Fractional step numbers.
         total: Number of steps of the clock.
     """
-    base = jnp.clip(jnp.floor(place).astype(int) - POINTS // 2 + 1, 0, max(total - POINTS, 0))
-    nodes = jnp.arange(POINTS)
-    apart = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, nodes[:, None] - nodes)
+    base = jnp.clip(jnp.floor(place).astype(int) - INTERPOLATION_STEPS // 2 + 1, 0, max(total - INTERPOLATION_STEPS, 0))
+    nodes = jnp.arange(INTERPOLATION_STEPS)
+    apart = jnp.where(jnp.eye(INTERPOLATION_STEPS, dtype=bool), 1.0, nodes[:, None] - nodes)
     away = (place - base)[..., None, None] - nodes
-    weight = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, away / apart).prod(axis=-1)
+    weight = jnp.where(jnp.eye(INTERPOLATION_STEPS, dtype=bool), 1.0, away / apart).prod(axis=-1)
     return jnp.minimum(base[..., None] + nodes, total - 1), weight
 
 
@@ -95,10 +95,10 @@ class SupportSea(AbstractSea):
     apart: bool = eqx.field(static=True, default=False)
 
     def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
-        """The same sea for an integration over `steps` steps that starts `index` steps after the clock did; beyond its end the
-        sea stands still. What its first steps ask for at their middle is interpolated between `POINTS` steps (Lagrange).
+        """The same sea for an integration over `steps` steps that starts `index` steps after the clock's start.
 
-        A wave of 20 steps is met to 1e-6 there, one of 8 to 2e-3.
+        Beyond the clock's end the sea stands still. Values at the middle of its first steps are interpolated between
+        `INTERPOLATION_STEPS` steps (Lagrange): to 1e-6 for a wave of 20 steps, to 2e-3 for one of 8.
         """
         total = self.series.shape[0]
         fine = None

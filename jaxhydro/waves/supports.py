@@ -15,11 +15,11 @@ import numpy as np
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-POWER = 0.75  # supports are Chebyshev points in k^POWER: denser where profiles change most
+SPACING_POWER = 0.75  # supports are Chebyshev points in k^POWER: denser where profiles change most
 TOLERANCE = 1e-5  # of a free wave's largest value, that its field may be missed by in the box
-BOUND = 30.0  # times as much for bound waves shorter than all free ones
+BOUND_TOLERANCE_FACTOR = 30.0  # times as much for bound waves shorter than all free ones
 RIDGE = 1e-10  # of the largest singular value: keeps weights small without losing accuracy
-MOST = 96
+MAX_SUPPORTS = 96
 
 
 class Box(NamedTuple):
@@ -76,7 +76,7 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
     """Fewest support wavenumbers in a box for free and bound waves.
 
     Weights are the least-squares solution for cosh k(z+h) / cosh kh and sinh k(z+h) / sinh kh, times cos kx and sin kx, over
-    a grid on the box. Bound waves shorter than all free ones are low; their tolerance is `BOUND` times larger.
+    a grid on the box. Bound waves shorter than all free ones are low; their tolerance is `BOUND_TOLERANCE_FACTOR` times larger.
 
     Args:
         box: Region in which the field is needed.
@@ -88,11 +88,11 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
         Wavenumbers and weights.
 
     Raises:
-        ValueError: More than `MOST` supports would be needed: a box of many wavelengths.
+        ValueError: More than `MAX_SUPPORTS` supports would be needed: a box of many wavelengths.
     """
     highest = max(free, bound)
     count = math.ceil((0.5 * highest * box.half + 8) / 4) * 4
-    if count > MOST:  # before arrays that would fill the memory
+    if count > MAX_SUPPORTS:  # before arrays that would fill the memory
         raise ValueError(_too_short(highest, box))
     spacing = 0.05 / (box.half * math.sqrt(highest))
     grid = (spacing * np.arange(math.ceil(math.sqrt(highest) / spacing) + 3)) ** 2
@@ -100,11 +100,11 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
     x = box.half * np.sin(0.5 * np.pi * (np.arange(points) + 0.5) / points)  # denser at the edge
     z = box.low * (0.5 - 0.5 * np.cos(np.pi * (np.arange(8) + 0.5) / 8)) ** 2  # denser at the surface
     wanted = _fields(grid, x, z, box.depth)
-    allowed = np.where(grid <= free, tolerance, BOUND * tolerance)
+    allowed = np.where(grid <= free, tolerance, BOUND_TOLERANCE_FACTOR * tolerance)
     inside = grid <= highest
-    while count <= MOST:
+    while count <= MAX_SUPPORTS:
         chebyshev = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
-        k = highest * (0.5 * (1 + chebyshev)) ** (1 / POWER)
+        k = highest * (0.5 * (1 + chebyshev)) ** (1 / SPACING_POWER)
         basis = _fields(k, x, z, box.depth)
         u, s, vt = np.linalg.svd(basis, full_matrices=False)
         table = (vt.T * (s / (s**2 + (RIDGE * s[0]) ** 2))) @ (u.T @ wanted)
@@ -117,8 +117,8 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
 
 def _too_short(highest: float, box: Box) -> str:
     return (
-        f"waves as short as {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MOST} support "
-        f"wavenumbers: cut the sea off at a lower frequency"
+        f"waves as short as {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MAX_SUPPORTS} "
+        f"support wavenumbers: cut the sea off at a lower frequency"
     )
 
 

@@ -9,7 +9,7 @@ from jaxtyping import Array, Complex, Float
 
 from jaxhydro.waves.excitation import within
 
-KEPT = 1e-6  # of the largest eigenvalue: what is less adds nothing
+MIN_EIGENVALUE = 1e-6  # of the largest eigenvalue: what is less adds nothing
 
 
 class Transfer(eqx.Module):
@@ -50,7 +50,7 @@ class Transfer(eqx.Module):
             table = 0.5 * (curve[:, :, None] + curve[:, None, :]).astype(complex)
         value, vector = np.linalg.eigh(table)  # columns
         size = np.abs(value)
-        count = max(1, int((size > KEPT * size.max(axis=1, keepdims=True)).sum(axis=1).max()))
+        count = max(1, int((size > MIN_EIGENVALUE * size.max(axis=1, keepdims=True)).sum(axis=1).max()))
         largest = np.argsort(-size, axis=1)[:, :count]
         vector = np.take_along_axis(vector, largest[:, None, :], axis=2)
         value = np.take_along_axis(value, largest, axis=1)

@@ -380,7 +380,7 @@ def test_a_cluster_has_its_own_workers(file, tmp_path) -> None:
 
 
 def test_a_scheduler_that_does_not_answer_leaves_nothing_behind(file, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
+    monkeypatch.setattr(cluster, "SCHEDULER_TIMEOUT", 0.5)
     words = ("sweep", file, "--out", tmp_path / "o", "--scheduler", "tcp://127.0.0.1:9")
     assert "--scheduler: expected a scheduler that answers" in command(*words, status=2)
     assert not (tmp_path / "o").exists()
