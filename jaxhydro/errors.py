@@ -15,7 +15,7 @@ from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
 from jaxhydro import choices
-from jaxhydro.schema_description import Place, arms_of, bare, dotted, locate, tags_of, words
+from jaxhydro.schema_description import SchemaLocation, arms_of, bare, dotted, locate, tags_of, words
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
@@ -220,7 +220,7 @@ def validate(model_class: type[M], data: object, source: str) -> M:
     raise InputError(source, dict.fromkeys(p for p in problems if p.found != "nothing" or p.where not in misspelt))
 
 
-def _told(detail: Any, at: Place) -> Iterator[Problem]:
+def _told(detail: Any, at: SchemaLocation) -> Iterator[Problem]:
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, Faults):
         for problem in cause.problems:
@@ -248,7 +248,7 @@ def _told(detail: Any, at: Place) -> Iterator[Problem]:
         yield Problem(at.where, expected, shown(at.value), _way_out(detail, at))
 
 
-def _way_out(detail: Any, at: Place) -> str:
+def _way_out(detail: Any, at: SchemaLocation) -> str:
     kind, value = bare(at.kind, at.notes)[0], at.value
     if get_origin(kind) is Literal:
         return suggest(value, map(str, get_args(kind)))

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import signal
 
 from jaxhydro.cli.options import finite, positive, wrong
-from jaxhydro.dynamics.requested_sea import Asked, Record, usual_transient
+from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transient
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.waves.irregular import sampling_interval
 
@@ -24,7 +24,7 @@ MAX_STEEPNESS = 1 / 7  # height over length: beyond it no wave stands (Michell 1
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
 
-def with_band(sea: Asked, pace: float) -> Asked:
+def with_band(sea: RequestedSea, pace: float) -> RequestedSea:
     """A sea with a band, for a platform of a `pace` (`jaxhydro.scales`). Raises BadParameter where it is none."""
     low, cutoff = sea.band(pace)
     if cutoff <= low:
@@ -32,7 +32,7 @@ def with_band(sea: Asked, pace: float) -> Asked:
     return replace(sea, low=low, cutoff=cutoff)
 
 
-def transient_of(sea: Asked, duration: float, pace: float = 1.0) -> float:
+def transient_of(sea: RequestedSea, duration: float, pace: float = 1.0) -> float:
     """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
     if sea.transient is None:
         return usual_transient(duration, pace)
@@ -70,7 +70,7 @@ def stretching(given: Mapping[str, Any]) -> Any:
     return str(given.get("--stretching", "vertical"))
 
 
-def asked(given: Mapping[str, Any], heading: float) -> Asked | None:
+def asked(given: Mapping[str, Any], heading: float) -> RequestedSea | None:
     """The irregular sea of the options given, the record yet to be read; None without one. Raises BadParameter."""
     named = {name: given[name] for name in OF_SEA if name in given}
     record, of_spectrum = "--wave" in given, [name for name in named if name in OF_SPECTRUM]
@@ -95,10 +95,10 @@ def asked(given: Mapping[str, Any], heading: float) -> Asked | None:
         raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
     seed, amplitudes = named.get("--seed", SEED), str(named.get("--amplitudes", "deterministic"))
     how = (named.get("--order", ORDER), stretching(given), heading, named.get("--transient"))
-    return Asked(hs, tp, gamma, kind, seed, amplitudes, low, cutoff, *how)
+    return RequestedSea(hs, tp, gamma, kind, seed, amplitudes, low, cutoff, *how)
 
 
-def duration(given: float | None, sea: Asked | None) -> float:
+def duration(given: float | None, sea: RequestedSea | None) -> float:
     """Duration (s) given or chosen. Raises BadParameter for one that is longer than the record."""
     record = None if sea is None else sea.record
     if record is None:
@@ -122,7 +122,7 @@ def _spectrum(kind: str, tp: float | None, gamma: float | None) -> None:
         raise wrong("--gamma", f"from 1 to 7 expected, found {gamma:g}")
 
 
-def with_record(sea: Asked, file: Path, table: Any, given: Mapping[str, Any]) -> Asked:
+def with_record(sea: RequestedSea, file: Path, table: Any, given: Mapping[str, Any]) -> RequestedSea:
     """The sea with the record in a file's table (pandas).
 
     Raises InputError for columns that are not there, gaps and uneven sampling; BadParameter for the gauge's place.

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 import jaxhydro
-from jaxhydro.cli.calibrated_model import Used, with_calibration
+from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model
@@ -59,7 +59,7 @@ def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     return model
 
 
-def print_used(used: Used) -> None:
+def print_used(used: UsedCalibration) -> None:
     """Labels of calibrated values that are used, and what is to be known of them."""
     counted = ""
     if used.reference is not None:

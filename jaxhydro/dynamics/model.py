@@ -78,7 +78,7 @@ class State(eqx.Module):
     memory: tuple[Any, ...]
 
 
-class Total(NamedTuple):
+class LoadSum(NamedTuple):
     """Sum of all loads, body axes.
 
     Attributes:
@@ -382,7 +382,7 @@ class Model(eqx.Module):
             None if flow is None or not lids else (flow.pressure[n + whole :], axes.T @ flow.acceleration[:, n + whole :]),
         )
 
-    def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":
+    def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "LoadSum":
         """Sum of all loads in body axes.
 
         Args:
@@ -402,7 +402,7 @@ class Model(eqx.Module):
         per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
         line_mass = hull.join(now.over_strips(per_volume) * now.strip_shape.volume, end_mass)
         on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
-        return Total(
+        return LoadSum(
             force + hull.wrench(on_lines, now.lines.away),
             total("added_mass", jnp.zeros((6, 6))),
             hull.masses(per_volume, end_mass, now.wetted),

@@ -50,7 +50,7 @@ class Record:
 
 
 @dataclass(frozen=True)
-class Asked:
+class RequestedSea:
     """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
 
     low and cutoff None: those that `jaxhydro.waves.wave_bands` finds for the platform (`band`).
@@ -83,7 +83,7 @@ class Asked:
         return low, cutoff
 
 
-class Built(NamedTuple):
+class BuiltSea(NamedTuple):
     """A sea, what is written about it, and the spectrum asked for (Hz -> m2/Hz; None: a record)."""
 
     sea: IrregularSea
@@ -92,7 +92,7 @@ class Built(NamedTuple):
     notes: list[str]
 
 
-def build_sea(model: Model, asked: Asked, duration: float) -> Built:
+def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
     """The sea that is asked for. Raises InputError that names the option or the record."""
     notes: list[str] = []
     low, cutoff = asked.band(float(model.pace))
@@ -128,7 +128,7 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         about["share_of_record"] = 1 - float(np.var(left) / np.var(record.elevation))
         if about["share_of_record"] < NOTED_SHARE:
             notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
-    return Built(sea, about, target, notes)
+    return BuiltSea(sea, about, target, notes)
 
 
 def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
@@ -147,7 +147,7 @@ def usual_cutoff(height: float, gravity: float) -> float:
 
 
 def _from_spectrum(
-    model: Model, asked: Asked, duration: float, notes: list[str]
+    model: Model, asked: RequestedSea, duration: float, notes: list[str]
 ) -> tuple[Components, dict[str, Any], Callable[[np.ndarray], np.ndarray]]:
     hs, tp, gamma = asked.hs or 0.0, asked.tp or 0.0, asked.gamma
     if asked.spectrum == "jonswap" and gamma is None:
@@ -192,7 +192,7 @@ def _from_spectrum(
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
 
 
-def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
+def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
     low, cutoff = asked.band(float(model.pace))
     try:
         found = separated_record(

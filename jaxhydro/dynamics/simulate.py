@@ -152,22 +152,22 @@ def simulate(
     named = position is None or isinstance(position, Mapping)
     memory = model.settled(by_name(position)) if named else model.rest().memory
     rest = equilibrium(model) if named else jnp.zeros(6)
-    q, velocity = _begun(rest, by_name(position), by_name(rate))
+    q, velocity = _initial_state(rest, by_name(position), by_name(rate))
     start = State(q, velocity, memory)
     if isinstance(sea, IrregularSea):
-        return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
+        return simulate_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / step - 1e-9))
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)[0]
 
 
 @jax.jit
-def _begun(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Array, "6"]) -> tuple[Array, Array]:
+def _initial_state(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Array, "6"]) -> tuple[Array, Array]:
     """Initial position, and velocity in body axes."""
     return rest + position, Model.body_velocity(rest + position, rate)
 
 
-class InIrregular(NamedTuple):
+class IrregularSimulation(NamedTuple):
     """Simulation in an irregular sea.
 
     Attributes:
@@ -185,7 +185,7 @@ class InIrregular(NamedTuple):
     steps: int
 
 
-def in_irregular(
+def simulate_irregular(
     model: Model,
     sea: IrregularSea,
     start: State,
@@ -194,7 +194,7 @@ def in_irregular(
     method: Method = "ab4",
     adjoint: Adjoint = "forward",
     margin: float = 0.0,
-) -> InIrregular:
+) -> IrregularSimulation:
     """Simulate in an irregular sea, prepared anew for a larger box where the platform leaves the first.
 
     Args:
@@ -224,7 +224,7 @@ def in_irregular(
         met: Any = model.through(prepared)  # with the box moved where the sea is
         reached = float(_farthest(found.position, jnp.asarray(points), met))
         if not reached + margin > prepared.half:
-            return InIrregular(found, grid, prepared, step, steps)
+            return IrregularSimulation(found, grid, prepared, step, steps)
         if reached > prepared.half + 10 * own:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
         excursion += reached + margin - prepared.half + 0.5 * own

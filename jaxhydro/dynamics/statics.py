@@ -34,7 +34,7 @@ def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
     return model.force_at_rest(position) / (weight * arm)
 
 
-class _Held(NamedTuple):
+class _HeldMotion(NamedTuple):
     """A degree of freedom that is held.
 
     Attributes:
@@ -46,14 +46,14 @@ class _Held(NamedTuple):
     value: Float[Array, ""]
 
 
-def _unbalanced(position: Float[Array, "6"], model: Model, held: _Held | None) -> Float[Array, "6"]:
+def _unbalanced(position: Float[Array, "6"], model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
     """Residual of the equilibrium: `_balance`, and for a held motion its distance from where it is held."""
     found = _balance(position, model)
     return found if held is None else jnp.where(held.mask > 0, position - held.value, found)
 
 
 @eqx.filter_custom_jvp
-def _root(model: Model, held: _Held | None) -> Float[Array, "6"]:
+def _root(model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
     # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start, and programs
     # with the library's implicit derivative cannot be kept compiled
 
@@ -132,7 +132,7 @@ def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"
         dof: Number of the motion that is held.
         value: Where it is held (m or rad).
     """
-    return _root(model, _Held(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))
+    return _root(model, _HeldMotion(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))
 
 
 class Modes(NamedTuple):

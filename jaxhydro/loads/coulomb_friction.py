@@ -7,10 +7,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "force": both("N", "N m", "dry friction in {dof}, whatever the speed", 0.0),
+    "force": both_units("N", "N m", "dry friction in {dof}, whatever the speed", 0.0),
     "speed": (
         Parameter("m/s", "speed in {dof} below which dry friction is resolved as a damper", 1e-6, 10.0, 0.01),
         Parameter("rad/s", "speed in {dof} below which dry friction is resolved as a damper", 1e-8, 1.0, 2e-4),
@@ -48,5 +48,5 @@ class CoulombFriction(AbstractLoad):
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        sign = jnp.tanh(those(now.velocity, self.values) / entries(self.values, "speed"))
-        return Action(body_force=on_six(-entries(self.values, "force") * sign, self.values))
+        sign = jnp.tanh(dofs_only(now.velocity, self.values) / entries(self.values, "speed"))
+        return Action(body_force=all_dofs(-entries(self.values, "force") * sign, self.values))

@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Self
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
-PARAMETERS = {"coefficient": both("N s3/m3", "N m s3/rad3", "cubic damping in {dof}", 0.0)}
+PARAMETERS = {"coefficient": both_units("N s3/m3", "N m s3/rad3", "cubic damping in {dof}", 0.0)}
 
 
 class CubicDamping(AbstractLoad):
@@ -36,5 +36,5 @@ class CubicDamping(AbstractLoad):
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        velocity = those(now.velocity, self.values)
-        return Action(body_force=on_six(-entries(self.values, "coefficient") * velocity**3, self.values))
+        velocity = dofs_only(now.velocity, self.values)
+        return Action(body_force=all_dofs(-entries(self.values, "coefficient") * velocity**3, self.values))

@@ -8,12 +8,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "mass": both("kg", "kg m2", "what swings in {dof}, on top of the declared mass", 0.0),
-    "period": both("s", "s", "period of what swings in {dof}, the hull held", 0.5, 500.0, 20.0),
-    "damping_ratio": both("-", "-", "damping ratio of what swings in {dof}, the hull held", 0.0, 1.0, 0.03),
+    "mass": both_units("kg", "kg m2", "what swings in {dof}, on top of the declared mass", 0.0),
+    "period": both_units("s", "s", "period of what swings in {dof}, the hull held", 0.5, 500.0, 20.0),
+    "damping_ratio": both_units("-", "-", "damping ratio of what swings in {dof}, the hull held", 0.0, 1.0, 0.03),
 }
 
 
@@ -52,6 +52,6 @@ class HiddenOscillator(AbstractLoad):
         mass, period, ratio = (entries(self.values, name) for name in PARAMETERS)
         displaced, velocity = memory
         frequency = 2 * math.pi / period
-        apart = velocity - those(now.earth_velocity(), self.values)
+        apart = velocity - dofs_only(now.earth_velocity(), self.values)
         pull = frequency**2 * displaced + 2 * ratio * frequency * apart  # per mass
-        return Action(force=on_six(mass * pull, self.values), memory_rate=jnp.stack([apart, -pull]))
+        return Action(force=all_dofs(mass * pull, self.values), memory_rate=jnp.stack([apart, -pull]))

@@ -7,12 +7,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, magnitude, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, magnitude, nulls
 
 MIN_SQUARED_SPEED = 1e-12  # m2/s2, rad2/s2 and of z^2 under roots: speeds well below 1e-6 m/s do not count as motion
 YIELD = "displacement in which the hysteretic force in {dof} comes to its limit"
 PARAMETERS = {
-    "force": both("N", "N m", "largest hysteretic force in {dof}", 0.0),
+    "force": both_units("N", "N m", "largest hysteretic force in {dof}", 0.0),
     "yield_displacement": (Parameter("m", YIELD, 1e-3, 50.0, 0.5), Parameter("rad", YIELD, 1e-5, 1.0, 0.01)),
 }
 
@@ -45,7 +45,7 @@ class Hysteresis(AbstractLoad):
         return jnp.zeros_like(entries(self.values, "force"))
 
     def settled(self, displacement: Float[Array, "6"]) -> Float[Array, " k"]:
-        part = those(displacement, self.values) / entries(self.values, "yield_displacement")
+        part = dofs_only(displacement, self.values) / entries(self.values, "yield_displacement")
         # sign(x) (1 - exp(-|x|/Y)), in parts whose slopes add up to 1/Y at 0
         return jnp.expm1(jnp.minimum(part, 0.0)) - jnp.expm1(-jnp.maximum(part, 0.0))
 
@@ -53,7 +53,7 @@ class Hysteresis(AbstractLoad):
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        v, z = those(now.earth_velocity(), self.values), memory
+        v, z = dofs_only(now.earth_velocity(), self.values), memory
         bent = 0.5 * (magnitude(v, MIN_SQUARED_SPEED) * z + v * magnitude(z, MIN_SQUARED_SPEED))
         rate = (v - bent) / entries(self.values, "yield_displacement")
-        return Action(force=on_six(-entries(self.values, "force") * z, self.values), memory_rate=rate)
+        return Action(force=all_dofs(-entries(self.values, "force") * z, self.values), memory_rate=rate)

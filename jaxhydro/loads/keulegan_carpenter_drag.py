@@ -19,7 +19,7 @@ INITIAL_WINDOW_SHARE = 1 / 30  # share of the window that is open at the start
 EXPONENT = Parameter("-", "exponent of the {way} drag coefficient of {group} in the Keulegan-Carpenter number", -1.0, 1.0)
 
 
-class Swept(NamedTuple):
+class RecentFlow(NamedTuple):
     """Recent flow past some lines: duration (s), displacement from its mean (m), variance (m²)."""
 
     elapsed: Float[Array, ""]
@@ -75,18 +75,18 @@ class KeuleganCarpenterDrag(AbstractLoad):
             constants[:, mine] = [[reference[label]], [window[label]]]
         return cls(dict(values), jnp.asarray(constants[0]), jnp.asarray(constants[1]), lines, coupled)
 
-    def rest(self) -> Swept:
-        return Swept(jnp.zeros(()), *(jnp.zeros(len(self.lines)) for _ in range(2)))
+    def rest(self) -> RecentFlow:
+        return RecentFlow(jnp.zeros(()), *(jnp.zeros(len(self.lines)) for _ in range(2)))
 
     def about(self, label: str) -> Parameter:
         return about(label, {"drag_exponent": EXPONENT})
 
-    def act(self, now: Instant, memory: Swept) -> Action:
+    def act(self, now: Instant, memory: RecentFlow) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
         relative = hull.join(now.strip_flow.relative, now.end_flow.relative)
         age = self.window * (1 - (1 - INITIAL_WINDOW_SHARE) * jnp.exp(-memory.elapsed / self.window))
         swept, own = memory.displacement, jnp.array(self.lines, dtype=int)
-        rate = Swept(jnp.ones(()), relative[own] - swept / age, (swept**2 - memory.variance) / age)
+        rate = RecentFlow(jnp.ones(()), relative[own] - swept / age, (swept**2 - memory.variance) / age)
 
         count = relative.shape[0]
         # never below 0 but for the error of a time step

@@ -7,12 +7,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "odd_quadratic": both("N/m2", "N m/rad2", "stiffening in {dof} with the distance from the reference position"),
-    "even_quadratic": both("N/m2", "N m/rad2", "force in {dof} with the square of the displacement, always the same way"),
-    "cubic": both("N/m3", "N m/rad3", "stiffening in {dof} with the square of the displacement"),
+    "odd_quadratic": both_units("N/m2", "N m/rad2", "stiffening in {dof} with the distance from the reference position"),
+    "even_quadratic": both_units("N/m2", "N m/rad2", "force in {dof} with the square of the displacement, always the same way"),
+    "cubic": both_units("N/m3", "N m/rad3", "stiffening in {dof} with the square of the displacement"),
 }
 
 
@@ -43,6 +43,6 @@ class MooringNonlinearity(AbstractLoad):
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        x = those(now.position, self.values)
+        x = dofs_only(now.position, self.values)
         odd, even, cubic = (entries(self.values, name, 0.0) for name in PARAMETERS)
-        return Action(force=on_six(-(odd * jnp.abs(x) + even * x + cubic * x**2) * x, self.values))
+        return Action(force=all_dofs(-(odd * jnp.abs(x) + even * x + cubic * x**2) * x, self.values))

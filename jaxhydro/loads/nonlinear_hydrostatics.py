@@ -7,13 +7,15 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, dofs_of, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_of, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "even_quadratic": both("N/m2", "N m/rad2", "force in {dof} with the square of the displacement, always the same way"),
-    "cubic": both("N/m3", "N m/rad3", "restoring in {dof} with the third power of the displacement"),
-    "quintic": both("N/m5", "N m/rad5", "restoring in {dof} with the fifth power of the displacement"),
-    "pitch_squared": both("N/rad2", "", "pitch stiffness per metre of heave, and force in {dof} with the square of pitch"),
+    "even_quadratic": both_units("N/m2", "N m/rad2", "force in {dof} with the square of the displacement, always the same way"),
+    "cubic": both_units("N/m3", "N m/rad3", "restoring in {dof} with the third power of the displacement"),
+    "quintic": both_units("N/m5", "N m/rad5", "restoring in {dof} with the fifth power of the displacement"),
+    "pitch_squared": both_units(
+        "N/rad2", "", "pitch stiffness per metre of heave, and force in {dof} with the square of pitch"
+    ),
 }
 HEAVE_ONLY_PARAMETERS = ("even_quadratic", "pitch_squared")
 
@@ -53,9 +55,9 @@ class NonlinearHydrostatics(AbstractLoad):
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        x = those(now.position, self.values)
+        x = dofs_only(now.position, self.values)
         even, cubic, quintic = (entries(self.values, name, 0.0) for name in ("even_quadratic", "cubic", "quintic"))
-        force = on_six(-(even + cubic * x + quintic * x**3) * x**2, self.values)
+        force = all_dofs(-(even + cubic * x + quintic * x**3) * x**2, self.values)
         if "heave" in dofs_of(self.values):
             heave, pitch = now.position[2], now.position[4]
             product = entries(self.values, "pitch_squared", 0.0)[0]  # heave is the first of the three

@@ -17,7 +17,7 @@ Parameters = Mapping[str, tuple[Parameter, Parameter]]
 """What a parameter means for a translation and for a rotation, by the last part of its label; {dof} is filled in."""
 
 
-def both(
+def both_units(
     translation: str,
     rotation: str,
     meaning: str,
@@ -81,12 +81,12 @@ def entries(values: Values, name: str, missing: float | None = None) -> Float[Ar
     return jnp.stack(several) if several else jnp.zeros(0)
 
 
-def those(six: Float[Array, "6"], values: Values) -> Float[Array, " k"]:
+def dofs_only(six: Float[Array, "6"], values: Values) -> Float[Array, " k"]:
     """Entries of a six-vector for the law's degrees of freedom, (k,)."""
     return six[np.array([DOFS.index(dof) for dof in dofs_of(values)], dtype=int)]
 
 
-def on_six(some: Float[Array, " k"], values: Values) -> Float[Array, "6"]:
+def all_dofs(some: Float[Array, " k"], values: Values) -> Float[Array, "6"]:
     """Six-vector from values over the law's degrees of freedom, 0 on the others.
 
     By a product: scatters are slow on a CPU.

@@ -7,12 +7,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "strength": both("N s/m", "N m s/rad", "largest radiation damping in {dof}", 0.0),
-    "frequency": both("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 30.0, 0.6),
-    "damping_ratio": both("-", "-", "width of the radiation damping in {dof}, against its frequency", 0.05, 2.0, 0.4),
+    "strength": both_units("N s/m", "N m s/rad", "largest radiation damping in {dof}", 0.0),
+    "frequency": both_units("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 30.0, 0.6),
+    "damping_ratio": both_units("-", "-", "width of the radiation damping in {dof}, against its frequency", 0.05, 2.0, 0.4),
 }
 
 
@@ -53,5 +53,5 @@ class RadiationMemory(AbstractLoad):
     def act(self, now: Instant, memory: Any) -> Action:
         strength, frequency, ratio = (entries(self.values, name) for name in PARAMETERS)
         passed, displaced = memory  # the band-passed velocity and its integral
-        rate = 2 * ratio * frequency * (those(now.velocity, self.values) - passed) - frequency**2 * displaced
-        return Action(body_force=on_six(-strength * passed, self.values), memory_rate=jnp.stack([rate, passed]))
+        rate = 2 * ratio * frequency * (dofs_only(now.velocity, self.values) - passed) - frequency**2 * displaced
+        return Action(body_force=all_dofs(-strength * passed, self.values), memory_rate=jnp.stack([rate, passed]))

@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Self
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, entries, nulls
 
-PARAMETERS = {"force": both("N", "N m", "constant load on the reference point in {dof}, earth axes")}
+PARAMETERS = {"force": both_units("N", "N m", "constant load on the reference point in {dof}, earth axes")}
 
 
 class StaticForce(AbstractLoad):
@@ -36,4 +36,4 @@ class StaticForce(AbstractLoad):
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(force=on_six(entries(self.values, "force"), self.values))
+        return Action(force=all_dofs(entries(self.values, "force"), self.values))

@@ -6,11 +6,13 @@ from typing import Any, ClassVar
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "coefficient": both("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0),
-    "steady": both("-", "-", "share of it in {dof} that goes with the waves' mean square, not their envelope", 0.0, 1.0, 1.0),
+    "coefficient": both_units("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0),
+    "steady": both_units(
+        "-", "-", "share of it in {dof} that goes with the waves' mean square, not their envelope", 0.0, 1.0, 1.0
+    ),
 }
 
 
@@ -47,4 +49,4 @@ class WaveDriftDamping(AbstractLoad):
             return Action()
         coefficient, steady = entries(self.values, "coefficient"), entries(self.values, "steady", 1.0)
         square = steady * now.drift[3] + (1 - steady) * now.drift[0]
-        return Action(body_force=on_six(-coefficient * square * those(now.velocity, self.values), self.values))
+        return Action(body_force=all_dofs(-coefficient * square * dofs_only(now.velocity, self.values), self.values))

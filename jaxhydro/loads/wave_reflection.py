@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Parameter
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, StillWater
-from jaxhydro.waves.support_sea import Returned, SupportSea
+from jaxhydro.waves.support_sea import Reflection, SupportSea
 
 COEFFICIENT, DELAY, SEEN = "wave_reflection.coefficient", "wave_reflection.delay", "wave_reflection.seen"
 DEFAULT_DELAY, MAX_DELAY = 60.0, 600.0  # s
@@ -112,5 +112,5 @@ class WaveReflection(AbstractLoad):
         if isinstance(sea, StillWater):
             return sea
         if isinstance(sea, SupportSea):  # which knows times of its clock only
-            return replace(sea, back=Returned(share, delay, seen, sea.middle))
+            return replace(sea, back=Reflection(share, delay, seen, sea.middle))
         return ReflectedSea(sea, sea.direction(), share, delay, seen, jnp.zeros(()))

@@ -22,7 +22,7 @@ CLEAR_RATIO = 5.0  # times nearer, for a doubt about the weight
 MIN_NOTED_STIFFNESS = 1e-3  # of C44 and C55, from which C46 and C56 are worth a note
 
 
-class StaticsOfFile(NamedTuple):
+class FileStatics(NamedTuple):
     """Hydrostatics with what their file says, its stiffness (N/m, N, N m/rad; None: no file), and what is to be known."""
 
     declared: schema.Hydrostatics
@@ -30,10 +30,10 @@ class StaticsOfFile(NamedTuple):
     remarks: tuple[Remark, ...]
 
 
-def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> StaticsOfFile:
+def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> FileStatics:
     """Fill hydrostatics with what their file has and the platform file does not say itself. Raises InputError."""
     if not declared.file:
-        return StaticsOfFile(declared, None, ())
+        return FileStatics(declared, None, ())
     notes: list[str] = []
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
@@ -53,7 +53,7 @@ def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> Stati
     if off > MIN_NOTED_STIFFNESS * np.abs(np.diag(found.stiffness)).max():
         notes.append(f"{declared.file}: C46 and C56 are left out: they follow from mass and buoyancy off the centreline")
     told = tuple(map(Remark, [*notes, *said]))
-    return StaticsOfFile(declared.model_copy(update=given), found.stiffness, told)
+    return FileStatics(declared.model_copy(update=given), found.stiffness, told)
 
 
 def _values(declared: schema.Hydrostatics, found: FileHydrostatics, water: schema.Water) -> tuple[dict[str, float], list[str]]:

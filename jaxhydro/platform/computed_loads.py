@@ -31,7 +31,7 @@ from jaxhydro.remarks import Remark, as_warnings
 MAX_MISFIT = 0.25  # misfit from which on a state space is none of the coefficients
 
 
-class Realised(NamedTuple):
+class RealisedRadiation(NamedTuple):
     """A file's radiation: its coefficients, a state space for them, and what is to be known of it."""
 
     coefficients: RadiationCoefficients
@@ -39,7 +39,7 @@ class Realised(NamedTuple):
     remarks: tuple[Remark, ...]
 
 
-def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRadiation, Realised]:
+def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRadiation, RealisedRadiation]:
     """The radiation that a platform file declares, and what it was made from.
 
     Raises:
@@ -54,7 +54,7 @@ def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRa
 
 
 @lru_cache(maxsize=8)
-def _realised(declared: schema.Radiation, stamp: int, density: float) -> Realised:
+def _realised(declared: schema.Radiation, stamp: int, density: float) -> RealisedRadiation:
     source, notes = declared.file, list[str]()
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
@@ -73,7 +73,7 @@ def _realised(declared: schema.Radiation, stamp: int, density: float) -> Realise
         hint = doubts[0].removeprefix(f"{source}: ") if doubts else _column(declared)
         raise InputError(source, [Problem("radiation.order", "enough states to follow the coefficients", wrong, hint)])
     doubts += asymmetry(found, source)
-    return Realised(found, space, (*as_warnings(doubts), *map(Remark, notes)))
+    return RealisedRadiation(found, space, (*as_warnings(doubts), *map(Remark, notes)))
 
 
 def _column(declared: schema.Radiation) -> str:

@@ -193,7 +193,7 @@ class StiffnessMatrix(Schema):
 Body = Annotated[Count | Text, Field(description="a body's name, or in WAMIT's files its number from 1")]
 
 
-class OfFile(Schema):
+class FromFile(Schema):
     """What another program computed, in a `file` beside the platform file: WAMIT's or Capytaine's `format`, and which `body`
     of several it is. WAMIT's files are of ULEN `length` (m), and `by` says what their first column is."""
 
@@ -229,7 +229,7 @@ class OfFile(Schema):
         return self
 
 
-class Hydrostatics(OfFile):
+class Hydrostatics(FromFile):
     """What replaces the values worked out from members and mass: m3, N/m, N m/rad (`_buoyancy`: without the weight). What is
     not given is taken from the `file`, where there is one. `weight`: whether a .hst file's C44 and C55 include it."""
 
@@ -258,7 +258,7 @@ class Hydrostatics(OfFile):
         return self
 
 
-class Radiation(OfFile):
+class Radiation(FromFile):
     """Radiation damping computed by another program: WAMIT's `.1` or Capytaine's `.nc`, followed to `tolerance` by a state
     space of at most `order` states. `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
 
@@ -285,7 +285,7 @@ class Drift(Schema):
     use: Literal["load", "candidate"] = "load"
 
 
-class Excitation(OfFile):
+class Excitation(FromFile):
     """First-order wave forces computed by another program, in place of the strips': WAMIT's `.3` or Capytaine's `.nc`, for
     waves of a `heading` (deg). `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
 

@@ -19,7 +19,7 @@ from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.second_order import elevation_spectrum
 
 
-class Moved(NamedTuple):
+class SeaMotion(NamedTuple):
     """Motion in one sea.
 
     Attributes:
@@ -31,18 +31,26 @@ class Moved(NamedTuple):
     bound: Complex[np.ndarray, " b"] | None
 
 
-def in_halves(model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float) -> list[Moved | None]:
-    """`together`, with half as many seas at once where memory runs out."""
+def simulate_in_halves(
+    model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+) -> list[SeaMotion | None]:
+    """`simulate_together`, with half as many seas at once where memory runs out."""
     if not seas:
         return []
     try:
-        return together(model, seas, times, limit)
+        return simulate_together(model, seas, times, limit)
     except jax.errors.JaxRuntimeError:
         half = len(seas) // 2
-        return in_halves(model, seas[:half], times, limit) + in_halves(model, seas[half:], times, limit) if half else [None]
+        return (
+            simulate_in_halves(model, seas[:half], times, limit) + simulate_in_halves(model, seas[half:], times, limit)
+            if half
+            else [None]
+        )
 
 
-def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float) -> list[Moved | None]:
+def simulate_together(
+    model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+) -> list[SeaMotion | None]:
     """Simulate seas that differ in amplitudes, phases and heading only, at once per heading.
 
     Args:
@@ -54,7 +62,7 @@ def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray
     Returns:
         One motion per sea. None where the platform leaves the box that its sea was prepared for, or has no equilibrium.
     """
-    found: list[Moved | None] = [None] * len(seas)
+    found: list[SeaMotion | None] = [None] * len(seas)
     alike: dict[Any, list[tuple[int, Any]]] = {}
     for i, sea in enumerate(seas):
         waves = sea.components
@@ -68,14 +76,14 @@ def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray
         alike.setdefault((float(waves.heading[0]), jax.tree.structure(own), shape), []).append((i, own))
     points, at = jnp.asarray(model.hull.extremities()), jnp.asarray(times)
     for same in alike.values():
-        shared, step, steps = shared_by(model, seas[same[0][0]], times, limit)
+        shared, step, steps = shared_preparation(model, seas[same[0][0]], times, limit)
         padded = [own for _, own in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
         own, axes = _stacked(padded)
         position, reached, bound = _vectorised(own, axes, len(padded), shared, points, at, jnp.asarray(step), steps)
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
-                found[i] = Moved(moved, spectrum)
+                found[i] = SeaMotion(moved, spectrum)
     return found
 
 
@@ -84,7 +92,9 @@ def power_of_two(count: int) -> int:
     return 1 << (count - 1).bit_length()
 
 
-def shared_by(model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float) -> tuple[Preparation, float, int]:
+def shared_preparation(
+    model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
+) -> tuple[Preparation, float, int]:
     """Preparation that all seas like this one share, with size (s) and number of the time steps."""
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     instants = clock("ab4", float(times[0]), step, steps)

@@ -12,9 +12,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from jaxhydro.cli.calibrated_model import Used, with_calibration
+from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import Asked, build_sea
+from jaxhydro.dynamics.requested_sea import RequestedSea, build_sea
 from jaxhydro.dynamics.simulate import largest_step, simulate
 from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.environment import DOFS
@@ -23,9 +23,9 @@ from jaxhydro.loads import MooringLines
 from jaxhydro.platform.build import model_of
 from jaxhydro.platform.schema import load_platform
 from jaxhydro.rotations import rotation
-from jaxhydro.sweep.at_once import in_halves, shared_by
+from jaxhydro.sweep.at_once import shared_preparation, simulate_in_halves
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.run_statistics import Kept, kept_of
+from jaxhydro.sweep.run_statistics import RunResults, run_results
 from jaxhydro.units import for_people
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of
@@ -49,7 +49,7 @@ class Setup(NamedTuple):
     model: Model
     times: Float[np.ndarray, " t"]
     limit: float
-    calibrated: Used | None
+    calibrated: UsedCalibration | None
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -115,42 +115,42 @@ def sea_of(setup: Setup, run: Run) -> IrregularSea:
     plan, case = setup.plan, run.case
     kind = plan.spectrum.replace("_", "-")
     how = (plan.low, plan.cutoff, plan.order, plan.stretching, case.heading, plan.start)
-    asked = Asked(case.hs, case.tp, case.gamma, kind, run.seed, plan.amplitudes, *how)
+    asked = RequestedSea(case.hs, case.tp, case.gamma, kind, run.seed, plan.amplitudes, *how)
     return build_sea(setup.model, asked, plan.duration).sea
 
 
-def outcome(setup: Setup, run: Run) -> Kept | str:
+def run_outcome(setup: Setup, run: Run) -> RunResults | str:
     """Results of one run, or the reason why it failed."""
     try:
         sea = sea_of(setup, run)
         position = np.asarray(simulate(setup.model, setup.times, sea, step=setup.limit).position)
-        return _kept(setup, run, sea, position, elevation(sea, setup.times))
+        return _results(setup, run, sea, position, elevation(sea, setup.times))
     except Exception as error:  # whatever it is, it is this run's, and the others go on
-        return reason_of(error)
+        return failure_reason(error)
 
 
-def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
+def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
     """Results of several runs simulated at once, for GPUs.
 
-    They differ from those of `outcome` by rounding.
+    They differ from those of `run_outcome` by rounding.
     """
-    found: dict[int, Kept | str] = {}
+    found: dict[int, RunResults | str] = {}
     seas = {}
     for run in runs:
         try:
             seas[run.number] = sea_of(setup, run)
         except Exception as error:
-            found[run.number] = reason_of(error)
-    every = dict(zip(seas, in_halves(setup.model, list(seas.values()), setup.times, setup.limit)))
+            found[run.number] = failure_reason(error)
+    every = dict(zip(seas, simulate_in_halves(setup.model, list(seas.values()), setup.times, setup.limit)))
     for run in runs:
         if (moved := every.get(run.number)) is not None:
             sea = seas[run.number]
             try:
-                found[run.number] = _kept(setup, run, sea, moved.position, elevation(sea, setup.times, moved.bound))
+                found[run.number] = _results(setup, run, sea, moved.position, elevation(sea, setup.times, moved.bound))
             except Exception as error:
-                found[run.number] = reason_of(error)
+                found[run.number] = failure_reason(error)
         elif run.number in seas:  # out of the box that its sea was made for, or without equilibrium
-            found[run.number] = outcome(setup, run)
+            found[run.number] = run_outcome(setup, run)
     return [found[run.number] for run in runs]
 
 
@@ -158,11 +158,11 @@ def prepared_for(
     model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
 ) -> tuple[SupportSea, float, int]:
     """Sea prepared for the model's hull, with size (s) and number of the steps, as in `simulate`."""
-    shared, step, steps = shared_by(model, sea, times, limit)
+    shared, step, steps = shared_preparation(model, sea, times, limit)
     return shared.of(sea.components), step, steps
 
 
-def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wave: np.ndarray) -> Kept:
+def _results(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wave: np.ndarray) -> RunResults:
     plan, times = setup.plan, setup.times
     if not (numbers := np.isfinite(position).all(axis=1)).all():
         raise ValueError(f"the motion grows beyond all bounds at {times[np.argmin(numbers)]:.4g} s: a smaller step, perhaps")
@@ -171,7 +171,7 @@ def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wave:
         model = setup.model.in_sea(state_of(sea.components))
         tension = np.asarray(_tensions(model, jnp.asarray(position)))
         channels |= {f"line{i + 1}": column for i, column in enumerate(tension.T)}
-    kept = kept_of(times, plan.start, channels, run.case.tp, plan.exponents, plan.equivalent_frequency)
+    kept = run_results(times, plan.start, channels, run.case.tp, plan.exponents, plan.equivalent_frequency)
     return kept if plan.time_series else kept._replace(series=None)
 
 
@@ -218,7 +218,7 @@ def _tensions(model: Model, position: Float[Array, "t 6"]) -> Float[Array, "t l"
     return jax.vmap(lambda q: lines.tension(q, rotation(q[3:]))[0])(position)
 
 
-def reason_of(error: Exception) -> str:
+def failure_reason(error: Exception) -> str:
     """Reason why a run failed, in one line."""
     if isinstance(error, InputError):
         return "; ".join(f"expected {problem.expected}, found {problem.found}" for problem in error.problems)

@@ -43,7 +43,7 @@ def named(state: State) -> str:
     return f"Hs {hs:g} m, Tp {tp:g} s" + ("" if gamma is None else f", gamma {gamma:g}")
 
 
-def runs_named(state: State, headings: Sequence[float], seeds: Sequence[int]) -> str:
+def runs_in_words(state: State, headings: Sequence[float], seeds: Sequence[int]) -> str:
     """Runs of one sea state in words."""
     towards = f"heading {headings[0]:g} deg" if len(headings) == 1 else f"{len(headings)} headings"
     drawn = f"seed {seeds[0]}" if len(seeds) == 1 else f"{len(seeds)} seeds"

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.sweep.worker import Found, fail_runs, simulate_runs
+from jaxhydro.sweep.worker import RunsDone, fail_runs, simulate_runs
 
 RETRIES = 3
 SCHEDULER_TIMEOUT = 30.0  # s, for the scheduler to answer
@@ -42,7 +42,7 @@ def workers_of(scheduler: str) -> int:
         return len(client.nthreads())
 
 
-def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: str) -> Iterator[Found]:
+def simulate_on_cluster(folder: Path, batches: Sequence[Sequence[int]], scheduler: str) -> Iterator[RunsDone]:
     """Simulate batches of runs on a cluster; yields each batch when it is in the store.
 
     Workers write to the store themselves and must see `folder` by the same path. The runs of a lost worker are repeated

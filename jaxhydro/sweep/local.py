@@ -10,7 +10,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from jaxhydro.sweep.worker import Found, environment, fail_runs
+from jaxhydro.sweep.worker import RunsDone, environment, fail_runs
 
 TRIES = 3  # processes that one batch may end, before its runs are given up
 
@@ -36,7 +36,7 @@ class Worker:
             start_new_session=True,
         )
 
-    def ask(self, numbers: Sequence[int]) -> Found:
+    def ask(self, numbers: Sequence[int]) -> RunsDone:
         """Simulate and store runs; a killed process is replaced, and its runs are repeated."""
         said = ""
         for _ in range(TRIES):
@@ -70,7 +70,9 @@ class Worker:
         self.process.wait()
 
 
-def simulated(folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = ()) -> Iterator[Found]:
+def simulate_locally(
+    folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = ()
+) -> Iterator[RunsDone]:
     """Simulate batches of runs on this machine; yields each batch when it is in the store.
 
     Args:
@@ -82,7 +84,7 @@ def simulated(folder: Path, batches: Sequence[Sequence[int]], workers: int, devi
     left: queue.SimpleQueue[Sequence[int]] = queue.SimpleQueue()
     for batch in batches:
         left.put(batch)
-    answers: queue.SimpleQueue[Found | BaseException] = queue.SimpleQueue()
+    answers: queue.SimpleQueue[RunsDone | BaseException] = queue.SimpleQueue()
     every = [Worker(folder, devices[i] if devices else None) for i in range(min(workers, len(batches)))]
     stopped = threading.Event()
 

@@ -24,7 +24,7 @@ MAX_RUNS_AT_ONCE = 512  # runs: that progress is seen
 WORKERS_PER_GPU = 4  # workers: while one makes statistics on its core, the others keep the GPU busy
 
 
-class Chosen(NamedTuple):
+class Workload(NamedTuple):
     """Processes and batches of a sweep.
 
     Attributes:
@@ -80,7 +80,7 @@ def bytes_of_run(setup: Setup) -> float:
     return complex_numbers * rows * supports_of(setup) * 16 + len(setup.times) * 50 * 8
 
 
-def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Chosen:
+def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Workload:
     """Number of processes and of runs at a time, as given or as fits the machine.
 
     On the CPU each core takes one run at a time; more at once are no faster. Each GPU has `WORKERS_PER_GPU` processes.
@@ -108,7 +108,7 @@ def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> C
             f"{count} process{'es' * (count > 1)} on {len(gpus)} GPU{'s' * (len(gpus) > 1)}, {taken} runs at once each: "
             f"{min(each, count) * taken * size / 1e9:.2g} of {available / 1e9:.0f} GB"
         )
-        return Chosen(count, taken, tuple(names[i % len(gpus)] for i in range(count)), size, words)
+        return Workload(count, taken, tuple(names[i % len(gpus)] for i in range(count)), size, words)
     available = float(psutil.virtual_memory().available)
     taken = 1 if batch is None else batch
     fits = max(1, min(cores, int(MEMORY_SHARE * available / (size + PROCESS_BYTES))))
@@ -117,4 +117,4 @@ def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> C
         f"{count} process{'es' * (count > 1)} on {cores} cores, {taken} run{'s' * (taken > 1)} at a time each: "
         f"{count * (size + PROCESS_BYTES) / 1e9:.2g} of {available / 1e9:.0f} GB"
     )
-    return Chosen(count, taken, (), size, words)
+    return Workload(count, taken, (), size, words)

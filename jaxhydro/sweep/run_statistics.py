@@ -18,7 +18,7 @@ BANDS = ("low_frequency", "wave_frequency")
 MAX_FREQUENCY = 0.5  # Hz, that spectra are kept to
 
 
-class Kept(NamedTuple):
+class RunResults(NamedTuple):
     """Results of one run by channel (m, deg, N).
 
     Attributes:
@@ -57,14 +57,14 @@ def bands_in(channel: str, peak_period: float) -> dict[str, tuple[float, float]]
     return bands_of(channel, peak_period) if channel in ("wave", *DOFS) else {}
 
 
-def kept_of(
+def run_results(
     time: Float[np.ndarray, " t"],
     start: float,
     channels: dict[str, Float[np.ndarray, " t"]],
     peak_period: float,
     exponents: Sequence[float],
     equivalent_frequency: float,
-) -> Kept:
+) -> RunResults:
     """Results of a run from its records.
 
     Args:
@@ -89,7 +89,7 @@ def kept_of(
         damage = equivalent_ranges(values, exponents, equivalent_frequency * (when[-1] - when[0]))
         found.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))
     of_statistics, density, areas, ranges = (np.stack(column) for column in zip(*found))
-    return Kept(of_statistics, density, areas, ranges, np.stack(list(channels.values())))
+    return RunResults(of_statistics, density, areas, ranges, np.stack(list(channels.values())))
 
 
 def equivalent_ranges(values: Float[np.ndarray, " t"], exponents: Sequence[float], cycles: float) -> Float[np.ndarray, " m"]:

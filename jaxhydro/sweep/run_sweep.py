@@ -22,17 +22,29 @@ from jaxhydro.platform.schema import builtin_platforms, load_platform
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of
 from jaxhydro.sweep.cases import named, plan_of
-from jaxhydro.sweep.local import simulated
-from jaxhydro.sweep.resources import Chosen, chosen, supports_of
-from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, alone, check_same, create, discard, open_results
+from jaxhydro.sweep.local import simulate_locally
+from jaxhydro.sweep.resources import Workload, chosen, supports_of
+from jaxhydro.sweep.store import (
+    DONE,
+    FAILED,
+    RESULTS,
+    TO_DO,
+    Inputs,
+    Store,
+    check_same,
+    create,
+    discard,
+    locked_folder,
+    open_results,
+)
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.sweep_remarks import impossible, notes, outside, shares_in_band
 from jaxhydro.sweep.sweep_schema import Sweep
-from jaxhydro.sweep.worker import Found
+from jaxhydro.sweep.worker import RunsDone
 from jaxhydro.sweep.write_sweep import summary_of, write_outputs
 
 
-class Prepared(NamedTuple):
+class PreparedSweep(NamedTuple):
     """Sweep that can be stored and run.
 
     Attributes:
@@ -84,7 +96,7 @@ class Progress(NamedTuple):
     speed: float
 
 
-class Ran(NamedTuple):
+class SessionResult(NamedTuple):
     """Result of a session.
 
     Attributes:
@@ -100,7 +112,7 @@ class Ran(NamedTuple):
     simulated: float
 
 
-def prepared(sweep: Sweep, source: str) -> Prepared:
+def prepared(sweep: Sweep, source: str) -> PreparedSweep:
     """Read the files that a sweep names, and build its model.
 
     All mistakes except those of single seas show here.
@@ -137,10 +149,10 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     remarks = (*setup.model.remarks, *outside(plan, setup.model, failing))
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     inputs = Inputs(plan, _platform_text(sweep.platform), text)
-    return Prepared(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)
+    return PreparedSweep(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)
 
 
-def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
+def opened(folder: Path, made: PreparedSweep, restart: bool = False) -> bool:
     """Make the folder's store where there is none; whether runs of this sweep are already there.
 
     Args:
@@ -173,12 +185,12 @@ def to_do(folder: Path, retry_failed: bool = False) -> list[int]:
 
 def run_all(
     folder: Path,
-    made: Prepared,
+    made: PreparedSweep,
     numbers: list[int],
-    how: Chosen,
+    how: Workload,
     scheduler: str | None = None,
     progress: Callable[[Progress], None] = lambda now: None,
-) -> Ran:
+) -> SessionResult:
     """Simulate runs; each is written to the store when it is done.
 
     Args:
@@ -201,15 +213,15 @@ def run_all(
         failed += sum(not good for _, good in found)
         speed = (done + failed) * made.inputs.plan.duration / (clock.perf_counter() - since)
         progress(Progress(earlier + done, failed, total, speed))
-    return Ran(done + failed, failed, clock.perf_counter() - since, (done + failed) * made.inputs.plan.duration)
+    return SessionResult(done + failed, failed, clock.perf_counter() - since, (done + failed) * made.inputs.plan.duration)
 
 
-def _answers(folder: Path, batches: list[list[int]], how: Chosen, scheduler: str | None) -> Iterator[Found]:
+def _answers(folder: Path, batches: list[list[int]], how: Workload, scheduler: str | None) -> Iterator[RunsDone]:
     if scheduler is None:
-        return simulated(folder, batches, how.workers, how.devices)
-    from jaxhydro.sweep.cluster import simulated_there
+        return simulate_locally(folder, batches, how.workers, how.devices)
+    from jaxhydro.sweep.cluster import simulate_on_cluster
 
-    return simulated_there(folder, batches, scheduler)
+    return simulate_on_cluster(folder, batches, scheduler)
 
 
 def run_sweep(
@@ -248,7 +260,7 @@ def run_sweep(
     source = "sweep" if isinstance(sweep, Sweep) else str(sweep)
     made = prepared(sweep if isinstance(sweep, Sweep) else load_sweep(source), source)
     folder = check_folder(out, "out")
-    with alone(folder):
+    with locked_folder(folder):
         opened(folder, made, restart)
         if numbers := to_do(folder, retry_failed):
             run_all(folder, made, numbers, chosen(made.setup, len(numbers), workers, batch), scheduler, progress)

@@ -25,7 +25,7 @@ from jaxhydro.files import staged
 from jaxhydro.fingerprint import computed_with, content_hash, fingerprint
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, Kept, bands_in, frequencies, unit
+from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, RunResults, bands_in, frequencies, unit
 
 RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2
@@ -59,7 +59,7 @@ class Inputs(NamedTuple):
 
 
 @contextmanager
-def alone(folder: Path) -> Iterator[None]:
+def locked_folder(folder: Path) -> Iterator[None]:
     """Lock the folder, made where absent, against other sweeps.
 
     Where the file system has no locks nothing is checked.
@@ -164,7 +164,7 @@ class Store:
         """Status of every run by number: TO_DO, DONE or FAILED."""
         return np.asarray(self.arrays["status"][:]).reshape(-1)
 
-    def write(self, run: Run, found: Kept | str) -> bool:
+    def write(self, run: Run, found: RunResults | str) -> bool:
         """Write the results of a run, or the reason why it failed; whether it is done."""
         at = (run.row, run.column)
         if isinstance(found, str):

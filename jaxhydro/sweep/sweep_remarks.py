@@ -11,7 +11,7 @@ from jaxhydro.dynamics.requested_sea import NOTED_SHARE, usual_cutoff
 from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.remarks import Remark
-from jaxhydro.sweep.batch import Setup, reason_of, sea_of
+from jaxhydro.sweep.batch import Setup, failure_reason, sea_of
 from jaxhydro.sweep.cases import Plan, Run, State, named
 from jaxhydro.waves.irregular import harmonics, repeat_period
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
@@ -72,7 +72,7 @@ def impossible(setup: Setup) -> dict[State, str]:
         try:
             sea_of(setup, Run(0, 0, 0, case, setup.plan.seeds[0]))
         except Exception as error:  # whatever it is, it is this sea state's
-            found[state] = reason_of(error)
+            found[state] = failure_reason(error)
     return found
 
 
@@ -106,8 +106,8 @@ def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
         state = min(cut, key=cut.__getitem__)
         yield (
             f"{_in(len(cut), total)} less than {NOTED_SHARE:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, "
-            f"and the rest is left out; least in {named(state)}, {cut[state]:.1%} or Hs {state[0] * cut[state] ** 0.5:.3g} m: see "
-            "low and cutoff"
+            f"and the rest is left out; least in {named(state)}, {cut[state]:.1%} or "
+            f"Hs {state[0] * cut[state] ** 0.5:.3g} m: see low and cutoff"
         )
 
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
-Found = list[tuple[int, bool]]  # numbers of runs, and whether they are done
+RunsDone = list[tuple[int, bool]]  # numbers of runs, and whether they are done
 SINGLE_THREAD_FLAG = "--xla_cpu_multi_thread_eigen=false"
 
 
@@ -31,22 +31,22 @@ def environment(device: str | None = None) -> dict[str, str]:
     return found
 
 
-def simulate_runs(folder: str, numbers: Sequence[int]) -> Found:
+def simulate_runs(folder: str, numbers: Sequence[int]) -> RunsDone:
     """Simulate runs and write them to the store, on a GPU all at once; whether each is done."""
     prepare()
     import jax
 
-    from jaxhydro.sweep.batch import outcome, outcomes, setup_in
+    from jaxhydro.sweep.batch import run_outcome, run_outcomes, setup_in
     from jaxhydro.sweep.store import INPUTS, Store
 
     store, setup = Store(Path(folder)), setup_in(Path(folder) / INPUTS)
     runs = [setup.plan.run(number) for number in numbers]
     if jax.default_backend() != "cpu":
-        return [(run.number, store.write(run, found)) for run, found in zip(runs, outcomes(setup, runs))]
-    return [(run.number, store.write(run, outcome(setup, run))) for run in runs]
+        return [(run.number, store.write(run, found)) for run, found in zip(runs, run_outcomes(setup, runs))]
+    return [(run.number, store.write(run, run_outcome(setup, run))) for run in runs]
 
 
-def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> Found:
+def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> RunsDone:
     """Write runs as failed, where their process was lost."""
     from jaxhydro.sweep.batch import plan_in
     from jaxhydro.sweep.store import INPUTS, Store

@@ -13,7 +13,7 @@ import jaxhydro
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.plots.style import save, style
-from jaxhydro.sweep.cases import State, runs_named
+from jaxhydro.sweep.cases import State, runs_in_words
 from jaxhydro.sweep.lifetime import Lifetime, lifetime
 from jaxhydro.sweep.store import DONE, FAILED
 from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
@@ -61,7 +61,7 @@ class Failure(NamedTuple):
     @property
     def where(self) -> str:
         """The runs in words."""
-        return runs_named(self[:3], self.headings, self.seeds)
+        return runs_in_words(self[:3], self.headings, self.seeds)
 
 
 class Summary(NamedTuple):

@@ -36,7 +36,7 @@ def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: 
     """
     count = len(record)
     edge = int(np.ceil(1 / (cutoff * step)))
-    above = np.abs(record - _passed(record, step, 0.0, cutoff))
+    above = np.abs(record - _band_passed(record, step, 0.0, cutoff))
     if count <= 4 * edge or max(above[:edge].max(), above[-edge:].max()) <= above[edge:-edge].max():
         return record
     inside = jnp.asarray(_inside(length, step, low, cutoff))
@@ -52,7 +52,7 @@ def continued(record: Float[np.ndarray, " t"], step: float, low: float, cutoff: 
     whole = np.concatenate([record, np.asarray(found)])
     near = min(int(np.ceil(END_LENGTH / (cutoff * step))), count // 2)
     ends = np.r_[:near, count - near : count]
-    missed = [float(np.linalg.norm((x - _passed(x, step, low, cutoff))[ends])) for x in (record, whole)]
+    missed = [float(np.linalg.norm((x - _band_passed(x, step, low, cutoff))[ends])) for x in (record, whole)]
     return whole if missed[0] > MIN_RINGING * missed[1] else record
 
 
@@ -61,5 +61,5 @@ def _inside(count: int, step: float, low: float, cutoff: float) -> np.ndarray:
     return ((frequency >= low - rounding) & (frequency <= cutoff + rounding)).astype(float)
 
 
-def _passed(values: np.ndarray, step: float, low: float, cutoff: float) -> np.ndarray:
+def _band_passed(values: np.ndarray, step: float, low: float, cutoff: float) -> np.ndarray:
     return np.fft.irfft(_inside(len(values), step, low, cutoff) * np.fft.rfft(values), len(values))

@@ -14,7 +14,7 @@ from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.envelope import envelope
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.sea import growth
-from jaxhydro.waves.second_order import Kind, fold
+from jaxhydro.waves.second_order import Kind, sum_over_pairs
 from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import weights
 from jaxhydro.waves.transfer import Transfer
@@ -128,7 +128,7 @@ def _spectrum(
     found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
     if order == 1:
         return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
-    real, imaginary = jnp.split(fold(waves, environment, sums, *pairs), 2, axis=1)
+    real, imaginary = jnp.split(sum_over_pairs(waves, environment, sums, *pairs), 2, axis=1)
     bound = real + 1j * imaginary
     if exciting is not None:
         bound = jnp.pad(bound, ((0, 0), (6, 0), (0, 0)))

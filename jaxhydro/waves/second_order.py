@@ -28,7 +28,7 @@ Reduce = Callable[[Float[Array, " n"], Float[Array, "2 n"], Complex[Array, " n"]
 KINDS: tuple[Kind, ...] = ("sum", "difference")
 SIGN = {"sum": 1.0, "difference": -1.0}
 MIN_BEAT = 1e-9  # beats slower than this part of their frequencies are those of equal frequencies, but for rounding
-TILE = 128  # pairs at a time in `fold`: long enough for the overhead of a step, short enough for the cache
+TILE = 128  # pairs at a time in `sum_over_pairs`: long enough for the overhead of a step, short enough for the cache
 
 
 def transfer(first: Wave, second: Wave, environment: Environment, kind: Kind) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
@@ -179,7 +179,7 @@ def _binds(beat: Float[Array, "..."], highest: float) -> Bool[Array, "..."]:
     return beat <= 2 * math.pi * highest * (1 + 1e-9)
 
 
-def fold(
+def sum_over_pairs(
     waves: Components,
     environment: Environment,
     reduce: Reduce,
@@ -269,4 +269,4 @@ def elevation_spectrum(
     def reduce(*pairs: Any) -> Complex[Array, ""]:
         return pairs[2].sum()
 
-    return fold(moved, environment, reduce, kinds, highest_difference)
+    return sum_over_pairs(moved, environment, reduce, kinds, highest_difference)

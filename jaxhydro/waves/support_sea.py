@@ -34,7 +34,7 @@ class Clock(NamedTuple):
     fine: int = 0
 
 
-class Returned(NamedTuple):
+class Reflection(NamedTuple):
     """Reflected waves: the sea mirrored about the origin, later and weaker.
 
     Attributes:
@@ -91,7 +91,7 @@ class SupportSea(AbstractSea):
     half: float = eqx.field(static=True)  # m, of the box
     forces: int = eqx.field(static=True, default=0)
     envelope: Envelope | None = None
-    back: Returned | None = None
+    back: Reflection | None = None
     apart: bool = eqx.field(static=True, default=False)
 
     def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
