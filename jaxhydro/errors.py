@@ -30,7 +30,7 @@ MAX_PRINTED_PROBLEMS = 20  # problems printed before the rest is only counted
 
 
 class Schema(BaseModel):
-    """Base of what is read from a user's file: immutable, and no key is taken that is not declared."""
+    """Base class of schemas of users' files: immutable, without undeclared keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -58,7 +58,7 @@ class Problem:
 
 
 class CheckpointWarning(UserWarning):
-    """What an earlier run reached cannot be gone on from: it is of other inputs or of another program, or damaged."""
+    """A checkpoint that cannot be resumed: it has other inputs or another program, or is damaged."""
 
 
 class InputError(Exception):
@@ -84,7 +84,10 @@ class InputError(Exception):
 
 
 class Consistent(Schema):
-    """Base of what has to fit together: `_faults` yields what does not, once every key is right by itself."""
+    """Base class of schemas whose keys must fit together.
+
+    `_faults` yields what does not fit, once every key is right by itself.
+    """
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
@@ -97,7 +100,7 @@ class Consistent(Schema):
 
 
 class Faults(ValueError):
-    """Raised by a validator that found several mistakes; each `where` is relative to what it validates."""
+    """Several mistakes found by a validator; each `where` is relative to what it validates."""
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
@@ -105,18 +108,18 @@ class Faults(ValueError):
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """The known word nearest to `word`, case aside; empty where none is near."""
+    """Known word nearest to `word`, ignoring case; empty where none is near."""
     return choices.nearest(word if isinstance(word, str) else shown(word), known)
 
 
 def suggest(word: object, known: Iterable[str]) -> str:
-    """A hint for a misspelt word: `Did you mean 'heading'?`, or nothing where no known word is near."""
+    """Hint for a misspelt word, such as `Did you mean 'heading'?`; empty where no known word is near."""
     near = nearest(word, known)
     return f"Did you mean '{near}'?" if near else ""
 
 
 def suggest_path(path: str | PathLike[str]) -> str:
-    """A hint for a path that does not exist: `Did you mean 'tank/campaign.yaml'?`, or nothing where no name is near."""
+    """Hint for a path that does not exist; empty where no name is near."""
     missing = path = Path(path)
     try:
         while not missing.parent.exists():
@@ -136,7 +139,7 @@ _repr.maxlevel, _repr.maxlist, _repr.maxdict, _repr.maxstring, _repr.maxother = 
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it: short, and in the words of the file (true, nothing)."""
+    """Value in a message: short, and in the words of the file (true, nothing)."""
     if value is None:
         return "nothing"
     if isinstance(value, bool):
@@ -155,8 +158,15 @@ KEYS = {"platform": {"members", "rigid_body"}, "campaign": {"tests", "channels"}
 
 
 def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
-    """The mapping in a YAML 1.2 file, as plain dicts, lists and scalars; `InputError` for whatever is wrong, and for one that
-    is another of KEYS than the `kind` asked for."""
+    """Mapping in a YAML 1.2 file, as plain dicts, lists and scalars.
+
+    Args:
+        path: The file.
+        kind: Kind of file that is expected, of `KEYS`; "" for any.
+
+    Raises:
+        InputError: The file cannot be read, is not a mapping, or is of another kind.
+    """
     source = str(path)
 
     def wrong(where: str, expected: str, found: str, hint: str = "") -> InputError:
@@ -202,7 +212,16 @@ def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
 
 
 def validate(model_class: type[M], data: object, source: str) -> M:
-    """`data` as a `model_class`; `InputError` of `source` with every mistake pydantic and its validators found."""
+    """Validated contents of a file.
+
+    Args:
+        model_class: Schema.
+        data: Contents to validate.
+        source: Name of the file, for errors.
+
+    Raises:
+        InputError: The contents have mistakes; all of them are listed.
+    """
     try:
         return model_class.model_validate(data)
     except ValidationError as error:

@@ -32,7 +32,7 @@ def sources() -> str:
 
 
 def computed_with() -> dict[str, str]:
-    """What computes here: hash of the packages' sources, versions of Python, this package and the libraries, precision."""
+    """Hash of the packages' sources, versions of Python and the libraries, and precision."""
     import jax
 
     found = {"source code": sources(), "Python": f"{sys.version_info.major}.{sys.version_info.minor}"}

@@ -15,7 +15,7 @@ EVERYTHING = {LEAST_TIME: 0.0, LEAST_SIZE: -1}
 
 
 class Float64Error(RuntimeError):
-    """A model is asked for while JAX computes in float32."""
+    """A model was requested while JAX computes in float32."""
 
 
 def quick_compilation() -> None:

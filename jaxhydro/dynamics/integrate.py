@@ -25,7 +25,7 @@ Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
 class Grid(eqx.Module):
-    """Motion at the ends of every step: dof positions, rates and accelerations."""
+    """Motion at the ends of all steps: positions, rates and accelerations."""
 
     start: Float[Array, ""]
     step: Float[Array, ""]
@@ -37,9 +37,13 @@ class Grid(eqx.Module):
     def at(
         self, times: Float[Array, " t"], dofs: slice | tuple[int, ...] = slice(None)
     ) -> tuple[Float[Array, "t d"], Float[Array, "t d"], Float[Array, "t d"]]:
-        """Position, rate and acceleration at `times` (s), by quintic Hermite interpolation.
+        """Position, rate and acceleration at any times, by quintic Hermite interpolation.
 
-        Its error in position is of sixth order in the step. Times outside the grid are clipped to it.
+        The error in position is of sixth order in the step. Times outside the grid are clipped to it.
+
+        Args:
+            times: Times (s), (t,).
+            dofs: Degrees of freedom that are returned.
         """
         place = (times - self.start) / self.step
         index = jnp.clip(jnp.floor(place).astype(int), 0, self.count - 1)
@@ -119,10 +123,10 @@ def integrate(
     adjoint: Adjoint = "forward",
     count: Int[Array, ""] | None = None,
 ) -> Grid:
-    """Motion over `capacity` steps of `step` seconds from `start`.
+    """Integrate the motion over `capacity` steps of `step` (s).
 
-    Simulations of different lengths share one compilation by sharing a capacity: `count` says how many steps of it are
-    taken (with adjoint "forward", and not by diffrax: there all are).
+    Simulations of different lengths share one compilation by sharing a capacity: `count` says how many of its steps are
+    taken. That holds with `adjoint` "forward" only, and not for "diffrax", which takes all steps.
     """
     check(method=(method, get_args(Method)), adjoint=(adjoint, get_args(Adjoint)))
     count = jnp.asarray(capacity) if count is None else count
@@ -134,7 +138,7 @@ def integrate(
 
 @eqx.filter_jit
 def states(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], count: int) -> State:
-    """Whole states, memories included, after 0, 1 ... `count` steps by "ab4" of `integrate`: stacked."""
+    """States, memories included, after 0, 1 ... `count` steps of four-step Adams-Bashforth, stacked."""
     y, unravel = ravel_pytree(state)
     path = adams_bashforth.direct(
         (model, sea), y, start, step, jnp.asarray(count), rate=_rate_of(unravel), capacity=count, shown=y.shape[0]
@@ -143,7 +147,14 @@ def states(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""]
 
 
 def clock(method: Method, start: float, step: float, count: int) -> Clock:
-    """When an integration over `count` steps asks for the sea."""
+    """Times at which an integration over `count` steps asks for the sea.
+
+    Args:
+        method: Integration scheme.
+        start: First time (s).
+        step: Time step (s).
+        count: Number of steps.
+    """
     check(method=(method, get_args(Method)))
     if method == "ab4":
         return Clock(start, step, count + EXTRA_STEPS, (0.0,), adams_bashforth.START_STEPS)
@@ -157,9 +168,12 @@ def clock(method: Method, start: float, step: float, count: int) -> Clock:
 
 
 def differences(values: Float[Array, "n 6"], step: Float[Array, ""]) -> Float[Array, "n 6"]:
-    """Time derivative on an even grid by five-point differences, of fourth order at the ends too. Fewer points: `gradient`.
+    """Time derivative on an even grid by five-point differences, of fourth order up to the ends.
 
-    Abramowitz and Stegun 1964, table 25.2, m = 5.
+    With fewer points it is `gradient`.
+
+    References:
+        Abramowitz and Stegun (1964), table 25.2, m = 5.
     """
     if values.shape[0] < 5:
         return jnp.asarray(jnp.gradient(values, axis=0)) / step

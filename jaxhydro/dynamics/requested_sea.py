@@ -27,20 +27,35 @@ TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
 
 
 def share_within(elevation: np.ndarray, step: float, low: float, high: float) -> float:
-    """Share of the variance of a record, sampled every `step` (s), between two frequencies (Hz)."""
+    """Fraction of a record's variance between two frequencies.
+
+    Args:
+        elevation: Elevation (m), (t,).
+        step: Sampling interval (s).
+        low: Lower frequency (Hz).
+        high: Upper frequency (Hz).
+    """
     power = np.abs(np.fft.rfft(elevation - elevation.mean())) ** 2
     frequency = np.fft.rfftfreq(len(elevation), step)
     return float(power[(frequency >= low) & (frequency <= high)].sum() / max(power.sum(), 1e-300))
 
 
 def usual_transient(duration: float, pace: float = 1.0) -> float:
-    """s, left out of statistics where nothing else is asked for."""
+    """Default time (s) that statistics leave out at the start."""
     return min(TRANSIENT * pace, 0.25 * duration)
 
 
 @dataclass(frozen=True)
 class Record:
-    """A measured elevation (m) at even times (s), the gauge's place (m), and where it was read."""
+    """Measured wave elevation.
+
+    Attributes:
+        source: File that it was read from.
+        column: Column of the file.
+        times: Times (s), (t,), even.
+        elevation: Elevation (m), (t,).
+        position: Position of the gauge (m, earth axes).
+    """
 
     source: str
     column: str
@@ -51,9 +66,22 @@ class Record:
 
 @dataclass(frozen=True)
 class RequestedSea:
-    """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
+    """Request for an irregular sea, from a spectrum or, where `hs` is None, from `record`.
 
-    low and cutoff None: those that `jaxhydro.waves.wave_bands` finds for the platform (`band`).
+    Attributes:
+        hs: Significant wave height (m), or None.
+        tp: Peak period (s), or None.
+        gamma: Peak enhancement (-), or None.
+        spectrum: Name of the spectrum.
+        seed: Seed of the random numbers.
+        amplitudes: As in `spectrum_components`.
+        low: Lowest frequency (Hz); None: by `jaxhydro.waves.wave_bands`.
+        cutoff: Highest frequency (Hz); None: by `jaxhydro.waves.wave_bands`.
+        order: 1 or 2.
+        stretching: As in `WaveSea`.
+        heading: Direction that the waves travel to (deg).
+        transient: Time (s) that statistics leave out, or None.
+        record: Measured elevation, or None.
     """
 
     hs: float | None
@@ -71,7 +99,7 @@ class RequestedSea:
     record: Record | None = None
 
     def band(self, pace: float) -> tuple[float, float]:
-        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave by `wave_bands`."""
+        """Lowest and highest frequency (Hz) for a platform of a `pace`; those not given by `wave_bands`."""
         if self.low is not None and self.cutoff is not None:
             return self.low, self.cutoff
         if self.record is not None:
@@ -84,7 +112,14 @@ class RequestedSea:
 
 
 class BuiltSea(NamedTuple):
-    """A sea, what is written about it, and the spectrum asked for (Hz -> m2/Hz; None: a record)."""
+    """Irregular sea built from a request.
+
+    Attributes:
+        sea: The sea.
+        about: What is written about it.
+        target: Spectrum asked for, from Hz to m²/Hz; None for a record.
+        notes: Notes on the sea.
+    """
 
     sea: IrregularSea
     about: dict[str, Any]
@@ -93,7 +128,16 @@ class BuiltSea(NamedTuple):
 
 
 def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
-    """The sea that is asked for. Raises InputError that names the option or the record."""
+    """Build the sea that is requested.
+
+    Args:
+        model: The platform.
+        asked: The request.
+        duration: Duration of the simulation (s).
+
+    Raises:
+        InputError: The sea is impossible; the option or the record is named.
+    """
     notes: list[str] = []
     low, cutoff = asked.band(float(model.pace))
     if asked.record is not None:
@@ -132,16 +176,22 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
 
 
 def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
-    """What is to be said of energy outside the model's tables, which goes into `about` as well."""
+    """Remarks on energy outside the model's tables; `about` gets it too."""
     found = outside_tables(model, sea.components)
     about |= {f"share_outside_{one.key}": share for one, share in found.items()}
     return [remark for one, share in found.items() if (remark := one.remark(share)) is not None]
 
 
 def usual_cutoff(height: float, gravity: float) -> float:
-    """sqrt(2 g / Hs) / 2 pi (Hz; m, m/s2): where second order of a sea is usually cut off.
+    """Usual cutoff frequency (Hz) of second-order seas, sqrt(2 g / Hs) / 2 pi.
 
-    C. T. Stansberg, Non-Gaussian extremes in numerically generated second-order random waves on deep water, ISOPE 1998.
+    Args:
+        height: Significant wave height Hs (m).
+        gravity: Acceleration of gravity g (m/s²).
+
+    References:
+        C. T. Stansberg (1998), Non-Gaussian extremes in numerically generated second-order random waves on deep water,
+            ISOPE.
     """
     return math.sqrt(2 * gravity / height) / (2 * math.pi)
 

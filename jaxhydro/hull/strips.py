@@ -40,11 +40,21 @@ FACE_WETTING_LENGTH = 0.5  # the same, in which water covers a face
 
 
 class Member(NamedTuple):
-    """One straight member: ends a, b (m), station sizes along it, and the group whose coefficients it uses.
+    """Straight member of the hull.
 
-    `stations` are fractions 0..1 of the length, `sizes` (station, 2) the extents (m) along direction 1 and 2: a diameter twice,
-    or width and height. `twist` (rad) turns the directions about the axis. `shared` names the groups whose coefficients
-    it uses in place of its own group's, by the coefficient's name, such as Ca_t.
+    Attributes:
+        name: Name of the member.
+        group: Group whose coefficients it uses.
+        circular: Whether its section is a circle or a rectangle.
+        a: Start (m), (3,).
+        b: End (m), (3,).
+        stations: Fractions (0 to 1) of the length, (n,).
+        sizes: Size (m) along directions 1 and 2 at the stations, (n, 2): a diameter twice, or width and height.
+        twist: Rotation (rad) of the directions about the axis.
+        elements: Number of load elements, or None.
+        maccamy_fuchs: Whether it diffracts waves; None: where it is vertical, circular and pierces the surface.
+        points: Strips of each of `elements`.
+        shared: Group whose coefficient is used in place of its own group's, by coefficient such as Ca_t.
     """
 
     name: str
@@ -90,13 +100,16 @@ class Member(NamedTuple):
 
     @property
     def gauge(self) -> np.ndarray:
-        """Where (m) the surface elevation is looked up for it: its axis at still water if it `fills`, else its middle."""
+        """Point (m) where the surface elevation is looked up.
+
+        It is on the axis at still water if the member `fills`, else its middle.
+        """
         if self.fills:
             return self.a + (self.b - self.a) * (-self.a[2] / (self.b[2] - self.a[2]))
         return 0.5 * (self.a + self.b)
 
     def size(self, fraction: np.ndarray) -> np.ndarray:
-        """Extents (n, 2) at fractions of the length."""
+        """Size along both directions (m) at fractions of the length, (n, 2)."""
         return np.stack([np.interp(fraction, self.stations, self.sizes[:, i]) for i in range(2)], axis=-1)
 
     @property
@@ -108,14 +121,14 @@ class Member(NamedTuple):
         return self.circular and self.axis[2] > VERTICAL_COSINE and low < 0 <= high
 
     def kinks(self) -> list[float]:
-        """Fractions of the length, strictly inside, at which the change of size along the axis is another."""
+        """Fractions of the length, strictly inside, at which the taper changes."""
         slope = np.diff(self.sizes, axis=0) / np.diff(self.stations)[:, None]
         bend = np.abs(np.diff(slope, axis=0)).max(axis=1)
         return [float(at) for at, one in zip(self.stations[1:-1], bend, strict=True) if one > 1e-9 * self.sizes.max()]
 
     @property
     def submerged(self) -> float:
-        """Share (-) of its height that is under still water at the reference position."""
+        """Fraction (-) of its height that is below still water at the reference position."""
         heights = np.concatenate(self._edges())
         low, high = float(heights.min()), float(heights.max())
         return min(1.0, max(0.0, -low / (high - low)))
@@ -131,7 +144,7 @@ class Member(NamedTuple):
 
     @property
     def pierced(self) -> bool:
-        """Whether still water cuts it lengthwise: a pontoon that is partly wet."""
+        """Whether still water cuts it lengthwise, as a pontoon that is partly wet."""
         return not self.column and PARTLY_WET < self.submerged < 1 - PARTLY_WET
 
     @property

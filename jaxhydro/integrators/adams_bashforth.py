@@ -23,7 +23,7 @@ STORED_SLOPES = 4 * START_STEPS + 1  # slopes that are remembered
 
 
 class _Rows:
-    """What each evaluation does: where it is taken, y + h `at` . slopes, and what it adds to y afterwards, h `add` . slopes.
+    """Coefficients of each evaluation: its point y + h `at` . slopes, and the update h `add` . slopes.
 
     Slopes are counted backwards from the newest, which `add` includes and `at` does not.
     """
@@ -51,7 +51,7 @@ ROWS = _Rows()
 
 
 def evaluations(steps: int | Int[Array, ""]) -> Any:
-    """Evaluations that `steps` steps take."""
+    """Number of evaluations in `steps` steps."""
     return steps + 3 * START_STEPS
 
 
@@ -86,7 +86,7 @@ def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool,
 
 
 def direct(driver, y, start, step, count, *, rate: Rate, capacity: int, shown: int) -> Float[Array, "n _"]:
-    """As `runge_kutta.direct`."""
+    """Path without checkpoints, as `runge_kutta.direct`."""
     return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
 
 
@@ -133,8 +133,7 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int):
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Float[Array, "n s"]:
-    """The same path, all of it, for a reverse gradient: what is carried at the beginning of blocks is kept, the rest
-    recomputed."""
+    """The same path for a reverse gradient: states at block starts are stored, the others recomputed."""
 
     def advance(carry, index):
         y, slopes = carry

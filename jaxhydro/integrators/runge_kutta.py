@@ -21,7 +21,7 @@ Rate = Callable[[Any, Float[Array, ""], Float[Array, " s"]], tuple[Float[Array, 
 
 
 class Scheme(NamedTuple):
-    """A Butcher tableau: nodes, weights, and the strictly lower triangular coefficients row by row."""
+    """Butcher tableau: nodes, weights, and the strictly lower triangular coefficients row by row."""
 
     nodes: tuple[float, ...]
     weights: tuple[float, ...]
@@ -37,9 +37,10 @@ RK4 = Scheme((0.0, 0.5, 0.5, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6), ((), (0.5,), (0
 
 @functools.cache
 def tsit5() -> Scheme:
-    """Tsitouras 2011, Computers and Mathematics with Applications 62, 770-775, table 1: diffrax's tableau.
+    """Tsitouras 5(4) scheme with diffrax's tableau, without its last stage, which has weight 0.
 
-    Without its last stage, which is the first of the next step and weighs nothing.
+    References:
+        Tsitouras (2011), Computers and Mathematics with Applications 62, 770-775, table 1.
     """
     import diffrax  # takes a fifth of a second
 
@@ -173,7 +174,7 @@ def linearised(
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int) -> Float[Array, "n s"]:
-    """The same path, all of it, for a reverse gradient: states at the beginning of blocks are kept, the rest recomputed."""
+    """The same path for a reverse gradient: states at block starts are stored, the others recomputed."""
 
     def advance(y, index):
         return _step(driver, y, start + step * index, step, rate, scheme, False)[0], y

@@ -25,10 +25,10 @@ ORIGIN_TOLERANCE = 1e-6  # m
 
 
 class Dataset(NamedTuple):
-    """A dataset of one body: its variables (xarray), the file, the body's name ("" where it has none), and notes on it.
+    """Capytaine dataset of one body: its variables (xarray), file, body name ("" where none), and notes.
 
-    `origin` (x, y; m) is where the platform's reference point lies in the dataset, at still water level. `shift` (6, 6) takes
-    velocities of that point to those of the point that the dataset's motions are about.
+    `origin` (x, y; m) is the platform's reference point in the dataset, at still water level. `shift` (6, 6) maps velocities
+    of that point to those of the point that the dataset's motions are about.
     """
 
     data: Any
@@ -43,7 +43,7 @@ class Dataset(NamedTuple):
         return InputError(self.source, [Problem(where, expected, found, hint)])
 
     def scale(self, density: float | None) -> float:
-        """By what forces of the dataset's own water are multiplied for water of another density (kg/m3)."""
+        """Factor from forces in the dataset's water to forces in water of another density (kg/m³)."""
         own = self.number("rho")
         if density is None or own is None or abs(density / own - 1) < MAX_WATER_MISMATCH:
             return 1.0
@@ -51,7 +51,7 @@ class Dataset(NamedTuple):
         return density / own
 
     def number(self, name: str) -> float | None:
-        """A number that the dataset has once; None where it has not."""
+        """Scalar of the dataset; None where it has none."""
         if name not in self.data.variables or self.data[name].size != 1:
             return None
         value = float(self.data[name].values.reshape(()))

@@ -21,11 +21,12 @@ CHECKED_FREQUENCIES = 400  # frequencies at which that is looked for
 
 
 class Realisation(NamedTuple):
-    """dr/dt = rates r + drive v, force = -output r: a state space for the retardation function; v velocity (m/s, rad/s).
+    """State space of a retardation function: dr/dt = rates r + drive v, force = -output r.
 
-    `misfit` is the largest difference, of any pair of motions, between its step response and the computed one: root mean square
-    over time, over that of the two motions' own (their geometric mean). `least_damping` is the least eigenvalue of its
-    radiation damping at any frequency over the largest, each motion scaled alike: it gives energy where that is below 0.
+    v is the velocity (m/s, rad/s). `misfit` is the largest difference, of any pair of motions, between its step response and
+    the computed one. It is the root mean square over time, over the geometric mean of the two motions' own. `least_damping`
+    is the least eigenvalue of its radiation damping at any frequency over the largest, each motion scaled alike. Below 0 the
+    state space generates energy.
     """
 
     rates: Float[np.ndarray, "n n"]
@@ -45,15 +46,18 @@ class Realisation(NamedTuple):
 
 
 class Damping(NamedTuple):
-    """Radiation damping (N s/m, N s, N m s/rad) at even frequencies (rad/s) from 0 to where nothing is left."""
+    """Radiation damping (N s/m, N s, N m s/rad) at even frequencies (rad/s) from 0 to where it vanishes."""
 
     omega: Float[np.ndarray, " w"]
     damping: Float[np.ndarray, "w 6 6"]
 
     @classmethod
     def of(cls, coefficients: RadiationCoefficients) -> "Damping":
-        """By a cubic spline between the file's frequencies, symmetric, even about 0 where there is none; beyond the last one it
-        falls with the fourth power of frequency."""
+        """Damping by a cubic spline between the file's frequencies.
+
+        It is symmetric, and even about frequency 0 where the file has none. Beyond the last frequency it falls with the
+        fourth power of frequency.
+        """
         from scipy.interpolate import CubicSpline
 
         last = coefficients.omega[-1]
@@ -65,14 +69,16 @@ class Damping(NamedTuple):
         return cls(omega, inside * (last / np.maximum(omega, last))[:, None, None] ** TAIL_POWER)
 
     def kernel(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 6 6"]:
-        """K(t) = 2/pi int_0^inf B cos(omega t) d omega (N/m, N, N m/rad) at times (s)."""
+        """Retardation function K(t) = 2/pi int_0^inf B cos(omega t) d omega (N/m, N, N m/rad) at times (s)."""
         weight = np.full(len(self.omega), self.omega[1])
         weight[[0, -1]] *= 0.5
         return 2 / math.pi * np.tensordot(np.cos(np.outer(time, self.omega)) * weight, self.damping, 1)
 
     def step_response(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 6 6"]:
-        """int_0^t K ds = 2/pi int_0^inf B/omega sin(omega t) d omega (N s/m, N s, N m s/rad): minus the force at times (s)
-        after a velocity of 1 was begun with."""
+        """Step response int_0^t K ds = 2/pi int_0^inf B/omega sin(omega t) d omega.
+
+        Its units are N s/m, N s, N m s/rad. It is minus the force at times (s) after a unit velocity began.
+        """
         weight = np.concatenate([[0.0], self.omega[1] / self.omega[1:]])
         return 2 / math.pi * np.tensordot(np.sin(np.outer(time, self.omega)) * weight, self.damping, 1)
 

@@ -102,7 +102,7 @@ class Buoyancy(AbstractLoad):
         return volume, volume * self.tube - first * towards
 
     def _frustum(self, reach: Float[Array, " p"]) -> tuple[Float[Array, " p"], Float[Array, " p"]]:
-        """Volume (m³) of pieces up to `reach` (m) from their lower ends, and its first moment (m⁴) about these."""
+        """Volume (m³) of pieces up to `reach` (m) from their lower ends, and its first moment (m⁴)."""
         (a, b), (p, q) = self.size, self.taper
         area = [self.shape * part for part in (a * b, a * q + b * p, p * q)]  # by power of the distance
         parts = [[part * reach ** (i + j) / (i + j) for i, part in enumerate(area)] for j in (1, 2)]

@@ -13,7 +13,9 @@ from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 def spread(
     elements: Elements, values: Mapping[str, Float[Array, ""]], symbol: str, missing: float | None = None
 ) -> Float[Array, "2 e"]:
-    """Coefficients `group.symbol_t` and `group.symbol_z` by direction and load element; `missing` where absent.
+    """Coefficients `group.symbol_t` and `group.symbol_z` by direction and load element.
+
+    Absent ones are `missing`.
 
     Raises:
         KeyError: A coefficient is absent and `missing` is None.

@@ -16,9 +16,10 @@ DEFAULT_DELAY, MAX_DELAY = 60.0, 600.0  # s
 
 
 class ReflectedSea(AbstractSea):
-    """A sea with its reflection: the mirror image about the origin, `coefficient` (-) times, `delay` (s) later.
+    """A sea with its reflection by a beach.
 
-    From the reflection, `seen` (-) times the sea itself so much later is subtracted.
+    The reflection is the mirror image about the origin, `coefficient` (-) times, `delay` (s) later. From it, `seen` (-)
+    times the sea itself so much later is subtracted.
     """
 
     sea: Any  # AbstractSea

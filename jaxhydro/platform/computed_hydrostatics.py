@@ -23,7 +23,10 @@ MIN_NOTED_STIFFNESS = 1e-3  # of C44 and C55, from which C46 and C56 are worth a
 
 
 class FileStatics(NamedTuple):
-    """Hydrostatics with what their file says, its stiffness (N/m, N, N m/rad; None: no file), and what is to be known."""
+    """Hydrostatics with the values of their file, its stiffness (N/m, N, N m/rad), and remarks.
+
+    The stiffness is None without a file.
+    """
 
     declared: schema.Hydrostatics
     stiffness: np.ndarray | None
@@ -31,7 +34,11 @@ class FileStatics(NamedTuple):
 
 
 def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> FileStatics:
-    """Fill hydrostatics with what their file has and the platform file does not say itself. Raises InputError."""
+    """Hydrostatics completed by the values of their file.
+
+    Raises:
+        InputError: The file is wrong.
+    """
     if not declared.file:
         return FileStatics(declared, None, ())
     notes: list[str] = []
@@ -99,7 +106,7 @@ def with_hydrostatics(
 
 
 def hydrostatic_stiffness(load: Buoyancy, weight_density: float) -> np.ndarray:
-    """Stiffness (N/m, N, N m/rad) of buoyancy about the upright platform, without the weight's share."""
+    """Buoyancy stiffness (N/m, N, N m/rad) about the upright platform, without the weight's part."""
     return -np.asarray(_slope(load, jnp.asarray(weight_density)))
 
 
@@ -131,7 +138,7 @@ def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.n
 
 
 def coupling_of(stiffness: np.ndarray, own: np.ndarray) -> tuple[HydrostaticCoupling, ...]:
-    """The couplings of a file's stiffness beyond those that members have (`own`); none where there are none."""
+    """Load of a file's stiffness couplings beyond those of the members (`own`), if any."""
     matrix = np.zeros((6, 6))
     for name in COUPLED:
         i, j = int(name[1]) - 1, int(name[2]) - 1

@@ -32,7 +32,7 @@ MAX_MISFIT = 0.25  # misfit from which on a state space is none of the coefficie
 
 
 class RealisedRadiation(NamedTuple):
-    """A file's radiation: its coefficients, a state space for them, and what is to be known of it."""
+    """Radiation of a file: its coefficients, a state space for them, and remarks."""
 
     coefficients: RadiationCoefficients
     space: Realisation
@@ -40,10 +40,10 @@ class RealisedRadiation(NamedTuple):
 
 
 def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRadiation, RealisedRadiation]:
-    """The radiation that a platform file declares, and what it was made from.
+    """Radiation load that a platform file declares, and what it was made from.
 
     Raises:
-        InputError: Where the file is wrong, or no state space of the declared order comes near its coefficients.
+        InputError: The file is wrong, or no state space of the declared order comes near its coefficients.
     """
     file = Path(declared.file)
     stamp = file.stat().st_mtime_ns if file.is_file() else 0
@@ -82,7 +82,11 @@ def _column(declared: schema.Radiation) -> str:
 
 
 def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[ComputedExcitation, tuple[Remark, ...]]:
-    """The excitation that a platform file declares, and what is to be known of it. Raises InputError."""
+    """Excitation load that a platform file declares, and remarks.
+
+    Raises:
+        InputError: The file is wrong.
+    """
     notes, doubts = list[str](), list[str]()
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
@@ -114,7 +118,11 @@ def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[Com
 
 
 def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer, tuple[Remark, ...]]:
-    """The slow drift that a platform file declares, and what is to be known of it. Raises InputError."""
+    """Drift load that a platform file declares, and remarks.
+
+    Raises:
+        InputError: The file is wrong.
+    """
     doubts: list[str] = []
     transfer = read_transfer(
         declared.file,

@@ -40,7 +40,7 @@ Exponent = Annotated[float, Field(strict=True, ge=-3, le=3)]
 
 
 class Water(Schema):
-    """Density, kg/m3; depth, m; gravity, m/s2."""
+    """Density (kg/m³), depth (m) and gravity (m/s²)."""
 
     density: Positive
     depth: Positive
@@ -63,7 +63,7 @@ Key = TypeVar("Key", bound=str)
 
 
 class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
-    """Entries of a 6 by 6 matrix by name, B15 in row 1 and column 5; those left out are zero."""
+    """Entries of a 6 x 6 matrix by name, such as B15 in row 1 and column 5; the others are 0."""
 
     root: dict[Key, Number] = {}
     dissipative: ClassVar[bool] = False
@@ -76,7 +76,7 @@ class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
         return self
 
     def matrix(self) -> Matrix6:
-        """The matrix; where only one of ij and ji is given, the other is its mirror."""
+        """The matrix, (6, 6); where only one of ij and ji is given, the other is equal."""
         matrix = np.zeros((6, 6))
         named = {(int(key[1]) - 1, int(key[2]) - 1): value for key, value in self.root.items()}
         for (i, j), value in named.items():
@@ -86,7 +86,7 @@ class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
 
 
 class Damping(Entries[Key], Generic[Key], frozen=True):
-    """Entries of a damping matrix: none on the diagonal is negative."""
+    """Entries of a damping matrix, not negative on the diagonal."""
 
     dissipative: ClassVar[bool] = True
 
@@ -98,14 +98,17 @@ Stiffness = Entries[Annotated[str, _key("C")]]  # N/m, N/rad, N m/rad
 
 
 class NoMooring(Schema):
-    """Nothing holds the platform."""
+    """No mooring."""
 
     kind: Literal["none"] = "none"
 
 
 class Line(Schema):
-    """A straight massless spring from anchor to fairlead, m: stiffness, N/m, and the pretension, N, it has at the
-    reference position; or axial stiffness EA, N, and unstretched length, m."""
+    """Straight massless spring from anchor to fairlead (m).
+
+    It has a stiffness (N/m) and the pretension (N) at the reference position; or the axial stiffness EA (N) and the
+    unstretched length (m).
+    """
 
     anchor: Vector
     fairlead: Vector
@@ -115,8 +118,11 @@ class Line(Schema):
     unstretched_length: Positive | None = None
 
     def spring(self, length_at_rest: float | None = None) -> tuple[float, float]:
-        """Stiffness, N/m, and unstretched length, m. The pretension holds at `length_at_rest`, m: anchor to fairlead
-        at the reference position if left out."""
+        """Stiffness (N/m) and unstretched length (m).
+
+        The pretension holds at `length_at_rest` (m); default: the distance from anchor to fairlead at the reference
+        position.
+        """
         if self.axial_stiffness is not None and self.unstretched_length is not None:
             return self.axial_stiffness / self.unstretched_length, self.unstretched_length
         assert self.stiffness is not None and self.pretension is not None
@@ -125,7 +131,10 @@ class Line(Schema):
         return self.stiffness, length_at_rest - self.pretension / self.stiffness
 
     def slack(self) -> tuple[float, float] | None:
-        """Distance from anchor to fairlead at the reference position and unstretched length, m, if the line is slack there."""
+        """Distance from anchor to fairlead and unstretched length (m) of a slack line, or None.
+
+        The distance is that at the reference position.
+        """
         distance, unstretched = float(np.linalg.norm(np.subtract(self.anchor, self.fairlead))), self.spring()[1]
         return (distance, unstretched) if unstretched > distance * (1 + 1e-9) else None
 
@@ -148,13 +157,13 @@ class Line(Schema):
 
 
 class LinearSprings(Schema):
-    """Straight lines with their geometric law."""
+    """Mooring of straight elastic lines."""
 
     kind: Literal["linear_springs"]
     lines: Annotated[tuple[Line, ...], Field(min_length=1)]
 
     def slackness(self) -> str:
-        """What is to be said of lines that are slack at the reference position; nothing where none is."""
+        """Warning of lines that are slack at the reference position; "" where none is."""
         slack = [(i, *found) for i, line in enumerate(self.lines, 1) if (found := line.slack()) is not None]
         if not slack:
             return ""
@@ -179,7 +188,7 @@ Square = Annotated[
 
 
 class StiffnessMatrix(Schema):
-    """A mooring about the reference position: force on the platform = preload - stiffness @ motion."""
+    """Mooring about the reference position: force on the platform = preload - stiffness @ motion."""
 
     kind: Literal["stiffness_matrix"]
     stiffness: Square = Field(description="6 rows of 6 numbers, or entries C11 to C66")
@@ -194,8 +203,11 @@ Body = Annotated[Count | Text, Field(description="a body's name, or in WAMIT's f
 
 
 class FromFile(Schema):
-    """What another program computed, in a `file` beside the platform file: WAMIT's or Capytaine's `format`, and which `body`
-    of several it is. WAMIT's files are of ULEN `length` (m), and `by` says what their first column is."""
+    """Results of another program in a `file` beside the platform file.
+
+    `format` is WAMIT's or Capytaine's, `body` which of several bodies. WAMIT's files have the unit of length `length` (ULEN,
+    m); `by` says what their first column is.
+    """
 
     endings: ClassVar[dict[str, str]]  # of files, and the format that each means
     wamit_only: ClassVar[tuple[str, ...]] = ("length", "by")
@@ -207,7 +219,7 @@ class FromFile(Schema):
 
     @property
     def kind(self) -> str | None:
-        """The format, or that of the file's ending."""
+        """The format; by default that of the file's ending."""
         return self.format or self.endings.get(Path(self.file).suffix.lower())
 
     @model_validator(mode="after")
@@ -230,8 +242,11 @@ class FromFile(Schema):
 
 
 class Hydrostatics(FromFile):
-    """What replaces the values worked out from members and mass: m3, N/m, N m/rad (`_buoyancy`: without the weight). What is
-    not given is taken from the `file`, where there is one. `weight`: whether a .hst file's C44 and C55 include it."""
+    """Hydrostatics in place of those of members and mass (m³, N/m, N m/rad).
+
+    `_buoyancy` values are without the weight. Values that are not given come from the `file`, where there is one. `weight`:
+    whether C44 and C55 of a .hst file include it.
+    """
 
     endings = {".hst": "wamit", ".out": "wamit", ".nc": "capytaine"}
     wamit_only = ("length", "weight")
@@ -259,8 +274,11 @@ class Hydrostatics(FromFile):
 
 
 class Radiation(FromFile):
-    """Radiation damping computed by another program: WAMIT's `.1` or Capytaine's `.nc`, followed to `tolerance` by a state
-    space of at most `order` states. `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+    """Radiation damping from another program: WAMIT's `.1` or Capytaine's `.nc`.
+
+    A state space of at most `order` states follows it to `tolerance`. `use`: part of the model, or a candidate of
+    `diagnose`.
+    """
 
     endings = {".1": "wamit", ".nc": "capytaine"}
 
@@ -271,10 +289,12 @@ class Radiation(FromFile):
 
 
 class Drift(Schema):
-    """Difference-frequency second-order forces computed by another program: `file`, beside the platform file, as WAMIT's
-    `.12d` of ULEN `length` (m), for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation.
-    `by` says what its first two columns are. `use`: part of the model, or a candidate that `diagnose` may find to be
-    missing."""
+    """Difference-frequency second-order forces from another program: WAMIT's `.12d`.
+
+    They are for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation. The file has the unit
+    of length `length` (ULEN, m); `by` says what its first two columns are. `use`: part of the model, or a candidate of
+    `diagnose`.
+    """
 
     file: Text
     length: Positive = 1.0
@@ -286,8 +306,11 @@ class Drift(Schema):
 
 
 class Excitation(FromFile):
-    """First-order wave forces computed by another program, in place of the strips': WAMIT's `.3` or Capytaine's `.nc`, for
-    waves of a `heading` (deg). `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+    """First-order wave forces from another program, in place of the strips'.
+
+    The file is WAMIT's `.3` or Capytaine's `.nc`, for waves of a `heading` (deg). `use`: part of the model, or a candidate
+    of `diagnose`.
+    """
 
     endings = {".3": "wamit", ".nc": "capytaine"}
 
@@ -301,14 +324,14 @@ WAVE_FILE_KEYS = ("excitation", "drift")  # ... that is of waves of one heading
 
 
 class ReferenceSea(Schema):
-    """The sea state in which coefficients are as declared: m, s."""
+    """Sea state (m, s) in which coefficients are as declared."""
 
     significant_height: Positive
     peak_period: Positive
 
 
 class Exponents(Schema):
-    """Powers of significant height and peak period, each over the reference's, that multiply a coefficient."""
+    """Exponents of significant height and peak period, each over the reference's, in a coefficient."""
 
     significant_height: Exponent | None = None
     peak_period: Exponent | None = None

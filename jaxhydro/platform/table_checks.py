@@ -28,7 +28,10 @@ KINDS: tuple[str, ...] = get_args(By)
 
 
 class LongWaves(NamedTuple):
-    """What long waves act on: heave stiffness rho g A (N/m), mass (kg), and the water's depth (m) and gravity (m/s2)."""
+    """Platform properties that decide the forces of long waves.
+
+    They are heave stiffness rho g A (N/m), mass (kg), water depth (m) and gravity (m/s²).
+    """
 
     stiffness: float
     mass: float
@@ -184,8 +187,7 @@ class Column(NamedTuple):
 
 
 def same_columns(columns: Sequence[Column]) -> list[str]:
-    """Warnings where two files have the same numbers in their first column, or one has some of the other's, and these were
-    declared to be different things."""
+    """Warnings where two files share first-column values that were declared to be different quantities."""
     said = []
     for one, other in combinations(columns, 2):
         few, many = sorted((as_column(one.omega, one.by), as_column(other.omega, other.by)), key=len)
