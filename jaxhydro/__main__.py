@@ -1,4 +1,4 @@
-"""`python -m jaxhydro` is `jaxhydro`."""
+"""Entry point of `python -m jaxhydro`, the same as `jaxhydro`."""
 
 from jaxhydro.cli.app import main
 

@@ -1,4 +1,4 @@
-"""Words of which a few are known: what is none of them is refused, with the nearest that is."""
+"""Checks of options that are one of a few words, with the nearest word as a hint."""
 
 import difflib
 from collections.abc import Iterable
@@ -6,31 +6,35 @@ from typing import Any
 
 import numpy as np
 
-NEAR = 0.6  # `difflib`'s ratio from which words are alike
-LISTED = 40  # known words that a message lists at most
+MIN_SIMILARITY = 0.6  # `difflib`'s ratio from which words are alike
+MAX_LISTED_WORDS = 40  # known words that a message lists at most
 
 
 class UnknownName(KeyError, ValueError):
-    """A name or a word that is none of those that are known; the message lists them, and suggests the nearest."""
+    """An unknown name or option; the message lists the known ones and suggests the nearest."""
 
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """The known word nearest to `word`, case aside; empty where none is near."""
+    """Known word nearest to `word`, ignoring case; empty where none is near."""
     by_lower = {name.lower(): name for name in known}
-    near = difflib.get_close_matches(word[:80].lower(), by_lower, n=1, cutoff=NEAR)
+    near = difflib.get_close_matches(word[:80].lower(), by_lower, n=1, cutoff=MIN_SIMILARITY)
     return by_lower[near[0]] if near else ""
 
 
 def unknown(kind: str, word: object, known: Iterable[str], hint: str = "") -> UnknownName:
-    """The error of a name that is none: `no degree of freedom 'pich'; there are: ... Did you mean 'pitch'?`.
+    """Error of an unknown name, such as `no degree of freedom 'pich'; ... Did you mean 'pitch'?`.
 
-    A `hint` is told in place of the nearest name.
+    Args:
+        kind: What the name is of.
+        word: The name.
+        known: Known names.
+        hint: Hint in place of the nearest name.
     """
     known = list(known)
-    listed = ", ".join(known[:LISTED]) + (", ..." if len(known) > LISTED else "") or "none"
+    listed = ", ".join(known[:MAX_LISTED_WORDS]) + (", ..." if len(known) > MAX_LISTED_WORDS else "") or "none"
     near = nearest(word, known) if isinstance(word, str) else ""
     hint = hint or (f"Did you mean {near!r}?" if near else "")
     return UnknownName(f"no {kind} {word!r}; there are: {listed}" + (f". {hint}" if hint else ""))
@@ -43,9 +47,10 @@ def _same(value: Any, one: Any) -> bool:
 
 
 def check(**chosen: tuple[Any, Iterable[Any]]) -> None:
-    """Raise UnknownName for the first argument, by its name, whose value is none of those allowed with it.
+    """Raise UnknownName for the first option whose value is not allowed.
 
-    A flag is a bool, a number no flag.
+    Args:
+        **chosen: Value and allowed values of each option. A flag is a bool; a number is no flag.
     """
     for name, (value, allowed) in chosen.items():
         allowed = tuple(allowed)

@@ -1,4 +1,4 @@
-"""The water and the gravity that a platform floats in."""
+"""Water and gravity; names of the degrees of freedom."""
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -10,7 +10,13 @@ DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
 
 class Environment(eqx.Module):
-    """Water density (kg/m3), depth (m) and gravity (m/s2)."""
+    """Water and gravity.
+
+    Attributes:
+        density: Density of the water (kg/m³).
+        depth: Water depth (m).
+        gravity: Acceleration of gravity (m/s²).
+    """
 
     density: float | Float[Array, ""] = 1025.0
     depth: float | Float[Array, ""] = 200.0

@@ -1,4 +1,4 @@
-"""How bad input is told: every mistake in a file by its path, what was expected and what was found."""
+"""Errors in input files: path of each mistake, what was expected and what was found."""
 
 import reprlib
 import warnings
@@ -15,7 +15,7 @@ from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
 from jaxhydro import choices
-from jaxhydro.schema_description import Place, arms_of, bare, dotted, locate, tags_of, words
+from jaxhydro.schema_description import SchemaLocation, arms_of, bare, dotted, locate, tags_of, words
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
@@ -26,18 +26,25 @@ Text = Annotated[str, Field(strict=True, min_length=1)]
 Vector = tuple[Number, Number, Number]
 
 M = TypeVar("M", bound=BaseModel)
-SHOWN = 20  # problems printed before the rest is only counted
+MAX_PRINTED_PROBLEMS = 20  # problems printed before the rest is only counted
 
 
 class Schema(BaseModel):
-    """Base of what is read from a user's file: immutable, and no key is taken that is not declared."""
+    """Base class of schemas of users' files: immutable, without undeclared keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: its dotted path in the file (`members[2].d`), what belongs there, what is there, a way out."""
+    """One mistake in a file.
+
+    Attributes:
+        where: Dotted path in the file, such as `members[2].d`.
+        expected: What belongs there.
+        found: What is there.
+        hint: How to mend it, or "".
+    """
 
     where: str
     expected: str
@@ -51,11 +58,16 @@ class Problem:
 
 
 class CheckpointWarning(UserWarning):
-    """What an earlier run reached cannot be gone on from: it is of other inputs or of another program, or damaged."""
+    """A checkpoint that cannot be resumed: it has other inputs or another program, or is damaged."""
 
 
 class InputError(Exception):
-    """A file that cannot be used. `source` names it, `problems` holds every mistake in it."""
+    """An input file that cannot be used.
+
+    Attributes:
+        source: Name of the file.
+        problems: Every mistake in it.
+    """
 
     def __init__(self, source: str, problems: Iterable[Problem]) -> None:
         self.source = source
@@ -65,14 +77,17 @@ class InputError(Exception):
     def __str__(self) -> str:
         if len(self.problems) == 1:
             return f"{self.source}: {self.problems[0]}"
-        lines = [f"  {problem}" for problem in self.problems[:SHOWN]]
-        if len(self.problems) > SHOWN:
-            lines.append(f"  and {len(self.problems) - SHOWN} more")
+        lines = [f"  {problem}" for problem in self.problems[:MAX_PRINTED_PROBLEMS]]
+        if len(self.problems) > MAX_PRINTED_PROBLEMS:
+            lines.append(f"  and {len(self.problems) - MAX_PRINTED_PROBLEMS} more")
         return "\n".join([f"{self.source}: {len(self.problems)} problems", *lines])
 
 
 class Consistent(Schema):
-    """Base of what has to fit together: `_faults` yields what does not, once every key is right by itself."""
+    """Base class of schemas whose keys must fit together.
+
+    `_faults` yields what does not fit, once every key is right by itself.
+    """
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
@@ -85,7 +100,7 @@ class Consistent(Schema):
 
 
 class Faults(ValueError):
-    """Raised by a validator that found several mistakes; each `where` is relative to what it validates."""
+    """Several mistakes found by a validator; each `where` is relative to what it validates."""
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
@@ -93,18 +108,18 @@ class Faults(ValueError):
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """The known word nearest to `word`, case aside; empty where none is near."""
+    """Known word nearest to `word`, ignoring case; empty where none is near."""
     return choices.nearest(word if isinstance(word, str) else shown(word), known)
 
 
 def suggest(word: object, known: Iterable[str]) -> str:
-    """A hint for a misspelt word: `Did you mean 'heading'?`, or nothing where no known word is near."""
+    """Hint for a misspelt word, such as `Did you mean 'heading'?`; empty where no known word is near."""
     near = nearest(word, known)
     return f"Did you mean '{near}'?" if near else ""
 
 
 def suggest_path(path: str | PathLike[str]) -> str:
-    """A hint for a path that does not exist: `Did you mean 'tank/campaign.yaml'?`, or nothing where no name is near."""
+    """Hint for a path that does not exist; empty where no name is near."""
     missing = path = Path(path)
     try:
         while not missing.parent.exists():
@@ -124,7 +139,7 @@ _repr.maxlevel, _repr.maxlist, _repr.maxdict, _repr.maxstring, _repr.maxother = 
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it: short, and in the words of the file (true, nothing)."""
+    """Value in a message: short, and in the words of the file (true, nothing)."""
     if value is None:
         return "nothing"
     if isinstance(value, bool):
@@ -143,8 +158,15 @@ KEYS = {"platform": {"members", "rigid_body"}, "campaign": {"tests", "channels"}
 
 
 def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
-    """The mapping in a YAML 1.2 file, as plain dicts, lists and scalars; `InputError` for whatever is wrong, and for one that
-    is another of KEYS than the `kind` asked for."""
+    """Mapping in a YAML 1.2 file, as plain dicts, lists and scalars.
+
+    Args:
+        path: The file.
+        kind: Kind of file that is expected, of `KEYS`; "" for any.
+
+    Raises:
+        InputError: The file cannot be read, is not a mapping, or is of another kind.
+    """
     source = str(path)
 
     def wrong(where: str, expected: str, found: str, hint: str = "") -> InputError:
@@ -190,7 +212,16 @@ def read_yaml(path: str | PathLike[str], kind: str = "") -> dict[Any, Any]:
 
 
 def validate(model_class: type[M], data: object, source: str) -> M:
-    """`data` as a `model_class`; `InputError` of `source` with every mistake pydantic and its validators found."""
+    """Validated contents of a file.
+
+    Args:
+        model_class: Schema.
+        data: Contents to validate.
+        source: Name of the file, for errors.
+
+    Raises:
+        InputError: The contents have mistakes; all of them are listed.
+    """
     try:
         return model_class.model_validate(data)
     except ValidationError as error:
@@ -208,7 +239,7 @@ def validate(model_class: type[M], data: object, source: str) -> M:
     raise InputError(source, dict.fromkeys(p for p in problems if p.found != "nothing" or p.where not in misspelt))
 
 
-def _told(detail: Any, at: Place) -> Iterator[Problem]:
+def _told(detail: Any, at: SchemaLocation) -> Iterator[Problem]:
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, Faults):
         for problem in cause.problems:
@@ -236,7 +267,7 @@ def _told(detail: Any, at: Place) -> Iterator[Problem]:
         yield Problem(at.where, expected, shown(at.value), _way_out(detail, at))
 
 
-def _way_out(detail: Any, at: Place) -> str:
+def _way_out(detail: Any, at: SchemaLocation) -> str:
     kind, value = bare(at.kind, at.notes)[0], at.value
     if get_origin(kind) is Literal:
         return suggest(value, map(str, get_args(kind)))

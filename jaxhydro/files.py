@@ -1,4 +1,4 @@
-"""Result folders: a set of files that appears whole or not at all."""
+"""Result folders, written whole or not at all."""
 
 import os
 import re
@@ -15,7 +15,7 @@ YAML = (".yaml", ".yml")
 
 
 def is_there(path: Path) -> bool:
-    """Whether a file or folder exists. A name that no file can have does not."""
+    """Whether a file or folder exists; False for a name that no file can have."""
     try:
         return path.exists()
     except (OSError, ValueError):
@@ -23,9 +23,10 @@ def is_there(path: Path) -> bool:
 
 
 def campaign_file(path: str | os.PathLike[str]) -> Path:
-    """The campaign.yaml in a campaign's folder, or the file itself.
+    """Path of the campaign.yaml in a campaign's folder, or of the file itself.
 
-    Raises InputError where the folder or the file does not exist, or the folder has no campaign.yaml.
+    Raises:
+        InputError: The folder or file does not exist, or the folder has no campaign.yaml.
     """
     path = Path(path)
     expected = f"a campaign's folder, or its {MANIFEST}"
@@ -43,9 +44,10 @@ def campaign_file(path: str | os.PathLike[str]) -> Path:
 
 
 def check_folder(folder: str | os.PathLike[str], option: str = "--out") -> Path:
-    """The folder as a path, once it is sure that results can be written there; nothing is left behind.
+    """Path of a folder into which results can be written; nothing is left behind.
 
-    Raises InputError that names `option` where it is a file, or cannot be made or written.
+    Raises:
+        InputError: It is a file, or cannot be made or written; `option` is named.
     """
     folder = Path(folder)
     try:
@@ -65,10 +67,13 @@ def check_folder(folder: str | os.PathLike[str], option: str = "--out") -> Path:
 
 @contextmanager
 def staged(folder: Path, obsolete: Callable[[Path], Iterable[str]] | None = None) -> Iterator[Path]:
-    """A temporary folder whose files are moved into `folder` when the block ends well; else `folder` stays as it is.
+    """Temporary folder whose files are moved into `folder` when the block ends well.
 
-    Files of the same names are replaced, and those that `obsolete(temporary)` names are taken away; all others stay.
-    Raises InputError where the files cannot be moved into place.
+    Otherwise `folder` stays as it is. Files of the same names are replaced. Files that `obsolete(temporary)` names are
+    removed; all others stay.
+
+    Raises:
+        InputError: The files cannot be moved into place.
     """
     try:
         temporary = _beside(folder)
@@ -87,13 +92,17 @@ def staged(folder: Path, obsolete: Callable[[Path], Iterable[str]] | None = None
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a text file (UTF-8), whole or not at all. Raises InputError where that cannot be."""
+    """Write a text file (UTF-8), whole or not at all.
+
+    Raises:
+        InputError: It cannot be written.
+    """
     with staged(path.parent) as temporary:
         (temporary / path.name).write_text(text, encoding="utf-8")
 
 
 def safe_name(name: str) -> str:
-    """A name that is not ours, as part of a file's name."""
+    """A user's name as part of a file name."""
     return re.sub(r"[^\w+=., ()@-]", "_", name)[:100] or "_"
 
 

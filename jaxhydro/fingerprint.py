@@ -1,4 +1,4 @@
-"""What a result was computed with and of, as one hash: what goes on from earlier results compares it first."""
+"""Hash of the inputs and programs of a result, compared before earlier results are resumed."""
 
 import dataclasses
 import functools
@@ -32,7 +32,7 @@ def sources() -> str:
 
 
 def computed_with() -> dict[str, str]:
-    """What computes here: hash of the packages' sources, versions of Python, this package and the libraries, precision."""
+    """Hash of the packages' sources, versions of Python and the libraries, and precision."""
     import jax
 
     found = {"source code": sources(), "Python": f"{sys.version_info.major}.{sys.version_info.minor}"}

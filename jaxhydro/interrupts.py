@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM, which schedulers of clusters send before they kill: both stop a command, and it says what is kept."""
+"""Ctrl-C and SIGTERM: how a command stops and reports what is saved."""
 
 import signal
 import threading
@@ -7,9 +7,11 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from types import FrameType
 
-BOTH = (signal.SIGINT, signal.SIGTERM)
-SWALLOWING = "_xla_gc_callback"  # of JAX, called wherever memory is collected: what is raised in it is printed and lost
-LATER = 0.05  # s
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+GARBAGE_COLLECTION_CALLBACK = (
+    "_xla_gc_callback"  # of JAX, called wherever memory is collected: what is raised in it is printed and lost
+)
+RETRY_DELAY = 0.05  # s
 _asked = threading.Event()
 _pending = threading.Event()  # asked, and nobody has dealt with it yet
 
@@ -25,14 +27,14 @@ def ended_by_signals() -> Iterator[None]:
     def stop(number: int, frame: FrameType | None) -> None:
         _asked.set()
         _pending.set()
-        if frame is not None and frame.f_code.co_name == SWALLOWING:
-            threading.Timer(LATER, signal.raise_signal, [number]).start()
+        if frame is not None and frame.f_code.co_name == GARBAGE_COLLECTION_CALLBACK:
+            threading.Timer(RETRY_DELAY, signal.raise_signal, [number]).start()
             return
         raise KeyboardInterrupt
 
     _asked.clear()
     _pending.clear()
-    before = {one: signal.signal(one, stop) for one in BOTH}
+    before = {one: signal.signal(one, stop) for one in STOP_SIGNALS}
     try:
         yield
     finally:
@@ -43,7 +45,7 @@ def ended_by_signals() -> Iterator[None]:
 def finished() -> None:
     """All is written: until the end of `ended_by_signals` signals change nothing."""
     if threading.current_thread() is threading.main_thread():
-        for one in BOTH:
+        for one in STOP_SIGNALS:
             signal.signal(one, signal.SIG_IGN)
 
 

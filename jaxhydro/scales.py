@@ -1,4 +1,4 @@
-"""How large a platform is: what every length and time that nobody states goes with, by Froude's similarity.
+"""Length and time scale of a platform relative to VolturnUS-S, by Froude's similarity.
 
 A hull and its model at 1:50 then have the same numbers. Lengths in the code are those of VolturnUS-S, whose size is 1. What
 is left in metres and seconds is listed in docs/constants.md.
@@ -8,25 +8,37 @@ from typing import Any
 
 from jaxtyping import Array, Float
 
-VOLUME = 20093000.0 / 1025.0  # m3, mass of VolturnUS-S over density: NREL/TP-5000-76773
-GRAVITY = 9.80665  # m/s2
+REFERENCE_VOLUME = 20093000.0 / 1025.0  # m3, mass of VolturnUS-S over density: NREL/TP-5000-76773
+REFERENCE_GRAVITY = 9.80665  # m/s2
 
 
 def size_of(mass: Any, density: Any) -> Any:
-    """Length (-) over that of VolturnUS-S: the cube root of mass (kg) over the water's density (kg/m3), over the same there."""
-    return (mass / density / VOLUME) ** (1 / 3)
+    """Length scale (-) of a platform relative to VolturnUS-S.
+
+    It is the cube root of the ratio of displaced volumes.
+
+    Args:
+        mass: Mass (kg).
+        density: Density of the water (kg/m³).
+    """
+    return (mass / density / REFERENCE_VOLUME) ** (1 / 3)
 
 
 def pace_of(size: Any, gravity: Any) -> Any:
-    """Time (-) over that of VolturnUS-S, by Froude: (L/g)^(1/2)."""
-    return (size * (GRAVITY / gravity)) ** 0.5
+    """Time scale (-) of a platform relative to VolturnUS-S by Froude's similarity, (L/g)^(1/2).
+
+    Args:
+        size: Length scale (-).
+        gravity: Acceleration of gravity (m/s²).
+    """
+    return (size * (REFERENCE_GRAVITY / gravity)) ** 0.5
 
 
 def entered(depth: Float[Array, "..."], width: Float[Array, ""] | float) -> Float[Array, "..."]:
-    """How much (m) lies below the surface of what ends at a `depth` (m) under it: the depth, or 0 above.
+    """Submerged length (m) of what ends at a `depth` (m) below the surface: the depth, or 0 above.
 
-    Within `width` (m) under the surface the two are joined smoothly, twice continuously differentiable. So what ends at still
-    water or above has not entered at all, and what ends deeper than that is exact.
+    Within `width` (m) below the surface the two are joined smoothly, twice continuously differentiable. An end at the
+    surface or above has not entered at all; one deeper than `width` is exact.
     """
     x = depth / width
     inner = x.clip(0.0, 1.0)
@@ -34,6 +46,11 @@ def entered(depth: Float[Array, "..."], width: Float[Array, ""] | float) -> Floa
 
 
 def covered(depth: Float[Array, "..."], width: Float[Array, ""] | float) -> Float[Array, "..."]:
-    """Share (-) that water covers of a face at a `depth` (m): 0 at the surface and above, 1 from `width` (m) under it on."""
+    """Fraction of a face that water covers: 0 at the surface and above, 1 from `width` (m) below on.
+
+    Args:
+        depth: Depth of the face (m).
+        width: Depth over which it is covered (m).
+    """
     inner = (depth / width).clip(0.0, 1.0)
     return inner**2 * (3.0 - 2.0 * inner)

@@ -1,4 +1,4 @@
-"""What a schema declares at the place where pydantic found an error: its path in the file, its type in plain words."""
+"""Description of a schema at the path where pydantic found an error."""
 
 import types
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from pydantic import BaseModel, RootModel, Tag
 
 
 @dataclass(frozen=True)
-class Place:
+class SchemaLocation:
     """Where an error points: path in the file, declared type, value, and the keys known beside it."""
 
     where: str
@@ -19,12 +19,12 @@ class Place:
     description: str | None = None
 
 
-def locate(model: Any, data: Any, detail: Any) -> Place:
+def locate(model: Any, data: Any, detail: Any) -> SchemaLocation:
     """Follow pydantic's location through the file and through the declared types, past tags and wrapped scalars."""
     loc, lacks = [item for item in detail["loc"] if item != "[key]"], detail["type"] == "missing"
     if lacks and loc and isinstance(loc[-1], int):  # an element of a tuple: the tuple is what is wrong
         loc, lacks = loc[:-1], False
-    here = Place("", model, (), data)
+    here = SchemaLocation("", model, (), data)
     for i, item in enumerate(loc):
         kind, notes = bare(here.kind, here.notes)
         arm = next((arm for arm in arms_of(kind) if item in tags_of(arm)), None)
@@ -51,7 +51,7 @@ def locate(model: Any, data: Any, detail: Any) -> Place:
             description = field.description if field else None
         elif args := get_args(kind):  # the values of a mapping; the elements of a list are all of one type
             kind, notes = args[1 if get_origin(kind) is dict else 0], ()
-        here = Place(name, kind, notes, value, known, description)
+        here = SchemaLocation(name, kind, notes, value, known, description)
     return here
 
 

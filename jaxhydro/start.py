@@ -1,4 +1,4 @@
-"""How `import jaxhydro` sets JAX up: float64, quick compilation, and a compilation cache on disk."""
+"""JAX settings at import: float64, quick compilation, compilation cache on disk."""
 
 import os
 from pathlib import Path
@@ -15,7 +15,7 @@ EVERYTHING = {LEAST_TIME: 0.0, LEAST_SIZE: -1}
 
 
 class Float64Error(RuntimeError):
-    """A model is asked for while JAX computes in float32."""
+    """A model was requested while JAX computes in float32."""
 
 
 def quick_compilation() -> None:

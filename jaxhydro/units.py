@@ -1,4 +1,4 @@
-"""Units of files, and those in which people read motions: m, and degrees where the program has radians."""
+"""Units of files and of printed motions (m and degrees)."""
 
 import numpy as np
 
@@ -12,10 +12,10 @@ SI = {  # units that files may state, by quantity, and what they are in SI
 
 
 def unit_of(channel: str) -> str:
-    """The unit in which people read a channel: m or deg."""
+    """Unit in which a channel is printed: m or deg."""
     return "deg" if channel in DOFS[3:] else "m"
 
 
 def for_people(channel: str, values: np.ndarray | float) -> np.ndarray:
-    """SI values of a channel in the unit in which people read them."""
+    """SI values of a channel in the unit in which it is printed."""
     return np.rad2deg(values) if unit_of(channel) == "deg" else np.asarray(values)

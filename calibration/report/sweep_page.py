@@ -13,7 +13,7 @@ from calibration.report.web_page import embedded, figures, framed, listed, resul
 from calibration.results.read_calibration import Open, Reference
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import Number
-from jaxhydro.sweep.cases import runs_named
+from jaxhydro.sweep.cases import runs_in_words
 
 FIGURES = {
     "scatter.png": (
@@ -174,7 +174,7 @@ def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
     if saved.failures:
         yield "<h2>Failed</h2>"
         yield listed(
-            f"{runs_named((one.hs, one.tp, one.gamma), one.headings, one.seeds)}: {one.reason}" for one in saved.failures
+            f"{runs_in_words((one.hs, one.tp, one.gamma), one.headings, one.seeds)}: {one.reason}" for one in saved.failures
         )
     drawn = figures(embedded(folder / name, caption) for name, caption in FIGURES.items() if (folder / name).is_file())
     yield f"<h2>Figures</h2>{drawn}" if drawn else ""

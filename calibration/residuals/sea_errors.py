@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from calibration.residuals.measured_seas import SeaTest, moving_channels
-from jaxhydro.analysis.spectral import BANDS, LONG, SEGMENT, PowerSpectrum, band_integral, bands, power_spectrum
+from jaxhydro.analysis.spectral import BANDS, LONG_PEAK_PERIOD, SEGMENT, PowerSpectrum, band_integral, bands, power_spectrum
 from jaxhydro.units import for_people
 
 OVERLAP, WINDOW = 0.5, "hann"
@@ -31,7 +31,7 @@ class Band:
 def bands_of(channel: str, peak_period: float) -> dict[str, tuple[float, float]]:
     """Bands (Hz) of a motion or of the wave, which has no low one; none of yaw."""
     if channel == "wave":
-        return {"wave_frequency": BANDS["wave, long" if peak_period >= LONG else "wave"]}
+        return {"wave_frequency": BANDS["wave, long" if peak_period >= LONG_PEAK_PERIOD else "wave"]}
     return {} if channel == "yaw" else bands(channel, peak_period)
 
 

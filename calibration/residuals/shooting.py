@@ -26,7 +26,7 @@ from calibration.parameters.space import ParameterSpace
 from calibration.residuals.blocks import Blocks, Cutting
 from calibration.residuals.decays import Unknowns
 from calibration.residuals.seas import SeaProblem, SeaRun
-from jaxhydro.dynamics.integrate import MORE, Grid, integrate, states
+from jaxhydro.dynamics.integrate import EXTRA_STEPS, Grid, integrate, states
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import motion_behind, observe
 from jaxhydro.dynamics.simulate import farthest
@@ -105,7 +105,7 @@ class BlockProblem(eqx.Module):
         reading = reading.at[dofs].set(jnp.where(fitted, origin + position - constant, reading[dofs]))
         reading_rate = reading_rate.at[dofs].set(jnp.where(fitted, rate, reading_rate[dofs]))
         q, rates = motion_behind(model, reading, reading_rate)
-        sea = run.sea.from_step(block.begin, block.steps + MORE)
+        sea = run.sea.from_step(block.begin, block.steps + EXTRA_STEPS)
         state = State(q, model.body_velocity(q, rates), there.memory)
         grid = integrate(here, sea, state, sea.start, run.step, block.steps, "ab4")
         readings = observe(model, grid, block.times, base, in_waves=True)[:, dofs]

@@ -10,7 +10,7 @@ from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.dynamics.model import Model, State
-from jaxhydro.dynamics.simulate import InIrregular, in_irregular
+from jaxhydro.dynamics.simulate import IrregularSimulation, simulate_irregular
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import SeaState, peak_period
@@ -29,7 +29,7 @@ class Walked(NamedTuple):
     """A simulated stretch, and the state that it began in; None: at rest."""
 
     stretch: Stretch
-    found: InIrregular
+    found: IrregularSimulation
     start: State | None
 
 
@@ -69,13 +69,13 @@ def walk(
     model: Model, run: Run, parts: Sequence[Stretch], sea: IrregularSea, step: float, margin: float = 0.0
 ) -> Iterator[Walked]:
     """The motion of a platform that starts at rest with a run, stretch by stretch. Each begins where the one before it was; a
-    load's memory begins anew. `step` and `margin` are those of `in_irregular`."""
+    load's memory begins anew. `step` and `margin` are those of `simulate_irregular`."""
     rest = State(equilibrium(model), jnp.zeros(6), model.rest().memory)
     start = None
     for i, part in enumerate(parts):
         here = model if part.state is None else model.in_sea(part.state)
         times = jnp.asarray(run.time[part.begin : part.end + 1])
-        found = in_irregular(here, sea, rest if start is None else start, times, step, margin=margin)
+        found = simulate_irregular(here, sea, rest if start is None else start, times, step, margin=margin)
         yield Walked(part, found, start)
         if i + 1 < len(parts):
             after = parts[i + 1].begin - part.begin

@@ -1,4 +1,4 @@
-"""Statistics and energy in bands of a motion in an irregular sea, as JSON and as tables."""
+"""Statistics and band energies of a motion in an irregular sea, as JSON and as tables."""
 
 import math
 from collections.abc import Mapping
@@ -10,14 +10,32 @@ from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum, sta
 from jaxhydro.environment import DOFS
 from jaxhydro.units import unit_of
 
-STILL = 1e-9  # m, deg: what moves less does not move
-SHOWN = ("mean", "standard_deviation", "minimum", "maximum", "significant_double_amplitude", "zero_crossing_period")
-HEADS = ("Mean", "Standard deviation", "Least", "Largest", "Significant double amplitude", "Zero-crossing period (s)")
+MIN_RANGE = 1e-9  # m, deg: what moves less does not move
+PRINTED_STATISTICS = (
+    "mean",
+    "standard_deviation",
+    "minimum",
+    "maximum",
+    "significant_double_amplitude",
+    "zero_crossing_period",
+)
+PRINTED_HEADINGS = (
+    "Mean",
+    "Standard deviation",
+    "Least",
+    "Largest",
+    "Significant double amplitude",
+    "Zero-crossing period (s)",
+)
 
 
 def bands_of(channel: str, peak_period: float | None) -> dict[str, tuple[float, float]]:
-    """Bands (Hz) of a channel, of the wave only `wave_frequency`, none of yaw. peak_period None, as of white noise: those of a
-    moderate sea."""
+    """Frequency bands (Hz) of a channel.
+
+    Args:
+        channel: "wave", which has only `wave_frequency`, or a degree of freedom; yaw has no bands.
+        peak_period: Peak period (s). None (white noise): the bands of a moderate sea.
+    """
     if channel == "yaw":
         return {}
     found = bands("surge" if channel == "wave" else channel, peak_period or 1.0)
@@ -25,7 +43,16 @@ def bands_of(channel: str, peak_period: float | None) -> dict[str, tuple[float, 
 
 
 def summary(time: np.ndarray, channels: Mapping[str, np.ndarray], peak_period: float | None) -> dict[str, Any]:
-    """`window` (s), `statistics` and `bands` of every channel (m, deg), wave among them. What is not known is None."""
+    """Time window, statistics and band energies of every channel, as written to JSON.
+
+    Args:
+        time: Sample times (s), (t,).
+        channels: Records (m, deg) by channel, the wave among them.
+        peak_period: Peak period of the sea (s), or None.
+
+    Returns:
+        `window` (s), `statistics` and `bands`; undefined values are None.
+    """
     return {
         "window": [float(time[0]), float(time[-1])],
         "statistics": {name: _statistics(time, name, values) for name, values in channels.items()},
@@ -34,8 +61,8 @@ def summary(time: np.ndarray, channels: Mapping[str, np.ndarray], peak_period: f
 
 
 def still(values: np.ndarray) -> np.ndarray:
-    """Values, or their mean where they do not move."""
-    return np.full_like(values, np.round(values.mean(), 9) + 0.0) if np.ptp(values) < STILL else values
+    """The values; where they vary by less than `MIN_RANGE`, their rounded mean throughout."""
+    return np.full_like(values, np.round(values.mean(), 9) + 0.0) if np.ptp(values) < MIN_RANGE else values
 
 
 def _statistics(time: np.ndarray, channel: str, values: np.ndarray) -> dict[str, Any]:
@@ -52,10 +79,10 @@ def _bands(time: np.ndarray, channel: str, values: np.ndarray, peak_period: floa
 
 
 def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tuple[str, ...]]], ...]:
-    """Heads and rows of the two tables that are printed: statistics, and bands, of all that moves."""
+    """Headings and rows of the two printed tables: statistics, and band energies of every moving channel."""
     rows, energy = [], []
     for channel, found in document["statistics"].items():
-        rows.append((f"{channel} ({found['unit']})", *(_number(found[name]) for name in SHOWN)))
+        rows.append((f"{channel} ({found['unit']})", *(_number(found[name]) for name in PRINTED_STATISTICS)))
         deviation = found["standard_deviation"]
         if not deviation or channel not in document["bands"]:
             continue
@@ -66,11 +93,11 @@ def tables(document: Mapping[str, Any]) -> tuple[tuple[tuple[str, ...], list[tup
             cells += [_band(one["band"]), _number(one["integral"]), f"{share:.0%}"] if one else ["-", "-", "-"]
         energy.append((f"{channel} ({found['unit']}²)", *cells))
     of_bands = ("Low frequency (Hz)", "Integral", "of all", "Wave frequency (Hz)", "Integral", "of all")
-    return (("Channel", *HEADS), rows), (("Channel", *of_bands), energy)
+    return (("Channel", *PRINTED_HEADINGS), rows), (("Channel", *of_bands), energy)
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}" if abs(value) > STILL else "0"
+    return "-" if value is None else f"{value:.4g}" if abs(value) > MIN_RANGE else "0"
 
 
 def _band(band: list[float]) -> str:
@@ -78,5 +105,5 @@ def _band(band: list[float]) -> str:
 
 
 def in_order(motion: np.ndarray, wave: np.ndarray) -> dict[str, np.ndarray]:
-    """Channels by name from motions (sample, dof) and the wave, which comes first."""
+    """Records by channel name: the wave first, then motions (sample, dof)."""
     return {"wave": wave, **dict(zip(DOFS, motion.T, strict=True))}

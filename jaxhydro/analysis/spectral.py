@@ -1,6 +1,7 @@
-"""Pure analysis of records: spectra, energy in bands, transfer functions, statistics, exceedance. NumPy in and out.
+"""Spectra, band energies, transfer functions, statistics and exceedance of evenly sampled records.
 
-Records are sampled evenly; every function raises ValueError where they are not (gap, jitter above 1 % of a step).
+All functions are pure and take and return NumPy arrays. They raise ValueError for uneven times: a gap, or jitter above 1 % of
+a step.
 """
 
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import sampling_interval
 
 SEGMENT = 1000.0  # s: 0.001 Hz between frequencies, so that the lowest band, 0.005 to 0.025 Hz, has twenty of them
-FEWEST = 8  # segments' lengths in a record for a transfer function: its coherence is biased by about 1 / number
+MIN_TRANSFER_SEGMENTS = 8  # segments' lengths in a record for a transfer function: its coherence is biased by about 1 / number
 
 BANDS = {  # Hz, low and high
     "surge": (0.005, 0.025),
@@ -24,11 +25,20 @@ BANDS = {  # Hz, low and high
 }
 """Low-frequency bands of surge, heave and pitch, and the wave-frequency bands of a moderate and of a high sea: the paper's."""
 
-LONG = 0.7 / 0.06  # s: from this peak period on a sea has energy below 0.06 Hz (JONSWAP has next to none below 0.7 of its peak)
+LONG_PEAK_PERIOD = (
+    0.7 / 0.06
+)  # s: from this peak period on a sea has energy below 0.06 Hz (JONSWAP has next to none below 0.7 of its peak)
 
 
 class PowerSpectrum(NamedTuple):
-    """One-sided density over frequency, number of segments averaged, and resolution: the window's noise bandwidth (Hz)."""
+    """One-sided power spectral density of a record.
+
+    Attributes:
+        frequency: Frequencies (Hz), (f,).
+        density: Spectral density (unit²/Hz), (f,).
+        segments: Number of segments averaged.
+        resolution: Noise bandwidth of the window (Hz).
+    """
 
     frequency: Float[np.ndarray, " f"]  # Hz
     density: Float[np.ndarray, " f"]  # unit^2/Hz
@@ -43,11 +53,26 @@ def power_spectrum(
     overlap: float = 0.5,
     window: str = "hann",
 ) -> PowerSpectrum:
-    """Welch's (1967) mean of the periodograms of windowed segments (s), each less its own mean; `overlap` is a share of one.
+    """Power spectral density by Welch's method.
 
-    segment None: 1000 s, or the whole of a shorter record. A segment as long as the record or longer: the raw periodogram,
-    not windowed, which sums to the variance exactly. What does not fill a segment at the end of the record is not used; what is
-    slower than a segment goes with the means. Raises ValueError for uneven times or a segment or overlap out of range.
+    The mean of each segment is removed. Samples at the end of the record that do not fill a segment are not used. A segment
+    as long as the record gives the raw periodogram without a window, whose sum is exactly the variance.
+
+    Args:
+        time: Sample times (s), (t,), even.
+        x: Record (unit), (t,).
+        segment: Length of a segment (s). None: 1000 s, or the whole of a shorter record.
+        overlap: Fraction of a segment shared with the next, from 0 to below 1.
+        window: Name of a window of `scipy.signal.get_window`.
+
+    Returns:
+        The one-sided spectrum, averaged over all segments.
+
+    Raises:
+        ValueError: The times are uneven, values are not finite, or `segment` or `overlap` is out of range.
+
+    References:
+        Welch (1967).
     """
     step, x = _record(time, x)
     count, shared, window = _segments(len(x), step, segment, overlap, window)
@@ -58,10 +83,21 @@ def power_spectrum(
 
 
 def band_integral(spectrum: PowerSpectrum, low: float, high: float) -> float:
-    """Integral of the density from `low` to `high` (Hz), in unit^2; over all frequencies the variance.
+    """Integral of a spectrum over a frequency band (unit²); over all frequencies, the variance.
 
-    Each value stands for what lies halfway to its neighbours, the first and last for what lies within the ends; of a cell that
-    a limit cuts, the share inside counts. Raises ValueError for high <= low or low < 0.
+    Each value of the density holds halfway to its neighbours on both sides. The first and the last value hold up to the
+    ends. Where a limit cuts such a cell, the fraction inside the band counts.
+
+    Args:
+        spectrum: Result of `power_spectrum`.
+        low: Lower limit (Hz).
+        high: Upper limit (Hz).
+
+    Returns:
+        Variance within the band (unit²).
+
+    Raises:
+        ValueError: Unless 0 <= low < high.
     """
     _in_order(low, high)
     f = spectrum.frequency
@@ -72,10 +108,21 @@ def band_integral(spectrum: PowerSpectrum, low: float, high: float) -> float:
 
 
 def band_pass(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"], low: float, high: float) -> Float[np.ndarray, " t"]:
-    """What of a record is from `low` to `high` (Hz), both included: its Fourier lines in the band, the others left out, so that
-    no phase is changed; the record is taken to repeat itself. From 0 Hz on the mean is kept.
+    """Band-passed record, by its Fourier components from `low` to `high`, both included.
 
-    Raises ValueError for uneven times, values that are no numbers, high <= low or low < 0.
+    Phases are unchanged. The record is taken as periodic. With `low` = 0 the mean stays in.
+
+    Args:
+        time: Sample times (s), (t,), even.
+        x: Record (unit), (t,).
+        low: Lower limit (Hz).
+        high: Upper limit (Hz).
+
+    Returns:
+        Filtered record (unit), (t,).
+
+    Raises:
+        ValueError: The times are uneven, values are not finite, or not 0 <= low < high.
     """
     _in_order(low, high)
     step, x = _record(time, x)
@@ -85,10 +132,16 @@ def band_pass(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"], low: fl
 
 
 class BandWeights(NamedTuple):
-    """`band_integral` of `power_spectrum` as a quadratic form of the record: the mean over segments of sum_f weight |F|^2.
+    """`band_integral` of `power_spectrum` as a quadratic form of the record.
 
-    F is the discrete Fourier transform of a segment less its mean, times `window`; segments begin at the samples `starts`, and
-    `weight` is for the frequencies from the index `first` on.
+    The integral is the mean over segments of sum_f weight |F|². F is the discrete Fourier transform of a segment without its
+    mean, times `window`.
+
+    Attributes:
+        starts: First sample of each segment, (n,).
+        window: Window, (s,).
+        first: Index of the first frequency that has a weight.
+        weight: Weight of each frequency from `first` on, (f,).
     """
 
     starts: np.ndarray
@@ -97,7 +150,7 @@ class BandWeights(NamedTuple):
     weight: Float[np.ndarray, " f"]
 
     def integral(self, x: Float[np.ndarray, " t"]) -> float:
-        """unit^2, of a record as long as that for which the weights were made."""
+        """Variance within the band (unit²) of a record as long as that for which the weights were made."""
         parts = x[self.starts[:, None] + np.arange(len(self.window))]
         lines = np.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * self.window)
         inside = np.abs(lines[:, self.first : self.first + len(self.weight)]) ** 2
@@ -113,9 +166,22 @@ def band_weights(
     overlap: float = 0.5,
     window: str = "hann",
 ) -> BandWeights:
-    """For records of `count` samples every `step` (s) and the band from `low` to `high` (Hz); options of `power_spectrum`.
+    """Weights of `band_integral` for all records of one length and sampling interval.
 
-    Raises ValueError for high <= low or low < 0, or a segment or overlap out of range.
+    Args:
+        count: Number of samples of the record.
+        step: Sampling interval (s).
+        low: Lower limit of the band (Hz).
+        high: Upper limit of the band (Hz).
+        segment: As in `power_spectrum`.
+        overlap: As in `power_spectrum`.
+        window: As in `power_spectrum`.
+
+    Returns:
+        The quadratic form.
+
+    Raises:
+        ValueError: Unless 0 <= low < high, or where `segment` or `overlap` is out of range.
     """
     _in_order(low, high)
     size, shared, name = _segments(count, step, segment, overlap, window)
@@ -132,23 +198,39 @@ def band_weights(
 
 
 def bands(dof: str, peak_period: float) -> dict[str, tuple[float, float]]:
-    """`low_frequency` and `wave_frequency` band (Hz) of surge, heave or pitch in a sea of this peak period (s).
+    """Low-frequency and wave-frequency band of a motion in a sea.
 
-    The wave band begins at 0.05 Hz instead of 0.06 from a peak period of 11.7 s on. Sway counts as surge, roll as pitch.
-    Raises ValueError for yaw, an unknown name, or a period that is not above 0.
+    From a peak period of 11.7 s on, the wave band begins at 0.05 Hz instead of 0.06 Hz. Sway has the bands of surge, and
+    roll those of pitch.
+
+    Args:
+        dof: Name of a degree of freedom other than yaw.
+        peak_period: Peak period of the sea (s).
+
+    Returns:
+        Limits (Hz) of `low_frequency` and `wave_frequency`.
+
+    Raises:
+        ValueError: For yaw, an unknown name, or a period that is not above 0.
     """
     same = {"sway": "surge", "roll": "pitch"}.get(dof, dof)
     if same not in DOFS or same not in BANDS:
         raise ValueError(f"bands are known for surge, sway, heave, roll and pitch, found {dof!r}")
     if not peak_period > 0:
         raise ValueError(f"peak_period is above 0 s, found {peak_period}")
-    return {"low_frequency": BANDS[same], "wave_frequency": BANDS["wave, long" if peak_period >= LONG else "wave"]}
+    return {"low_frequency": BANDS[same], "wave_frequency": BANDS["wave, long" if peak_period >= LONG_PEAK_PERIOD else "wave"]}
 
 
 class TransferFunction(NamedTuple):
-    """Response per unit of wave: motion = Re sum H a exp(i omega t), H = amplitude exp(i phase); phase > 0 leads the wave.
+    """Motion per unit of wave (RAO) over frequency.
 
-    Coherence, 0 to 1: the share of the motion's energy that follows the wave linearly; where it is low, H is noise.
+    motion = Re sum H a exp(i omega t), with H = amplitude exp(i phase) and a the complex amplitudes of the wave.
+
+    Attributes:
+        frequency: Frequencies (Hz), (f,).
+        amplitude: |H| (unit of the motion per unit of the wave), (f,).
+        phase: Phase of H (rad, -pi to pi), (f,); above 0 the motion leads the wave.
+        coherence: Fraction (0 to 1) of the motion's energy that is linear in the wave, (f,). Where it is low, H is noise.
     """
 
     frequency: Float[np.ndarray, " f"]  # Hz
@@ -165,16 +247,32 @@ def transfer_function(
     overlap: float = 0.5,
     window: str = "hann",
 ) -> TransferFunction:
-    """RAO by cross-spectra, H1 = S_wave,motion / S_wave,wave, in which noise on the motion averages out (Bendat and Piersol
-    2010, Random Data, chapter 6).
+    """Transfer function (RAO) from wave to motion by cross-spectra.
 
-    Segments as in `power_spectrum`, but None: 1000 s or an eighth of the record, the shorter. They must be long against the
-    memory of the motion, or resonances come out low and wide. NaN where the wave has no energy at all. Raises ValueError, too,
-    where there are fewer than two segments: coherence would be 1 whatever the records.
+    The estimate is H1 = S_wave,motion / S_wave,wave, in which noise on the motion averages out. Segments must be long
+    against the decay time of the motion; otherwise resonances come out too low and too wide. Frequencies without wave energy
+    give NaN.
+
+    Args:
+        time: Sample times (s), (t,), even.
+        wave: Wave elevation (m), (t,).
+        motion: Motion (unit), (t,).
+        segment: Length of a segment (s). None: 1000 s, or an eighth of a record shorter than 8000 s.
+        overlap: As in `power_spectrum`.
+        window: As in `power_spectrum`.
+
+    Returns:
+        Amplitude, phase and coherence over frequency.
+
+    Raises:
+        ValueError: As `power_spectrum`, and for fewer than two segments, whose coherence would always be 1.
+
+    References:
+        Bendat and Piersol (2010), Random Data, chapter 6.
     """
     step, wave = _record(time, wave)
     _, motion = _record(time, motion)
-    segment = min(SEGMENT, len(wave) * step / FEWEST) if segment is None else segment
+    segment = min(SEGMENT, len(wave) * step / MIN_TRANSFER_SEGMENTS) if segment is None else segment
     count, shared, window = _segments(len(wave), step, segment, overlap, window)
     if len(wave) < 2 * count - shared:
         raise ValueError(f"two segments or more expected, found a record of {len(wave) * step:g} s, segments of {segment:g} s")
@@ -188,8 +286,18 @@ def transfer_function(
 
 
 class Statistics(NamedTuple):
-    """Of a record: mean, standard deviation, extremes (unit); skewness and kurtosis (0 and 3 for a Gaussian); mean time between
-    upward crossings of the mean (s), mean of the highest third of the ranges between them (unit), NaN with fewer than two."""
+    """Statistics of a record.
+
+    Attributes:
+        mean: Mean (unit).
+        standard_deviation: Standard deviation (unit).
+        minimum: Smallest value (unit).
+        maximum: Largest value (unit).
+        skewness: Third standardised moment (-); 0 for a Gaussian process.
+        kurtosis: Fourth standardised moment (-); 3 for a Gaussian process.
+        zero_crossing_period: Mean time (s) between upward crossings of the mean; NaN with fewer than two.
+        significant_double_amplitude: Mean of the highest third of the ranges between these crossings (unit); NaN as above.
+    """
 
     mean: float
     standard_deviation: float
@@ -202,7 +310,20 @@ class Statistics(NamedTuple):
 
 
 def statistics(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"]) -> Statistics:
-    """Moments and zero-crossing waves of a record (s, unit). Noise makes crossings of its own: filter it first."""
+    """Moments, extremes and zero-crossing statistics of a record.
+
+    Noise adds crossings of its own: filter it out first.
+
+    Args:
+        time: Sample times (s), (t,), even.
+        x: Record (unit), (t,).
+
+    Returns:
+        Statistics in the unit of the record; skewness, kurtosis and zero-crossing statistics are NaN where undefined.
+
+    Raises:
+        ValueError: The times are uneven, or values are not finite.
+    """
     _, x = _record(time, x)
     centred = x - x.mean()
     deviation = float(centred.std())
@@ -223,7 +344,13 @@ def statistics(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"]) -> Sta
 
 
 class Exceedance(NamedTuple):
-    """Peaks over the mean, ascending (unit), the share of peaks above each, and the same of a narrow-band Gaussian process."""
+    """Peaks of a record and how often they are exceeded.
+
+    Attributes:
+        amplitude: Peaks above the mean (unit), ascending, (n,).
+        probability: Fraction of peaks above each, (n,).
+        rayleigh: The same for a narrow-band Gaussian process of the record's standard deviation, (n,).
+    """
 
     amplitude: Float[np.ndarray, " n"]
     probability: Float[np.ndarray, " n"]
@@ -231,10 +358,23 @@ class Exceedance(NamedTuple):
 
 
 def exceedance(time: Float[np.ndarray, " t"], x: Float[np.ndarray, " t"]) -> Exceedance:
-    """The highest value, over the mean, between upward crossings of the mean, one peak each; of troughs: give -x.
+    """Exceedance probability of the peaks of a record.
 
-    The i-th highest of n is exceeded with probability i / (n + 1) (Weibull's plotting position). Rayleigh: exp(-a^2 / (2 s^2))
-    with the record's standard deviation s (Longuet-Higgins 1952). Empty with fewer than two crossings.
+    A peak is the highest value above the mean between two upward crossings of the mean. For troughs, give -x. The i-th
+    highest of n peaks is exceeded with probability i / (n + 1) (Weibull's plotting position).
+
+    Args:
+        time: Sample times (s), (t,), even.
+        x: Record (unit), (t,).
+
+    Returns:
+        Peaks and probabilities; empty with fewer than two crossings.
+
+    Raises:
+        ValueError: The times are uneven, or values are not finite.
+
+    References:
+        Longuet-Higgins (1952): Rayleigh distribution exp(-a² / (2 s²)), s the standard deviation.
     """
     _, x = _record(time, x)
     centred = x - x.mean()
@@ -250,7 +390,7 @@ def _in_order(low: float, high: float) -> None:
 
 
 def _record(time: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
-    """Step (s) and values of a record that can be analysed."""
+    """Sampling interval (s) and checked values of a record."""
     step, x = sampling_interval(time), np.asarray(x, float)
     if x.shape != np.shape(time):
         raise ValueError(f"a value for each of {len(time)} times expected, found shape {x.shape}")
@@ -260,7 +400,10 @@ def _record(time: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
 
 
 def _segments(count: int, step: float, segment: float | None, overlap: float, window: str) -> tuple[int, int, str]:
-    """Samples in a segment and shared with the next, and the window; none where one segment is all."""
+    """Samples per segment, samples shared with the next, and window.
+
+    The window is "boxcar" where one segment is the whole record.
+    """
     length = SEGMENT if segment is None else segment
     if not (length >= 4 * step and 0 <= overlap < 1):
         raise ValueError(f"a segment of {4 * step:g} s or more, 0 <= overlap < 1 expected, found {length:g} s and {overlap:g}")
@@ -271,7 +414,7 @@ def _segments(count: int, step: float, segment: float | None, overlap: float, wi
 
 
 def _cycles(time: np.ndarray, centred: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Times of the upward zero crossings, by straight lines, and the samples between successive ones."""
+    """Times of the upward zero crossings (linear interpolation), and the samples between them."""
     before = np.flatnonzero((centred[:-1] < 0) & (centred[1:] >= 0))
     share = centred[before] / (centred[before] - centred[before + 1])
     crossing = time[before] + share * (time[before + 1] - time[before])

@@ -1,1 +1,1 @@
-"""The command line: app, options, parsing, console."""
+"""Command line."""

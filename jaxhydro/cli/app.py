@@ -1,4 +1,4 @@
-"""The command line. What is heavy is imported by the command that needs it."""
+"""Command-line application; each command imports what it needs."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from jaxhydro.dynamics.model import Model
 
 BAD_INPUT, NOT_CONVERGED, STOPPED = 2, 3, 130
-NOTHING = "stopped; nothing was written"
+STOPPED_MESSAGE = "stopped; nothing was written"
 DEMO = "volturnus-s-decays"
 TRUTH = {  # what the records of the demo were made with: Table 1 of the paper this package started from
     "column.Ca_t": 1.50,
@@ -45,12 +45,12 @@ class Guarded(TyperGroup):
             complain(str(error))
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt as stopped:
-            complain(str(stopped) or NOTHING)
+            complain(str(stopped) or STOPPED_MESSAGE)
             raise typer.Exit(STOPPED) from None
         except ImportError:
             if not asked_to_stop():  # in the middle of an import, which took it for a failure
                 raise
-            complain(NOTHING)
+            complain(STOPPED_MESSAGE)
             raise typer.Exit(STOPPED) from None
         except RuntimeError as error:
             from jaxhydro.dynamics.statics import EquilibriumError

@@ -1,4 +1,4 @@
-"""What the command line's help says, and the options of `jaxhydro simulate`."""
+"""Help texts of the command line, and the options of `jaxhydro simulate`."""
 
 from enum import StrEnum
 from pathlib import Path

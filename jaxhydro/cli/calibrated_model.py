@@ -1,4 +1,4 @@
-"""A model with the values, laws and effects of a calibration."""
+"""Model with the parameter values, sea-state laws and effects of a calibration."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -7,7 +7,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.waves.sea_state import SeaState
 
 
-class Used(NamedTuple):
+class UsedCalibration(NamedTuple):
     """Values of a calibration in a model, by label; the sea state (m, s) that exponents among them count from; why they may not
     be this platform's; how strips are taken with them (`strip_conventions.Strips`), where the platform says
     otherwise."""
@@ -18,7 +18,7 @@ class Used(NamedTuple):
     strips: Any
 
 
-def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple[Model, Used]:
+def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple[Model, UsedCalibration]:
     """`calibrated`, with what is to be known, and nothing is printed."""
     from calibration.residuals.measured_seas import unusual
     from calibration.results.applied_calibration import applied
@@ -33,7 +33,7 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
         warnings.append(f"in the seas of its campaign {source} has {said}; waves here are as options say")
     if used.vague:
         warnings.append(f"among the calibrated values the records did not determine {', '.join(used.vague)}")
-    return used.model, Used(used.values, used.reference, warnings, used.strips)
+    return used.model, UsedCalibration(used.values, used.reference, warnings, used.strips)
 
 
 def calibration_file(path: str) -> Path:

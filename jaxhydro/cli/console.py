@@ -1,4 +1,7 @@
-"""What the command line prints: tables, messages, progress. Text that comes from files is never read as markup."""
+"""Printed output of the command line: tables, messages and progress.
+
+Text that comes from files is never read as markup.
+"""
 
 import math
 import os
@@ -19,7 +22,7 @@ from rich.text import Text
 from jaxhydro.errors import CheckpointWarning
 from jaxhydro.interrupts import stop_if_asked
 
-EVERY = 10.0  # s between lines of progress that go to a file
+PROGRESS_INTERVAL = 10.0  # s between lines of progress that go to a file
 WIDTH = 120  # where there is no terminal to ask
 WIDE_GAP, NARROW_GAP = 3, 2  # characters between the columns of a table
 
@@ -151,7 +154,7 @@ def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], 
     """A line on standard error with how many of `total` are done, how fast, and the time left; to be told the number and a
     remark.
 
-    Without a terminal it is a line every `EVERY` seconds, and one at the end.
+    Without a terminal it is a line every `PROGRESS_INTERVAL` seconds, and one at the end.
     """
     shown = console(stderr=True)
     if not shown.is_terminal:
@@ -159,7 +162,7 @@ def counting(total: int, done: int, what: str) -> Iterator[Callable[[int, str], 
 
         def note(now: int, remark: str) -> None:
             time = clock.monotonic()
-            if told and now < total and time - told[-1][0] < EVERY:
+            if told and now < total and time - told[-1][0] < PROGRESS_INTERVAL:
                 return
             left = ""
             if told and now > told[0][1]:  # the first one takes compilation along

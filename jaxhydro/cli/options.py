@@ -1,4 +1,4 @@
-"""Checks of command-line options. What is wrong is told with the option's name."""
+"""Checks of command-line options; errors name the option."""
 
 import math
 from pathlib import Path
@@ -10,7 +10,7 @@ from jaxhydro.errors import InputError, Problem, suggest, suggest_path
 from jaxhydro.files import YAML, check_folder, is_there
 from jaxhydro.platform.schema import builtin_platforms
 
-LARGEST = 5_000_000  # samples or steps of one simulation
+MAX_STEPS = 5_000_000  # samples or steps of one simulation
 
 
 def wrong(option: str, message: str) -> typer.BadParameter:
@@ -34,8 +34,8 @@ def finite(value: float, option: str) -> float:
 
 def interval(value: float, option: str, duration: float) -> float:
     """A time step that divides a duration into a number of steps that fits into memory."""
-    if not 1 <= duration / positive(value, option) <= LARGEST:
-        limits = f"from {duration / LARGEST:g} to {duration:g} s expected, for a duration of {duration:g} s"
+    if not 1 <= duration / positive(value, option) <= MAX_STEPS:
+        limits = f"from {duration / MAX_STEPS:g} to {duration:g} s expected, for a duration of {duration:g} s"
         raise wrong(option, f"{limits}; found {value:g}")
     return value
 

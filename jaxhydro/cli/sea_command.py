@@ -1,4 +1,4 @@
-"""The simulate command in irregular seas: from options to files, tables and figures."""
+"""`jaxhydro simulate` in irregular seas: files, tables and figures."""
 
 import time as clock
 from typing import Any
@@ -12,12 +12,12 @@ from jaxhydro.cli.sea_options import transient_of, with_band
 from jaxhydro.cli.simulate_command import Job, finite, print_remarks, print_rest, told_of_bed
 from jaxhydro.cli.simulation_files import Motion, SeaState, write_motion
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import LEAST, Asked, build_sea, impossible, outside
+from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, RequestedSea, build_sea, impossible, outside
 from jaxhydro.dynamics.simulate import free_decay, largest_step
 from jaxhydro.errors import InputError, Problem
 
 
-def run(model: Model, job: Job, asked: Asked) -> bool:
+def run(model: Model, job: Job, asked: RequestedSea) -> bool:
     """Simulate, write and print; False where the motion grows beyond all bounds.
 
     Raises InputError for a sea that cannot be, BadParameter for a transient, EquilibriumError where the platform does not rest.
@@ -28,8 +28,8 @@ def run(model: Model, job: Job, asked: Asked) -> bool:
     times = begin + job.times
     transient = transient_of(asked, job.duration, pace)
     kept = times >= begin + transient
-    if kept.sum() < LEAST:
-        expected = f"{LEAST} samples or more after the transient of {transient:g} s"
+    if kept.sum() < MIN_SAMPLES:
+        expected = f"{MIN_SAMPLES} samples or more after the transient of {transient:g} s"
         raise InputError("--duration", [Problem("", expected, f"{kept.sum()} of them {job.dt:g} s apart")])
     say("Building the sea ...", stderr=True)
     sea, about, target, notes = build_sea(model, asked, job.duration)

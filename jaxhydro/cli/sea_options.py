@@ -1,4 +1,4 @@
-"""An irregular sea as the command line asks for it. What is wrong is told with its option."""
+"""Irregular sea from the command-line options."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,7 +9,7 @@ import numpy as np
 from scipy import signal
 
 from jaxhydro.cli.options import finite, positive, wrong
-from jaxhydro.dynamics.requested_sea import Asked, Record, usual_transient
+from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transient
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.waves.irregular import sampling_interval
 
@@ -20,11 +20,11 @@ OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
-STEEPEST = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
+MAX_STEEPNESS = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
 
-def with_band(sea: Asked, pace: float) -> Asked:
+def with_band(sea: RequestedSea, pace: float) -> RequestedSea:
     """A sea with a band, for a platform of a `pace` (`jaxhydro.scales`). Raises BadParameter where it is none."""
     low, cutoff = sea.band(pace)
     if cutoff <= low:
@@ -32,7 +32,7 @@ def with_band(sea: Asked, pace: float) -> Asked:
     return replace(sea, low=low, cutoff=cutoff)
 
 
-def transient_of(sea: Asked, duration: float, pace: float = 1.0) -> float:
+def transient_of(sea: RequestedSea, duration: float, pace: float = 1.0) -> float:
     """Time (s) from the beginning from which on statistics are taken. Raises BadParameter where nothing is left."""
     if sea.transient is None:
         return usual_transient(duration, pace)
@@ -70,7 +70,7 @@ def stretching(given: Mapping[str, Any]) -> Any:
     return str(given.get("--stretching", "vertical"))
 
 
-def asked(given: Mapping[str, Any], heading: float) -> Asked | None:
+def asked(given: Mapping[str, Any], heading: float) -> RequestedSea | None:
     """The irregular sea of the options given, the record yet to be read; None without one. Raises BadParameter."""
     named = {name: given[name] for name in OF_SEA if name in given}
     record, of_spectrum = "--wave" in given, [name for name in named if name in OF_SPECTRUM]
@@ -95,10 +95,10 @@ def asked(given: Mapping[str, Any], heading: float) -> Asked | None:
         raise wrong("--cutoff", f"a number above --low, {low:g} Hz, expected, found {cutoff:g}")
     seed, amplitudes = named.get("--seed", SEED), str(named.get("--amplitudes", "deterministic"))
     how = (named.get("--order", ORDER), stretching(given), heading, named.get("--transient"))
-    return Asked(hs, tp, gamma, kind, seed, amplitudes, low, cutoff, *how)
+    return RequestedSea(hs, tp, gamma, kind, seed, amplitudes, low, cutoff, *how)
 
 
-def duration(given: float | None, sea: Asked | None) -> float:
+def duration(given: float | None, sea: RequestedSea | None) -> float:
     """Duration (s) given or chosen. Raises BadParameter for one that is longer than the record."""
     record = None if sea is None else sea.record
     if record is None:
@@ -122,7 +122,7 @@ def _spectrum(kind: str, tp: float | None, gamma: float | None) -> None:
         raise wrong("--gamma", f"from 1 to 7 expected, found {gamma:g}")
 
 
-def with_record(sea: Asked, file: Path, table: Any, given: Mapping[str, Any]) -> Asked:
+def with_record(sea: RequestedSea, file: Path, table: Any, given: Mapping[str, Any]) -> RequestedSea:
     """The sea with the record in a file's table (pandas).
 
     Raises InputError for columns that are not there, gaps and uneven sampling; BadParameter for the gauge's place.
@@ -163,7 +163,7 @@ def with_record(sea: Asked, file: Path, table: Any, given: Mapping[str, Any]) ->
         raise wrong_file(f"column {time_name}", "times in s", f"{stated[time_name]}, as the file states")
     elevation = elevation * UNITS[unit]
     height, length = 4 * float(np.std(elevation)), _peak_length(times, elevation)
-    if height > STEEPEST * length:
+    if height > MAX_STEEPNESS * length:
         found = f"waves {height:.3g} m high and {length:.3g} m long"
         expected = "waves less than 1/7 as high as long, at full scale"
         raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")

@@ -1,4 +1,4 @@
-"""The simulate command: from options to files and tables."""
+"""`jaxhydro simulate`: files and tables."""
 
 import math
 from collections.abc import Collection, Iterable
@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 import jaxhydro
-from jaxhydro.cli.calibrated_model import Used, with_calibration
+from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.cli.console import complain, say, table
 from jaxhydro.cli.simulation_files import Motion, write_motion
 from jaxhydro.dynamics.model import Model
@@ -28,9 +28,9 @@ from jaxhydro.rotations import rotation
 from jaxhydro.units import for_people, unit_of
 from jaxhydro.waves.sea import Stretching, WaveSea, regular_wave
 
-GROWTH = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
+RAMP_PERIODS = 5  # wave periods over which waves grow from rest, no more than a quarter of the duration
 STEPS_PER_WAVE = 32
-CLOSE = 1e-6  # of the depth: what is below the bed by less touches it
+BED_TOLERANCE = 1e-6  # of the depth: what is below the bed by less touches it
 
 
 class Job(NamedTuple):
@@ -59,7 +59,7 @@ def calibrated(model: Model, asked: str, name: str, source: Path) -> Model:
     return model
 
 
-def print_used(used: Used) -> None:
+def print_used(used: UsedCalibration) -> None:
     """Labels of calibrated values that are used, and what is to be known of them."""
     counted = ""
     if used.reference is not None:
@@ -90,7 +90,7 @@ def told_of_bed(model: Model, times: np.ndarray, position: np.ndarray) -> None:
         return
     lowest = position[:, 2] + np.asarray(_lowest(jnp.asarray(position), points))
     below = -float(model.environment.depth) - lowest
-    if (below > CLOSE * float(model.environment.depth)).any():
+    if (below > BED_TOLERANCE * float(model.environment.depth)).any():
         first, most = times[np.argmax(below > 0)], below.max()
         where = f"the hull goes {most:.3g} m through the sea bed, first at {first:.4g} s"
         complain(f"warning: {where}: nothing holds it there, and the water's motion is that at the bed")
@@ -111,7 +111,7 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
     if wave is not None:
         if (fault := regular_fault(model, wave[1])) is not None:
             raise InputError("--wave-period", [Problem("", *fault)])
-        ramp = min(GROWTH * wave[1], 0.25 * job.duration)
+        ramp = min(RAMP_PERIODS * wave[1], 0.25 * job.duration)
         sea = _sea(model, wave, heading, ramp, stretching)
         step = min(default_step(model), wave[1] / STEPS_PER_WAVE) if step is None else step
     print_rest(model, job.platform, DOFS if wave is not None else list(job.offset))

@@ -1,4 +1,4 @@
-"""What a simulation leaves behind: simulated.nc, motion.csv and figures, in m and deg, whole or not at all."""
+"""Output files of a simulation: simulated.nc, motion.csv and figures, in m and deg."""
 
 import json
 from collections.abc import Callable, Iterable, Mapping
@@ -17,7 +17,7 @@ from jaxhydro.units import for_people, unit_of
 
 STATISTICS = "statistics.json"
 OF_SEAS = (STATISTICS, "figures/motion.png", "figures/window.png", "figures/spectra.png")
-HIGHEST = 0.2  # Hz, that spectra are drawn to
+MAX_PLOTTED_FREQUENCY = 0.2  # Hz, that spectra are drawn to
 
 
 class Motion(NamedTuple):
@@ -111,7 +111,7 @@ def _sea_figures(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, 
     for name, figure in (
         ("motion", sea_plot.record_figure(time, channels, start, title)),
         ("window", sea_plot.window_figure(time, channels, second, start, title)),
-        ("spectra", sea_plot.spectra_figure(time[time >= start], kept, peak, HIGHEST, sea.target, title)),
+        ("spectra", sea_plot.spectra_figure(time[time >= start], kept, peak, MAX_PLOTTED_FREQUENCY, sea.target, title)),
     ):
         save(figure, folder / "figures" / f"{name}.png")
 

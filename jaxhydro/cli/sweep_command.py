@@ -1,4 +1,4 @@
-"""The sweep command: from a sweep file to its store, tables and figures."""
+"""`jaxhydro sweep`: store, tables and figures."""
 
 import os
 from collections.abc import Callable
@@ -11,12 +11,12 @@ from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
 from jaxhydro.sweep.cluster import workers_of
 from jaxhydro.sweep.resources import chosen
-from jaxhydro.sweep.run_sweep import Prepared, Progress, Ran, opened, prepared, run_all, to_do
-from jaxhydro.sweep.store import RESULTS, alone, open_results
+from jaxhydro.sweep.run_sweep import PreparedSweep, Progress, SessionResult, opened, prepared, run_all, to_do
+from jaxhydro.sweep.store import RESULTS, locked_folder, open_results
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.write_sweep import Summary, summary_of, write_outputs
 
-LISTED = 5  # failures that are printed, of runs that failed alike
+MAX_PRINTED_FAILURES = 5  # failures that are printed, of runs that failed alike
 
 
 class Stopped(Exception):
@@ -44,7 +44,7 @@ def sweep(
         # bad input is told before anything is begun
         workers_there = 0 if scheduler is None else workers_of(scheduler)
         stop_if_asked()
-        with alone(out):
+        with locked_folder(out):
             return _sweep(made, out, workers, batch, restart, retry_failed, scheduler, workers_there)
     except (KeyboardInterrupt, Exception) as error:
         if not (asked_to_stop() or isinstance(error, KeyboardInterrupt)):
@@ -59,7 +59,7 @@ def _kept(out: Path) -> str:
 
 
 def _sweep(
-    made: Prepared,
+    made: PreparedSweep,
     out: Path,
     workers: int | None,
     batch: int | None,
@@ -75,7 +75,7 @@ def _sweep(
     if resumed:
         done = len(made.inputs.plan) - len(numbers)
         say(f"{out} has {done} of {len(made.inputs.plan)} runs" + (": they stay" if numbers else ": nothing is left to do"))
-    ran = Ran(0, 0, 0.0, 0.0)
+    ran = SessionResult(0, 0, 0.0, 0.0)
     if numbers:
         how = chosen(made.setup, len(numbers), workers, batch)
         say(how.words if scheduler is None else _cluster(scheduler, workers_there, how.batch), stderr=True)
@@ -113,7 +113,7 @@ def _remark(now: Progress) -> str:
     return f"{failed}{now.speed:.0f} times real time"
 
 
-def _print_plan(made: Prepared) -> None:
+def _print_plan(made: PreparedSweep) -> None:
     plan = made.inputs.plan
     print_rest(made.setup.model, made.platform)
     headings = sorted({case.heading for case in plan.cases})
@@ -146,7 +146,7 @@ def _print_results(summary: Summary, exponents) -> None:
     if summary.failed:
         share = f"; cases of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
         complain(f"{summary.failed} of {summary.total} runs failed{share}")
-        listed, others = summary.failures[:LISTED], summary.failures[LISTED:]
+        listed, others = summary.failures[:MAX_PRINTED_FAILURES], summary.failures[MAX_PRINTED_FAILURES:]
         for failure in listed:
             complain(f"{failure.where}: {failure.reason}")
         if others:

@@ -1,1 +1,1 @@
-"""The model of a platform: its motion at an instant, statics, simulation, and what sensors record."""
+"""Model, its motion at an instant, statics, simulation, and readings of sensors."""

@@ -1,4 +1,4 @@
-"""Fixed-step time integration, and output at any times."""
+"""Fixed-step time integration with output at any times."""
 
 from collections.abc import Callable
 from functools import partial
@@ -18,14 +18,14 @@ from jaxhydro.waves.support_sea import Clock
 
 Method = Literal["tsit5", "rk4", "ab4", "diffrax"]
 Adjoint = Literal["forward", "reverse"]
-MORE = 2  # steps, so that differences at the last one are central
-MOTION = 12  # entries of the state before the loads' memories: position and velocity
-LONG = 32  # entries of a state beyond which a forward derivative runs along with the simulation
+EXTRA_STEPS = 2  # steps, so that differences at the last one are central
+MOTION_SIZE = 12  # entries of the state before the loads' memories: position and velocity
+MAX_SEPARATE_STATE = 32  # entries of a state beyond which a forward derivative runs along with the simulation
 Motion: TypeAlias = tuple[Float[Array, "n 6"], Float[Array, "n 6"]]
 
 
 class Grid(eqx.Module):
-    """Motion at the ends of every step: dof positions, rates and accelerations."""
+    """Motion at the ends of all steps: positions, rates and accelerations."""
 
     start: Float[Array, ""]
     step: Float[Array, ""]
@@ -37,9 +37,13 @@ class Grid(eqx.Module):
     def at(
         self, times: Float[Array, " t"], dofs: slice | tuple[int, ...] = slice(None)
     ) -> tuple[Float[Array, "t d"], Float[Array, "t d"], Float[Array, "t d"]]:
-        """Position, rate and acceleration at `times` (s), by quintic Hermite interpolation.
+        """Position, rate and acceleration at any times, by quintic Hermite interpolation.
 
-        Its error in position is of sixth order in the step. Times outside the grid are clipped to it.
+        The error in position is of sixth order in the step. Times outside the grid are clipped to it.
+
+        Args:
+            times: Times (s), (t,).
+            dofs: Degrees of freedom that are returned.
         """
         place = (times - self.start) / self.step
         index = jnp.clip(jnp.floor(place).astype(int), 0, self.count - 1)
@@ -77,11 +81,11 @@ def _by_loop(method: Method, model: Model, sea: AbstractSea, state: State, start
     loop = adams_bashforth if method == "ab4" else runge_kutta
     options: dict[str, Any] = {} if method == "ab4" else {"scheme": runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()}
     run: Any = loop.forward if adjoint == "forward" else loop.backward
-    if adjoint == "forward" and y.shape[0] > LONG:
-        run, options["shown"] = loop.direct, MOTION
+    if adjoint == "forward" and y.shape[0] > MAX_SEPARATE_STATE:
+        run, options["shown"] = loop.direct, MOTION_SIZE
 
     path = run((model, sea), y, start, step, count, rate=_rate_of(unravel), capacity=capacity, **options)
-    return path[:, :6], path[:, 6:MOTION]
+    return path[:, :6], path[:, 6:MOTION_SIZE]
 
 
 def _by_diffrax(model: Model, sea: AbstractSea, state: State, start, step, count, capacity, adjoint) -> Motion:
@@ -119,22 +123,22 @@ def integrate(
     adjoint: Adjoint = "forward",
     count: Int[Array, ""] | None = None,
 ) -> Grid:
-    """Motion over `capacity` steps of `step` seconds from `start`.
+    """Integrate the motion over `capacity` steps of `step` (s).
 
-    Simulations of different lengths share one compilation by sharing a capacity: `count` says how many steps of it are
-    taken (with adjoint "forward", and not by diffrax: there all are).
+    Simulations of different lengths share one compilation by sharing a capacity: `count` says how many of its steps are
+    taken. That holds with `adjoint` "forward" only, and not for "diffrax", which takes all steps.
     """
     check(method=(method, get_args(Method)), adjoint=(adjoint, get_args(Adjoint)))
     count = jnp.asarray(capacity) if count is None else count
     run = _by_diffrax if method == "diffrax" else partial(_by_loop, method)
-    position, velocity = run(model, sea, state, start, step, count + MORE, capacity + MORE, adjoint)
+    position, velocity = run(model, sea, state, start, step, count + EXTRA_STEPS, capacity + EXTRA_STEPS, adjoint)
     rate = jax.vmap(model.position_rate)(position, velocity)
     return Grid(start, step, count, position, rate, differences(rate, step))
 
 
 @eqx.filter_jit
 def states(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""], step: Float[Array, ""], count: int) -> State:
-    """Whole states, memories included, after 0, 1 ... `count` steps by "ab4" of `integrate`: stacked."""
+    """States, memories included, after 0, 1 ... `count` steps of four-step Adams-Bashforth, stacked."""
     y, unravel = ravel_pytree(state)
     path = adams_bashforth.direct(
         (model, sea), y, start, step, jnp.asarray(count), rate=_rate_of(unravel), capacity=count, shown=y.shape[0]
@@ -143,23 +147,33 @@ def states(model: Model, sea: AbstractSea, state: State, start: Float[Array, ""]
 
 
 def clock(method: Method, start: float, step: float, count: int) -> Clock:
-    """When an integration over `count` steps asks for the sea."""
+    """Times at which an integration over `count` steps asks for the sea.
+
+    Args:
+        method: Integration scheme.
+        start: First time (s).
+        step: Time step (s).
+        count: Number of steps.
+    """
     check(method=(method, get_args(Method)))
     if method == "ab4":
-        return Clock(start, step, count + MORE, (0.0,), adams_bashforth.START)
+        return Clock(start, step, count + EXTRA_STEPS, (0.0,), adams_bashforth.START_STEPS)
     if method == "diffrax":
         import diffrax
 
         nodes = (0.0, *map(float, diffrax.Tsit5.tableau.c))
     else:
         nodes = (runge_kutta.RK4 if method == "rk4" else runge_kutta.tsit5()).nodes
-    return Clock(start, step, count + MORE + 1, tuple(sorted({node for node in nodes if node < 1.0})))
+    return Clock(start, step, count + EXTRA_STEPS + 1, tuple(sorted({node for node in nodes if node < 1.0})))
 
 
 def differences(values: Float[Array, "n 6"], step: Float[Array, ""]) -> Float[Array, "n 6"]:
-    """Time derivative on an even grid by five-point differences, of fourth order at the ends too. Fewer points: `gradient`.
+    """Time derivative on an even grid by five-point differences, of fourth order up to the ends.
 
-    Abramowitz and Stegun 1964, table 25.2, m = 5.
+    With fewer points it is `gradient`.
+
+    References:
+        Abramowitz and Stegun (1964), table 25.2, m = 5.
     """
     if values.shape[0] < 5:
         return jnp.asarray(jnp.gradient(values, axis=0)) / step

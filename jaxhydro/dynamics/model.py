@@ -1,4 +1,4 @@
-"""The platform as a rigid body and a tuple of loads: (M + sum A_k) dv/dt = sum F_k."""
+"""Model of a platform: a rigid body and its loads, (M + sum A_k) dv/dt = sum F_k."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -36,29 +36,41 @@ CONVENTIONS: dict[str, tuple[str | bool, ...]] = {
 
 
 class RigidBody(eqx.Module):
-    """Mass (kg), centre of mass (m from the reference point) and inertia about it (kg m2), body axes."""
+    """Mass and inertia of the platform, body axes.
+
+    Attributes:
+        mass: Mass (kg).
+        centre: Centre of mass (m) from the reference point.
+        inertia: Inertia about the centre of mass (kg m²).
+    """
 
     mass: Float[Array, ""]
     centre: Float[Array, "3"]
     inertia: Float[Array, "3 3"]
 
     def inertia_at_reference(self) -> Float[Array, "3 3"]:
-        """Inertia about the reference point (parallel axes)."""
+        """Inertia about the reference point (kg m²), by the parallel-axis theorem."""
         s = skew(self.centre)
         return self.inertia - self.mass * s @ s
 
     def mass_matrix(self) -> Float[Array, "6 6"]:
-        """Mass matrix about the reference point (Fossen 2011, section 3.3)."""
+        """Mass matrix about the reference point (kg, kg m, kg m²).
+
+        References:
+            Fossen (2011), section 3.3.
+        """
         lever = self.mass * skew(self.centre)
         upper = jnp.concatenate([self.mass * jnp.eye(3), -lever], axis=1)
         return jnp.concatenate([upper, jnp.concatenate([lever, self.inertia_at_reference()], axis=1)])
 
 
 class State(eqx.Module):
-    """Where the platform is and how it moves.
+    """Position, velocity and memory of the platform.
 
-    `position`: surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point. `velocity`: its velocity and the
-    angular velocity in body axes (m/s, rad/s). `memory`: one entry per load, None for those without.
+    Attributes:
+        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
+        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
+        memory: One entry per load; None for a load without memory.
     """
 
     position: Float[Array, "6"]
@@ -66,9 +78,16 @@ class State(eqx.Module):
     memory: tuple[Any, ...]
 
 
-class Total(NamedTuple):
-    """The sum of all loads in body axes: force (N, N m), added mass (kg, kg m, kg m2) of the body, `Hull.masses` and
-    what they multiply."""
+class LoadSum(NamedTuple):
+    """Sum of all loads, body axes.
+
+    Attributes:
+        force: Force and moment (N, N m) on the reference point.
+        added_mass: Added mass (kg, kg m, kg m²) of the body.
+        masses: Added masses of `Hull.masses`, (k,).
+        moments: Matrices that multiply `masses`, (6, 6, k).
+        memory_rate: Time derivative of each load's memory.
+    """
 
     force: Float[Array, "6"]
     added_mass: Float[Array, "6 6"]
@@ -78,25 +97,38 @@ class Total(NamedTuple):
 
 
 def strongly_typed(tree: Any) -> Any:
-    """A model or a load without JAX's weak types: programs are compiled by type, and numbers that were set have strong ones."""
+    """A model or load without JAX's weak types.
+
+    Programs are compiled by type. Without this, a model whose numbers were changed would compile again.
+    """
     return jax.tree.map(lambda x: jnp.asarray(x, x.dtype) if eqx.is_array(x) else x, tree)
 
 
 class Model(eqx.Module):
-    """A platform: a rigid body, its strips, and the loads on it.
+    """Platform model: a rigid body, its strips, and the loads on it.
 
-    `wetting` says which part of the members is loaded: "instantaneous" up to the water surface at the displaced strip, "mean"
-    what is under still water when the platform is upright at its reference position, in the flow at that depth. `diffraction`
-    of waves by the members that do: "maccamy_fuchs", "ramp", the same with coefficients tuned away from Ca = 1 kept in
-    long waves (`diffraction.long_waves`), "none". `directions` of strips and ends: "body", those of the displaced member, or
-    "earth", those of the undisplaced one, as in OpenFAST. `waves_at`: "displaced", where the platform is, or "mean", at its
-    reference position horizontally, as in OpenFAST with WaveDisp = 0 and ExctnDisp = 0: waves then do not tell where it has
-    gone. `centripetal`: whether strips and ends feel that part of their acceleration, as water has it, or none, as in programs
-    whose added mass takes accelerations alone. `lag` and `bound` are those of `Cylinders`. `remarks` are what is to be known of
-    the files that the platform was read from.
+    The conventions are words; an unknown one raises UnknownName when the model is made. The default of `diffraction`
+    replaces Ca in the wave excitation altogether. That is the theory, for a Ca tuned to the added mass. The step from 1 + Ca
+    to 2 that it makes cannot be determined by a calibration in still water.
 
-    The default replaces Ca in the excitation altogether: that is the theory, for a Ca that was tuned to the added mass, and
-    the step from 1 + Ca to 2 which it makes is part of what a calibration in still water cannot know.
+    Attributes:
+        environment: Water and gravity.
+        body: Mass and inertia.
+        hull: Members cut into strips and ends.
+        loads: Loads on the platform.
+        wetting: Which part of the members is loaded. "instantaneous": up to the water surface at the displaced strip.
+            "mean": what is under still water at the upright reference position, in the flow at that depth.
+        diffraction: Wave diffraction by the members that diffract. "maccamy_fuchs"; "ramp", the same but with coefficients
+            tuned away from Ca = 1 kept in long waves (`diffraction.long_waves`); "none".
+        directions: Axes of strips and ends. "body": of the displaced member. "earth": of the undisplaced one, as in
+            OpenFAST.
+        waves_at: Where the waves are evaluated horizontally. "displaced": where the platform is. "mean": at the reference
+            position, as in OpenFAST with WaveDisp = 0 and ExctnDisp = 0.
+        centripetal: Whether strips and ends feel the centripetal part of their acceleration. False is for programs whose
+            added mass takes accelerations alone.
+        lag: As in `Cylinders`.
+        bound: As in `Cylinders`.
+        remarks: Remarks on the files that the platform was read from.
     """
 
     environment: Environment
@@ -118,17 +150,17 @@ class Model(eqx.Module):
 
     @property
     def size(self) -> Float[Array, ""]:
-        """Length (-) over that of VolturnUS-S, by displaced volume: see `scales`."""
+        """Length scale (-) relative to VolturnUS-S, by displaced volume (`jaxhydro.scales`)."""
         return size_of(self.body.mass, self.environment.density)
 
     @property
     def pace(self) -> Float[Array, ""]:
-        """Time (-) over that of VolturnUS-S, by Froude."""
+        """Time scale (-) relative to VolturnUS-S, by Froude's similarity."""
         return pace_of(self.size, self.environment.gravity)
 
     @property
     def cylinders(self) -> Cylinders | None:
-        """The strips, then ends, that diffract the waves; None: none do."""
+        """Strips, then ends, that diffract the waves; None where none do."""
         if self.diffraction == "none" or not self.hull.cylinders.radius.size:
             return None
         ramp = self.diffraction == "ramp"
@@ -140,9 +172,16 @@ class Model(eqx.Module):
         return {label: value for load in self.loads for label, value in load.values.items()}
 
     def about(self, label: str) -> Parameter:
-        """Unit, meaning, bounds and null of a parameter. Raises UnknownName for an unknown label.
+        """Unit, meaning, bounds and neutral value of a parameter.
 
-        Bounds that are lengths or times go with the platform's size.
+        Args:
+            label: Label of the parameter, such as "column.Cd_t".
+
+        Returns:
+            The parameter; bounds that are lengths or times are scaled to the platform's size.
+
+        Raises:
+            UnknownName: No load has a parameter of that label.
         """
         for load in self.loads:
             if label in load.values:
@@ -154,8 +193,17 @@ class Model(eqx.Module):
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
         """This model with some parameters changed.
 
-        Numbers are checked where they are concrete; under jit or grad nothing can be raised. Raises UnknownName for an unknown
-        label, ValueError for what is no finite number, or is negative where physics has none that are (`Parameter.check`).
+        Values are checked unless they are traced: under jit or grad nothing can be raised.
+
+        Args:
+            values: New values by label, in the units of `about`.
+
+        Returns:
+            A new model.
+
+        Raises:
+            UnknownName: No load has a parameter of a label.
+            ValueError: A value is not finite, or is negative where physics does not allow it (`Parameter.check`).
         """
         about = {label: load.about for load in self.loads for label in load.values}
         for label, value in values.items():
@@ -166,7 +214,10 @@ class Model(eqx.Module):
         return self.at_values(values)
 
     def at_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
-        """The same without checks, for values that a fit found: by rounding they may be beyond what is possible."""
+        """This model with some parameters changed, unchecked.
+
+        It is for fitted values, which may exceed a physical limit by rounding.
+        """
 
         def changed(load: AbstractLoad) -> AbstractLoad:
             new = {label: jnp.asarray(values.get(label, old), float) for label, old in load.values.items()}
@@ -186,7 +237,11 @@ class Model(eqx.Module):
 
     @property
     def transfer(self) -> Transfer | None:
-        """What of second order irregular seas are to be prepared with. Raises ValueError for two of it."""
+        """Difference-frequency transfer function with which irregular seas are prepared, or None.
+
+        Raises:
+            ValueError: Two loads have one.
+        """
         found = [one for load in self.loads if (one := load.drifts()) is not None]
         if len(found) > 1:
             raise ValueError("two loads have a difference-frequency transfer function: expected one")
@@ -194,48 +249,64 @@ class Model(eqx.Module):
 
     @property
     def excitation(self) -> Excitation | None:
-        """What of first order irregular seas are to be prepared with. Raises ValueError for two of it."""
+        """First-order excitation with which irregular seas are prepared, or None.
+
+        Raises:
+            ValueError: Two loads have one.
+        """
         found = [one for load in self.loads if (one := load.excites()) is not None]
         if len(found) > 1:
             raise ValueError("two loads have a computed excitation: expected one")
         return found[0] if found else None
 
     def through(self, sea: AbstractSea) -> AbstractSea:
-        """The sea as the platform meets it."""
+        """The sea as changed by all loads."""
         # what belongs to the waves themselves before what becomes of them
         for load in sorted(self.loads, key=lambda load: (load.drifts() is None and load.excites() is None, load.moves)):
             sea = load.through(sea)
         return sea
 
     def stream(self) -> Float[Array, "3"] | None:
-        """Steady velocity of the water (m/s, earth axes); None: it has none."""
+        """Sum of the loads' steady currents (m/s, earth axes), or None."""
         return _sum([load.stream() for load in self.loads])
 
     @property
     def senses(self) -> bool:
-        """Whether any load is about what the sensors make of a position."""
+        """Whether any load changes what the motion sensors read."""
         return any(type(load).seen is not AbstractLoad.seen for load in self.loads)
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
-        """What the motion sensors make of a position (m, rad)."""
+        """Reading of the motion sensors at a position (m, rad), (..., 6)."""
         for load in self.loads:
             position = load.seen(position)
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:
-        """Lag (s) of the recorded motions behind the waves: y(t - lag) is recorded at t; None: their clock is one."""
+        """Lag (s) of the recorded motions behind the waves, or None.
+
+        The record at t shows the motion at t - lag.
+        """
         return _sum([load.clock_lag() for load in self.loads])
 
     def rest(self) -> State:
-        """At the reference position without motion."""
+        """State at the reference position, without motion."""
         return State(jnp.zeros(6), jnp.zeros(6), tuple(load.rest() for load in self.loads))
 
     def settled(self, displacement: Float[Array, "6"]) -> tuple[Any, ...]:
-        """The loads' memories after the platform was moved slowly to a displacement (m, rad, from rest) and held there."""
+        """Memories of all loads after a slow displacement (m, rad, from rest) that is held."""
         return tuple(load.settled(displacement) for load in self.loads)
 
     def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
-        """What the loads read: the motion, and how the water moves past strips and ends."""
+        """Motion, submerged geometry and flow at an instant.
+
+        Args:
+            time: Time (s).
+            state: Position, velocity and memory.
+            sea: The sea, before the loads change it.
+
+        Returns:
+            What the loads read.
+        """
         sea = self.through(sea)
         matrix = rotation(state.position[3:])
         hull = self.hull if self.directions == "body" else self.hull.turned(matrix.T)
@@ -311,8 +382,13 @@ class Model(eqx.Module):
             None if flow is None or not lids else (flow.pressure[n + whole :], axes.T @ flow.acceleration[:, n + whole :]),
         )
 
-    def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "Total":
-        """All loads together, in body axes."""
+    def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "LoadSum":
+        """Sum of all loads in body axes.
+
+        Args:
+            now: Motion, geometry and flow at the instant.
+            memory: Memory of each load.
+        """
         actions = [load.act(now, remembered) for load, remembered in zip(self.loads, memory, strict=True)]
 
         def total(name: str, zero: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -326,7 +402,7 @@ class Model(eqx.Module):
         per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
         line_mass = hull.join(now.over_strips(per_volume) * now.strip_shape.volume, end_mass)
         on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
-        return Total(
+        return LoadSum(
             force + hull.wrench(on_lines, now.lines.away),
             total("added_mass", jnp.zeros((6, 6))),
             hull.masses(per_volume, end_mass, now.wetted),
@@ -335,7 +411,16 @@ class Model(eqx.Module):
         )
 
     def rate(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> State:
-        """Rate of the state: Newton and Euler about the reference point in body axes (Fossen 2011, section 3.3)."""
+        """Time derivative of the state: Newton and Euler about the reference point, body axes.
+
+        Args:
+            time: Time (s).
+            state: Position, velocity and memory.
+            sea: The sea.
+
+        References:
+            Fossen (2011), section 3.3.
+        """
         now = self.instant(time, state, sea)
         total = self.sum_of_loads(now, state.memory)
         spin, linear, body = state.velocity[3:], state.velocity[:3], self.body
@@ -351,18 +436,23 @@ class Model(eqx.Module):
 
     @staticmethod
     def position_rate(position: Float[Array, "6"], velocity: Float[Array, "6"]) -> Float[Array, "6"]:
-        """Rates of surge ... yaw of a velocity in body axes."""
+        """Rates of surge ... yaw (m/s, rad/s) from a velocity in body axes."""
         both = cosines(position[3:])
         return jnp.concatenate([rotation_of(both) @ velocity[:3], attitude_rates_of(both, velocity[3:])])
 
     @staticmethod
     def body_velocity(position: Float[Array, "6"], rates: Float[Array, "6"]) -> Float[Array, "6"]:
-        """Velocity in body axes of rates of surge ... yaw: the inverse of `position_rate`."""
+        """Velocity in body axes from rates of surge ... yaw: the inverse of `position_rate`."""
         attitude = position[3:]
         return jnp.concatenate([rotation(attitude).T @ rates[:3], angular_velocity(attitude, rates[3:])])
 
     def force_at_rest(self, position: Float[Array, "6"], sea: AbstractSea | None = None) -> Float[Array, "6"]:
-        """Force on the motionless platform at a position, in earth axes (N, N m)."""
+        """Force and moment (N, N m, earth axes) on the motionless platform at a position.
+
+        Args:
+            position: Position (m, rad), (6,).
+            sea: The sea; None: still water.
+        """
         state = State(position, jnp.zeros(6), self.rest().memory)
         now = self.instant(jnp.zeros(()), state, StillWater() if sea is None else sea)
         total = self.sum_of_loads(now, state.memory)
@@ -370,6 +460,6 @@ class Model(eqx.Module):
 
 
 def _sum(parts: list[Array | None]) -> Array | None:
-    """Of those that are there."""
+    """Sum of the terms that are not None; None where there are none."""
     there = [part for part in parts if part is not None]
     return sum(there[1:], there[0]) if there else None

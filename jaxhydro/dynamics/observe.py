@@ -1,4 +1,4 @@
-"""What motion sensors record of a simulated motion, and the motion behind a recorded one.
+"""Readings of the motion sensors from a simulated motion, and the reverse.
 
 Everything that is compared with a measurement goes through `observe`: calibrations, simulated campaigns, diagnoses.
 """

@@ -1,4 +1,4 @@
-"""An irregular sea as asked for, of a spectrum or a wave record, and the sea that is made of it."""
+"""Irregular sea from a requested spectrum or wave record."""
 
 import math
 from collections.abc import Callable
@@ -19,28 +19,43 @@ from jaxhydro.waves.irregular import separated_record, spectrum_components
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz, white_noise
 
-MISSED = 0.01  # of a record in the band, that first and second order may miss by root mean square
-CUT = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
-NEARLY_NONE = 0.05  # share, below which it is a mistake
-LEAST = 100  # samples after the transient
+MAX_RECORD_MISMATCH = 0.01  # of a record in the band, that first and second order may miss by root mean square
+NOTED_SHARE = 0.95  # share of a spectrum's or a record's variance in the sea, below which a note says so
+MIN_SHARE = 0.05  # share, below which it is a mistake
+MIN_SAMPLES = 100  # samples after the transient
 TRANSIENT = 500.0  # s times its pace, at most a quarter of the duration
 
 
 def share_within(elevation: np.ndarray, step: float, low: float, high: float) -> float:
-    """Share of the variance of a record, sampled every `step` (s), between two frequencies (Hz)."""
+    """Fraction of a record's variance between two frequencies.
+
+    Args:
+        elevation: Elevation (m), (t,).
+        step: Sampling interval (s).
+        low: Lower frequency (Hz).
+        high: Upper frequency (Hz).
+    """
     power = np.abs(np.fft.rfft(elevation - elevation.mean())) ** 2
     frequency = np.fft.rfftfreq(len(elevation), step)
     return float(power[(frequency >= low) & (frequency <= high)].sum() / max(power.sum(), 1e-300))
 
 
 def usual_transient(duration: float, pace: float = 1.0) -> float:
-    """s, left out of statistics where nothing else is asked for."""
+    """Default time (s) that statistics leave out at the start."""
     return min(TRANSIENT * pace, 0.25 * duration)
 
 
 @dataclass(frozen=True)
 class Record:
-    """A measured elevation (m) at even times (s), the gauge's place (m), and where it was read."""
+    """Measured wave elevation.
+
+    Attributes:
+        source: File that it was read from.
+        column: Column of the file.
+        times: Times (s), (t,), even.
+        elevation: Elevation (m), (t,).
+        position: Position of the gauge (m, earth axes).
+    """
 
     source: str
     column: str
@@ -50,10 +65,23 @@ class Record:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """An irregular sea as asked for; periods in s, frequencies in Hz, heading in deg. hs None: `record` instead.
+class RequestedSea:
+    """Request for an irregular sea, from a spectrum or, where `hs` is None, from `record`.
 
-    low and cutoff None: those that `jaxhydro.waves.wave_bands` finds for the platform (`band`).
+    Attributes:
+        hs: Significant wave height (m), or None.
+        tp: Peak period (s), or None.
+        gamma: Peak enhancement (-), or None.
+        spectrum: Name of the spectrum.
+        seed: Seed of the random numbers.
+        amplitudes: As in `spectrum_components`.
+        low: Lowest frequency (Hz); None: by `jaxhydro.waves.wave_bands`.
+        cutoff: Highest frequency (Hz); None: by `jaxhydro.waves.wave_bands`.
+        order: 1 or 2.
+        stretching: As in `WaveSea`.
+        heading: Direction that the waves travel to (deg).
+        transient: Time (s) that statistics leave out, or None.
+        record: Measured elevation, or None.
     """
 
     hs: float | None
@@ -71,7 +99,7 @@ class Asked:
     record: Record | None = None
 
     def band(self, pace: float) -> tuple[float, float]:
-        """Lowest and highest frequency (Hz), for a platform of a `pace`; those that nobody gave by `wave_bands`."""
+        """Lowest and highest frequency (Hz) for a platform of a `pace`; those not given by `wave_bands`."""
         if self.low is not None and self.cutoff is not None:
             return self.low, self.cutoff
         if self.record is not None:
@@ -83,8 +111,15 @@ class Asked:
         return low, cutoff
 
 
-class Built(NamedTuple):
-    """A sea, what is written about it, and the spectrum asked for (Hz -> m2/Hz; None: a record)."""
+class BuiltSea(NamedTuple):
+    """Irregular sea built from a request.
+
+    Attributes:
+        sea: The sea.
+        about: What is written about it.
+        target: Spectrum asked for, from Hz to m²/Hz; None for a record.
+        notes: Notes on the sea.
+    """
 
     sea: IrregularSea
     about: dict[str, Any]
@@ -92,8 +127,17 @@ class Built(NamedTuple):
     notes: list[str]
 
 
-def build_sea(model: Model, asked: Asked, duration: float) -> Built:
-    """The sea that is asked for. Raises InputError that names the option or the record."""
+def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
+    """Build the sea that is requested.
+
+    Args:
+        model: The platform.
+        asked: The request.
+        duration: Duration of the simulation (s).
+
+    Raises:
+        InputError: The sea is impossible; the option or the record is named.
+    """
     notes: list[str] = []
     low, cutoff = asked.band(float(model.pace))
     if asked.record is not None:
@@ -126,28 +170,34 @@ def build_sea(model: Model, asked: Asked, duration: float) -> Built:
         record = asked.record
         left = record.elevation - record.elevation.mean() - sea.gauge(record.times, record.position)
         about["share_of_record"] = 1 - float(np.var(left) / np.var(record.elevation))
-        if about["share_of_record"] < CUT:
+        if about["share_of_record"] < NOTED_SHARE:
             notes.append(f"the sea has {about['share_of_record']:.1%} of the record's variance: see --low and --cutoff")
-    return Built(sea, about, target, notes)
+    return BuiltSea(sea, about, target, notes)
 
 
 def outside(model: Model, sea: IrregularSea, about: dict[str, Any]) -> list[Remark]:
-    """What is to be said of energy outside the model's tables, which goes into `about` as well."""
+    """Remarks on energy outside the model's tables; `about` gets it too."""
     found = outside_tables(model, sea.components)
     about |= {f"share_outside_{one.key}": share for one, share in found.items()}
     return [remark for one, share in found.items() if (remark := one.remark(share)) is not None]
 
 
 def usual_cutoff(height: float, gravity: float) -> float:
-    """sqrt(2 g / Hs) / 2 pi (Hz; m, m/s2): where second order of a sea is usually cut off.
+    """Usual cutoff frequency (Hz) of second-order seas, sqrt(2 g / Hs) / 2 pi.
 
-    C. T. Stansberg, Non-Gaussian extremes in numerically generated second-order random waves on deep water, ISOPE 1998.
+    Args:
+        height: Significant wave height Hs (m).
+        gravity: Acceleration of gravity g (m/s²).
+
+    References:
+        C. T. Stansberg (1998), Non-Gaussian extremes in numerically generated second-order random waves on deep water,
+            ISOPE.
     """
     return math.sqrt(2 * gravity / height) / (2 * math.pi)
 
 
 def _from_spectrum(
-    model: Model, asked: Asked, duration: float, notes: list[str]
+    model: Model, asked: RequestedSea, duration: float, notes: list[str]
 ) -> tuple[Components, dict[str, Any], Callable[[np.ndarray], np.ndarray]]:
     hs, tp, gamma = asked.hs or 0.0, asked.tp or 0.0, asked.gamma
     if asked.spectrum == "jonswap" and gamma is None:
@@ -176,10 +226,10 @@ def _from_spectrum(
             raise InputError("--hs", [Problem("", "a sea that does not break", f"one too steep ({error})")]) from None
         raise impossible("--cutoff", error) from None
     share = float(spectrum(waves.omega).sum() * 2 * math.pi / waves.period) / (hs**2 / 16)
-    if share < NEARLY_NONE:
+    if share < MIN_SHARE:
         expected = f"a band, here {low:g} to {cutoff:g} Hz, with waves in it"
         raise InputError("--cutoff", [Problem("", expected, f"one with {share:.1%} of the spectrum")])
-    if share < CUT:
+    if share < NOTED_SHARE:
         notes.append(f"{share:.1%} of the spectrum lies from {low:g} to {cutoff:g} Hz: see --low and --cutoff")
     about = {
         "spectrum": asked.spectrum,
@@ -192,7 +242,7 @@ def _from_spectrum(
     return waves, about, lambda f: 2 * math.pi * np.asarray(spectrum(2 * math.pi * jnp.asarray(f)))
 
 
-def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
+def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[str]) -> tuple[Components, dict[str, Any]]:
     low, cutoff = asked.band(float(model.pace))
     try:
         found = separated_record(
@@ -208,7 +258,7 @@ def _from_record(model: Model, asked: Asked, record: Record, notes: list[str]) -
     except ValueError as error:
         option = "--cutoff" if "cutoff" in str(error) or "band" in str(error) else f"{record.source}: column {record.column}"
         raise impossible(option, error) from None
-    if found.mismatch > MISSED:
+    if found.mismatch > MAX_RECORD_MISMATCH:
         missed = f"first and second order miss {found.mismatch:.1%} of the record in the band, and the nearest found is used"
         notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
     spectrum = power_spectrum(record.times, record.elevation)

@@ -1,4 +1,4 @@
-"""What a simulation returns, and pure analysis of motion records."""
+"""Simulated motion over time, and decrement and period of decays."""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -10,11 +10,20 @@ from jaxtyping import Array, Float
 from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
 
-EDGE = 0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
+MIN_DISTANCE_FROM_END = (
+    0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
+)
 
 
 class Response(eqx.Module):
-    """Motion of the reference point over time: position (m, rad), rate and acceleration of surge ... yaw, dof last."""
+    """Motion of the reference point over time; the degree of freedom is the last axis.
+
+    Attributes:
+        time: Times (s), (t,).
+        position: Surge, sway, heave (m), roll, pitch, yaw (rad), (t, 6).
+        rate: Time derivative of the position (m/s, rad/s), (t, 6).
+        acceleration: Second derivative of the position (m/s², rad/s²), (t, 6).
+    """
 
     time: Float[Array, " t"]
     position: Float[Array, "t 6"]
@@ -22,15 +31,28 @@ class Response(eqx.Module):
     acceleration: Float[Array, "t 6"]
 
     def __getitem__(self, dof: str) -> Float[Array, " t"]:
-        """Position of one degree of freedom by its name (m or rad). Raises UnknownName for another name."""
+        """Position of one degree of freedom (m or rad), (t,).
+
+        Args:
+            dof: Name, such as "surge".
+
+        Raises:
+            UnknownName: The name is not a degree of freedom.
+        """
         if dof not in DOFS:
             raise unknown("degree of freedom", dof, DOFS)
         return self.position[..., DOFS.index(dof)]
 
 
 class Cycles(NamedTuple):
-    """A decay by half cycles: mean amplitude of two neighbouring extremes, time of the half cycle's middle, its period (s),
-    and logarithmic decrement per whole cycle."""
+    """Half cycles of a decay.
+
+    Attributes:
+        time: Middle of each half cycle (s), (n,).
+        amplitude: Mean amplitude of its two extremes (unit), (n,).
+        period: Period (s), twice the half cycle, (n,).
+        decrement: Logarithmic decrement per whole cycle (-), (n,).
+    """
 
     time: np.ndarray
     amplitude: np.ndarray
@@ -39,10 +61,18 @@ class Cycles(NamedTuple):
 
 
 def extremes(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Times and values of the successive crests and troughs of a decay about its own mean level.
+    """Successive crests and troughs of a decay about its own mean level.
 
-    One extreme between two crossings of the level that are clear of the noise (one standard deviation, six times): the
-    vertex of a parabola through the tip, fitted over an eighth of a cycle, so that noise does not pull it out.
+    There is one extreme between two crossings that clear the noise by six standard deviations. It is the vertex of a
+    parabola fitted over an eighth of a cycle around the tip, so that noise does not enlarge it.
+
+    Args:
+        time: Times (s), (t,).
+        motion: Motion about its mean level (unit), (t,).
+        noise: Standard deviation of the noise (unit).
+
+    Returns:
+        Times (s) and values (unit) of the extremes.
     """
     quiet = 6 * noise
     sign = np.zeros(len(motion), dtype=int)
@@ -57,7 +87,7 @@ def extremes(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[
         span = slice(clear[first], clear[last - 1] + 1)
         t, x = time[span], motion[span]
         tip = int(np.argmax(np.abs(x)))
-        clearance = EDGE * (t[-1] - t[0])
+        clearance = MIN_DISTANCE_FROM_END * (t[-1] - t[0])
         at_end = t[tip] - time[0] < clearance or time[-1] - t[tip] < clearance
         if len(t) < 5 or at_end or tip in (0, len(t) - 1):
             continue  # cut off by an end of the record, or too short to be a half cycle
@@ -73,10 +103,21 @@ def extremes(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[
 
 
 def decay_cycles(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> Cycles:
-    """Decrement and period against amplitude of a decay that oscillates about zero.
+    """Decrement and period against amplitude, of a decay that oscillates about zero.
 
-    From successive extremes A_i, A_i+1 half a period apart: amplitude (A_i + A_i+1)/2, period 2 (t_i+1 - t_i), decrement 2
-    ln(A_i / A_i+1) per cycle (the logarithmic decrement: Den Hartog 1985, Mechanical Vibrations, chapter 2).
+    From successive extremes A_i, A_i+1 half a period apart: amplitude (A_i + A_i+1)/2, period 2 (t_i+1 - t_i), decrement
+    2 ln(A_i / A_i+1) per cycle.
+
+    Args:
+        time: Times (s), (t,).
+        motion: Motion (unit), (t,).
+        noise: Standard deviation of the noise (unit).
+
+    Returns:
+        One entry per half cycle.
+
+    References:
+        Den Hartog (1985), Mechanical Vibrations, chapter 2 (logarithmic decrement).
     """
     times, values = extremes(np.asarray(time), np.asarray(motion), noise)
     size = np.abs(values)

@@ -1,4 +1,4 @@
-"""Simulations: a platform and a sea in, motion at the times asked for out."""
+"""Simulation of a platform in a sea, and free decays."""
 
 import math
 from collections.abc import Mapping
@@ -27,18 +27,18 @@ from jaxhydro.waves.support_sea import SupportSea
 
 SEA_STEP = 0.25  # s times the platform's pace, in irregular seas where no step is asked for
 LONGEST_STEP, STEP_AT_REST = 1.0, 0.5  # the same elsewhere: the longest, and that of a platform which nothing restores
-ALIKE = 1.001  # of a step: hulls of nearly one size take the same
+STEP_MARGIN = 1.001  # of a step: hulls of nearly one size take the same
 STEPS_PER_PERIOD = 24  # of the shortest natural period, where no step is asked for
-RESOLVED = 0.075  # of the shortest waves' period: the longest step
-STABLE = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
-STABLE_ELSE = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
+STEP_PER_WAVE_PERIOD = 0.075  # of the shortest waves' period: the longest step
+STABILITY_LIMIT = {"ab4": 0.3}  # step times the fastest rate of a memory: Adams-Bashforth is stable to there (on the real axis)
+DEFAULT_STABILITY_LIMIT = 1.0  # by Runge-Kutta schemes, stable to 2.8: for accuracy
 
 
 def default_step(model: Model, method: Method = "tsit5") -> float:
-    """A time step (s) that follows the model's fastest natural motion: a 24th of its shortest period, at most 1 s at the size
-    of VolturnUS-S, and what its loads remember (`memory_step`).
+    """Default time step (s) outside irregular seas.
 
-    The error of a decay is then some 1e-6 of its amplitude. Waves shorter than the platform's motions ask for less.
+    It is a 24th of the shortest natural period, at most 1 s times `Model.pace`, and short enough for `memory_step`. The
+    error of a decay is then about 1e-6 of its amplitude. Waves shorter than the platform's motions need a smaller step.
     """
     periods = natural_modes(model).period
     pace = float(model.pace)
@@ -47,25 +47,38 @@ def default_step(model: Model, method: Method = "tsit5") -> float:
 
 
 def memory_step(model: Model, method: Method = "tsit5") -> float:
-    """The longest step (s) with which a method follows what loads remember (`AbstractLoad.fastest`); infinite for most."""
+    """Longest time step (s) that resolves the loads' memories; infinite where none is fast.
+
+    Args:
+        model: The platform.
+        method: Integration scheme.
+
+    Raises:
+        UnknownName: Another method.
+    """
     check(method=(method, get_args(Method)))
     fastest = max(load.fastest() for load in model.loads)
-    return STABLE.get(method, STABLE_ELSE) / fastest if fastest else math.inf
+    return STABILITY_LIMIT.get(method, DEFAULT_STABILITY_LIMIT) / fastest if fastest else math.inf
 
 
 def sea_step(model: Model) -> float:
-    """The step (s) in irregular seas where none is asked for: 0.25 s at the size of VolturnUS-S."""
-    return ALIKE * SEA_STEP * float(model.pace)
+    """Default time step (s) in irregular seas: 0.25 s at the size of VolturnUS-S."""
+    return STEP_MARGIN * SEA_STEP * float(model.pace)
 
 
 def excursion_of(model: Model) -> float:
-    """How far (m) a platform may drift along the waves before its sea is prepared anew: 20 m at the size of VolturnUS-S."""
+    """Drift (m) along the waves beyond which a sea is prepared anew: 20 m at the size of VolturnUS-S."""
     return EXCURSION * float(model.size)
 
 
 def largest_step(model: Model, cutoff: float) -> float:
-    """s, in irregular seas: what follows the platform's motions, and waves of up to `cutoff` (Hz)."""
-    return min(sea_step(model), default_step(model, "ab4"), RESOLVED / cutoff)
+    """Largest time step (s) in an irregular sea that resolves the platform's motions and the waves.
+
+    Args:
+        model: The platform.
+        cutoff: Highest frequency of the waves (Hz).
+    """
+    return min(sea_step(model), default_step(model, "ab4"), STEP_PER_WAVE_PERIOD / cutoff)
 
 
 @eqx.filter_jit
@@ -94,26 +107,37 @@ def simulate(
     method: Method | None = None,
     adjoint: Adjoint = "forward",
 ) -> Response:
-    """Motion of the platform at `times` (s, increasing, as recorded: any spacing).
+    """Simulate the motion of a platform in a sea.
 
-    It starts at `times[0]` from the static equilibrium with the given `position` (m, rad: added to the equilibrium where given
-    by name, as if it had been moved there slowly and held; absolute where an array) and `rate` (m/s, rad/s of surge ... yaw).
-    `step` (s) is the largest internal step; the one taken divides the duration. Positions are those of the reference
-    point, equilibrium included.
+    The simulation starts at `times[0]` from the static equilibrium. Positions are those of the reference point, equilibrium
+    included. In an `IrregularSea` the sea is first prepared for the hull (see `supports`). Coefficients that depend on the
+    sea state are then those of that sea (`Model.in_sea`).
 
-    In an `IrregularSea` the default is "ab4", four-step Adams-Bashforth at `sea_step` (see `adams_bashforth`), the sea is
-    prepared for the hull first (see `supports`), and coefficients that depend on the sea state are those of its own
-    (`Model.in_sea`). Else it is "tsit5".
+    Methods, all at fixed steps:
 
-    `method` "tsit5" is Tsitouras 5(4) with diffrax's tableau in a loop of this package, "rk4" the classical scheme
-    in the same loop, "diffrax" diffrax's own solver; steps are fixed. On a decay Tsit5 at 1 s costs less than RK4 at 0.5 s and
-    is ten times as accurate. The loop takes some 15 % less time than diffrax for the same numbers, compiles in two thirds of
-    the time and in a tenth from the persistent cache, and its forward Jacobian has the derivatives to initial states for
-    nothing; diffrax's reverse gradient is the cheaper one (`make bench` prints the ratios).
-    `adjoint` is "forward" for jvp, jacfwd and least squares, "reverse" for grad of a scalar (checkpointed).
+    - "ab4": four-step Adams-Bashforth. Default in an `IrregularSea`, at `sea_step`.
+    - "tsit5": Tsitouras 5(4) in a loop of this package. Default elsewhere, at `default_step`.
+    - "rk4": the classical Runge-Kutta scheme in the same loop.
+    - "diffrax": Tsitouras 5(4) by diffrax's own solver. Only its reverse gradient is cheaper than that of the loop.
 
-    Raises UnknownName for another method, adjoint or motion, ValueError for times that do not increase and for regular waves
-    outside a table of the model, EquilibriumError where the platform does not rest.
+    Args:
+        model: The platform.
+        times: Output times (s), (t,), increasing, of any spacing.
+        sea: The sea; None: still water.
+        position: Initial position (m, rad). By name: displacement from equilibrium, reached slowly and held. An array:
+            absolute.
+        rate: Initial rates of surge ... yaw (m/s, rad/s).
+        step: Largest time step (s); the step taken divides the duration. None: the default of the method.
+        method: Integration scheme; None: by the sea.
+        adjoint: "forward" for jvp, jacfwd and least squares; "reverse" for grad of a scalar (checkpointed).
+
+    Returns:
+        Motion at `times`.
+
+    Raises:
+        UnknownName: Another method, adjoint or motion.
+        ValueError: Times do not increase, regular waves lie outside a table of the model, or the platform is carried away.
+        EquilibriumError: The platform has no static equilibrium.
     """
     check(adjoint=(adjoint, get_args(Adjoint)), method=(method, (*get_args(Method), None)))
     times = jnp.asarray(times, float)
@@ -128,25 +152,30 @@ def simulate(
     named = position is None or isinstance(position, Mapping)
     memory = model.settled(by_name(position)) if named else model.rest().memory
     rest = equilibrium(model) if named else jnp.zeros(6)
-    q, velocity = _begun(rest, by_name(position), by_name(rate))
+    q, velocity = _initial_state(rest, by_name(position), by_name(rate))
     start = State(q, velocity, memory)
     if isinstance(sea, IrregularSea):
-        return in_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
+        return simulate_irregular(model.in_sea(state_of(sea.components)), sea, start, times, step, method, adjoint).response
     duration = float(times[-1] - times[0])
     steps = max(1, math.ceil(duration / step - 1e-9))
     return _simulate(model, sea, start, times, jnp.asarray(duration / steps), steps, method, adjoint)[0]
 
 
 @jax.jit
-def _begun(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Array, "6"]) -> tuple[Array, Array]:
-    """Position, and velocity in body axes."""
+def _initial_state(rest: Float[Array, "6"], position: Float[Array, "6"], rate: Float[Array, "6"]) -> tuple[Array, Array]:
+    """Initial position, and velocity in body axes."""
     return rest + position, Model.body_velocity(rest + position, rate)
 
 
-class InIrregular(NamedTuple):
-    """A simulation in an irregular sea, the sea as it was prepared, and the steps taken: size (s) and number.
+class IrregularSimulation(NamedTuple):
+    """Simulation in an irregular sea.
 
-    `response` is the motion at the times asked for, `grid` that at the ends of all steps.
+    Attributes:
+        response: Motion at the times asked for.
+        grid: Motion at the ends of all steps.
+        sea: The sea as it was prepared.
+        step: Time step (s).
+        steps: Number of steps.
     """
 
     response: Response
@@ -156,7 +185,7 @@ class InIrregular(NamedTuple):
     steps: int
 
 
-def in_irregular(
+def simulate_irregular(
     model: Model,
     sea: IrregularSea,
     start: State,
@@ -165,11 +194,24 @@ def in_irregular(
     method: Method = "ab4",
     adjoint: Adjoint = "forward",
     margin: float = 0.0,
-) -> InIrregular:
-    """In steps of at most `limit` (s) that divide the sea's period; prepared anew for a larger box where the platform has left
-    the first one. The last box has `margin` (m) to spare, for what drifts further in it.
+) -> IrregularSimulation:
+    """Simulate in an irregular sea, prepared anew for a larger box where the platform leaves the first.
 
-    Raises ValueError for a platform that is carried away.
+    Args:
+        model: The platform, with its coefficients in this sea.
+        sea: The sea.
+        start: Initial state.
+        times: Output times (s), (t,).
+        limit: Largest time step (s); the step taken divides the sea's period.
+        method: Integration scheme.
+        adjoint: As in `simulate`.
+        margin: Distance (m) that the last box has to spare.
+
+    Returns:
+        The motion, and the sea and steps that were used.
+
+    Raises:
+        ValueError: The platform is carried away.
     """
     begin = float(times[0])
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
@@ -182,21 +224,33 @@ def in_irregular(
         met: Any = model.through(prepared)  # with the box moved where the sea is
         reached = float(_farthest(found.position, jnp.asarray(points), met))
         if not reached + margin > prepared.half:
-            return InIrregular(found, grid, prepared, step, steps)
+            return IrregularSimulation(found, grid, prepared, step, steps)
         if reached > prepared.half + 10 * own:
             raise ValueError(f"the platform is carried {reached:.3g} m along the waves: check mooring, step and sea")
         excursion += reached + margin - prepared.half + 0.5 * own
 
 
 def steps_in(sea: IrregularSea, duration: float, limit: float) -> tuple[float, int]:
-    """Size (s) and number of the steps of at most `limit` (s) that divide the sea's period and cover `duration` (s)."""
+    """Size (s) and number of time steps that divide the sea's period and cover a duration.
+
+    Args:
+        sea: The sea.
+        duration: Duration (s).
+        limit: Largest time step (s).
+    """
     period = float(sea.components.period)
     step = period / fourier_length(period / limit)
-    return step, max(adams_bashforth.START, math.ceil(duration / step - 1e-9))
+    return step, max(adams_bashforth.START_STEPS, math.ceil(duration / step - 1e-9))
 
 
 def farthest(position: Float[Array, "t 6"], points: Float[Array, "3 p"], sea: SupportSea) -> Float[Array, ""]:
-    """Farthest distance (m) of any of the hull's `points` from the middle of the sea's box, along the waves."""
+    """Largest distance (m) of the hull from the middle of the sea's box, along the waves.
+
+    Args:
+        position: Positions (m, rad) over time, (t, 6).
+        points: Extremities of the hull (m), (3, p).
+        sea: The prepared sea.
+    """
     place = jax.vmap(lambda q: sea.along @ (q[:2, None] + rotation(q[3:])[:2] @ points) - sea.middle)(position)
     return jnp.abs(place).max()
 
@@ -210,9 +264,19 @@ def free_decay(
     times: Float[Array, " t"] | np.ndarray,
     **options,
 ) -> Response:
-    """Free decay in still water, released at rest from `displacement` (m, rad) off the static equilibrium.
+    """Simulate a free decay in still water, released at rest.
 
-    `options` are those of `simulate`. Raises ValueError for an angle beyond a right one: degrees, most likely.
+    Args:
+        model: The platform.
+        displacement: Displacement (m, rad) from the static equilibrium, by name or (6,).
+        times: Output times (s), (t,).
+        **options: Other arguments of `simulate`.
+
+    Returns:
+        Motion at `times`.
+
+    Raises:
+        ValueError: An angle is above pi/2, and so probably in degrees.
     """
     released = by_name(displacement)
     if bool((jnp.abs(released[3:]) > math.pi / 2).any()):
@@ -221,7 +285,11 @@ def free_decay(
 
 
 def by_name(values: Mapping[str, float] | Float[Array, "6"] | None) -> Float[Array, "6"]:
-    """Six degrees of freedom from named ones (what is not named is zero), or as they are. Raises UnknownName for others."""
+    """Six degrees of freedom from named ones (others zero), or an array as it is.
+
+    Raises:
+        UnknownName: A name is not a degree of freedom.
+    """
     if values is None:
         return jnp.zeros(6)
     if not isinstance(values, Mapping):

@@ -1,4 +1,4 @@
-"""Solution of a symmetric positive definite 6 x 6 system by blocks."""
+"""Solver of a symmetric positive definite 6 x 6 system by blocks."""
 
 import jax
 import jax.numpy as jnp
@@ -29,9 +29,9 @@ def inverse6(matrix: Float[Array, "6 6"]) -> Float[Array, "6 6"]:
 
 
 def solve6(matrix: Float[Array, "6 6"], vector: Float[Array, "6"]) -> Float[Array, "6"]:
-    """x of M x = f, M symmetric positive definite, by elimination of the first block.
+    """Solution x of M x = f for a symmetric positive definite M, by elimination of the first block.
 
-    Sums, not products of matrices, and barriers between them: one kernel each, that is not worked out twice.
+    Sums, not products of matrices, with barriers between them: one kernel each, computed once.
     """
     a, b, d = matrix[:3, :3], matrix[:3, 3:], matrix[3:, 3:]
     ia = jax.lax.optimization_barrier(_inverse3(a))
@@ -49,9 +49,15 @@ def accelerate(
     masses: Float[Array, " k"],
     moments: Float[Array, "6 6 k"],
 ) -> Float[Array, "6"]:
-    """x of (M + sum m_k J_k) x = f: acceleration from mass and force of the body and masses of its elements and ends.
+    """Solution x of (M + sum m_k J_k) x = f: acceleration from forces and masses.
 
-    `moments` holds the constant J_k. Derivatives reuse the inverse, dx = M^-1 (df - dM x), and never form that of the matrix.
+    Derivatives reuse the inverse, dx = M^-1 (df - dM x), and never form that of the matrix.
+
+    Args:
+        mass: M of the body (kg, kg m, kg m²), (6, 6).
+        force: f (N, N m), (6,).
+        masses: m_k of elements and ends, (k,).
+        moments: Constant J_k, (6, 6, k).
     """
     return solve6(*jax.lax.optimization_barrier((mass + moments @ masses, force)))
 

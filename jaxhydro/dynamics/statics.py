@@ -1,4 +1,4 @@
-"""Static equilibrium, and natural periods of small motion about it."""
+"""Static equilibrium, natural modes and periods."""
 
 from collections.abc import Collection
 from typing import NamedTuple
@@ -14,13 +14,13 @@ from jaxhydro.dynamics.model import Model, State
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea import StillWater
 
-CLOSE = 1e-12  # of the position: the last step
+NEWTON_TOLERANCE = 1e-12  # of the position: the last step
 ITERATIONS = 64
-UNCOUPLED = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
-ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
-SUNK = 20.0  # the same: heave in which a platform does not float, if it is not less deep
-WIDTH = 50.0  # the same: VolturnUS-S's half width, by which modes compare rotations with displacements
-FREE = 1e-12  # of the stiffest motion's restoring: what is below is none
+MIN_COUPLING = 1e-9  # of two motions' own mass or stiffness: what is below goes with rounding
+MOMENT_ARM = 10.0  # m times the platform's size: lever that turns a moment out of balance into a force
+MAX_HEAVE = 20.0  # the same: heave in which a platform does not float, if it is not less deep
+ROTATION_LENGTH = 50.0  # the same: VolturnUS-S's half width, by which modes compare rotations with displacements
+MIN_RESTORING = 1e-12  # of the stiffest motion's restoring: what is below is none
 
 
 class EquilibriumError(RuntimeError):
@@ -28,27 +28,32 @@ class EquilibriumError(RuntimeError):
 
 
 def _balance(position: Float[Array, "6"], model: Model) -> Float[Array, "6"]:
-    """Net force over weight, net moment over weight times `ARM`."""
+    """Net force over weight, net moment over weight times `MOMENT_ARM`."""
     weight = model.body.mass * model.environment.gravity
-    arm = jnp.ones(6).at[3:].set(ARM * model.size)
+    arm = jnp.ones(6).at[3:].set(MOMENT_ARM * model.size)
     return model.force_at_rest(position) / (weight * arm)
 
 
-class _Held(NamedTuple):
-    """A motion that something holds: 1 there (6,), and where (m, rad)."""
+class _HeldMotion(NamedTuple):
+    """A degree of freedom that is held.
+
+    Attributes:
+        mask: 1 for the degree of freedom, else 0, (6,).
+        value: Where it is held (m or rad).
+    """
 
     mask: Float[Array, "6"]
     value: Float[Array, ""]
 
 
-def _unbalanced(position: Float[Array, "6"], model: Model, held: _Held | None) -> Float[Array, "6"]:
-    """What a position of rest makes zero: `_balance`, and of a motion that is held how far it is from there."""
+def _unbalanced(position: Float[Array, "6"], model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
+    """Residual of the equilibrium: `_balance`, and for a held motion its distance from where it is held."""
     found = _balance(position, model)
     return found if held is None else jnp.where(held.mask > 0, position - held.value, found)
 
 
 @eqx.filter_custom_jvp
-def _root(model: Model, held: _Held | None) -> Float[Array, "6"]:
+def _root(model: Model, held: _HeldMotion | None) -> Float[Array, "6"]:
     # Newton's iteration is written out: tracing a library's takes longer than all the rest of a command's start, and programs
     # with the library's implicit derivative cannot be kept compiled
 
@@ -58,13 +63,13 @@ def _root(model: Model, held: _Held | None) -> Float[Array, "6"]:
 
     def going(at: tuple[Array, Array, Array]) -> Array:
         root, step, count = at
-        return (jnp.abs(step).max() > CLOSE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
+        return (jnp.abs(step).max() > NEWTON_TOLERANCE * (1 + jnp.abs(root).max())) & (count < ITERATIONS)
 
     def newton(at: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         root, _, count = at
         slopes, found = jax.jacfwd(balance, has_aux=True)(root)
         # the least-norm step lets a motion that nothing restrains (a ship's surge, a free heave) stay where it is
-        step = jnp.linalg.pinv(slopes, rtol=FREE) @ found
+        step = jnp.linalg.pinv(slopes, rtol=MIN_RESTORING) @ found
         return root - step, step, count + 1
 
     return jax.lax.while_loop(going, newton, (jnp.zeros(6), jnp.full(6, jnp.inf), jnp.asarray(0)))[0]
@@ -75,7 +80,7 @@ def _root_jvp(primals, tangents):
     """By the implicit function theorem."""
     root = _root(*primals)
     _, balance = eqx.filter_jvp(lambda *at: _unbalanced(root, *at), primals, tangents)
-    return root, -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=FREE) @ balance
+    return root, -jnp.linalg.pinv(jax.jacfwd(_unbalanced)(root, *primals), rtol=MIN_RESTORING) @ balance
 
 
 @eqx.filter_jit
@@ -85,11 +90,19 @@ def _solve(model: Model) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
 
 
 def equilibrium(model: Model) -> Float[Array, "6"]:
-    """Where the platform rests in still water: surge, sway, heave (m), roll, pitch, yaw (rad), from its reference position.
+    """Static equilibrium in still water, by Newton's method; differentiable in the model.
 
-    Found by Newton's iteration; differentiable in the model. Motions without restoring stay at zero. Raises
-    EquilibriumError where no balance to 1e-8 of the weight is found, or one that no platform rests in: it sank or rose out of
-    the water, or lies on its side.
+    Motions without restoring stay at zero.
+
+    Args:
+        model: The platform.
+
+    Returns:
+        Surge, sway, heave (m), roll, pitch, yaw (rad) from the reference position.
+
+    Raises:
+        EquilibriumError: No balance to 1e-8 of the weight was found, or the platform sinks, rises out of the water or lies
+            on its side.
     """
     position, residual = _solve(model)
     if isinstance(residual, jax.core.Tracer):
@@ -97,27 +110,40 @@ def equilibrium(model: Model) -> Float[Array, "6"]:
     at = np.asarray(position)
     worst = int(np.argmax(np.abs(np.nan_to_num(np.asarray(residual), nan=np.inf))))
     if not np.abs(np.asarray(residual)).max() < 1e-8:
-        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else ARM * float(model.size))
+        off = float(_balance(jnp.zeros(6), model)[worst]) * (1 if worst < 3 else MOMENT_ARM * float(model.size))
         raise EquilibriumError(
             f"no static equilibrium: {DOFS[worst]} is out of balance by {off:.3g} of the weight"
             f"{'' if worst < 3 else ' times 1 m'} at the reference position; check mass, volume and mooring"
         )
     draught = np.abs(np.asarray(model.hull.elements.start)[2]).max(initial=0.0)
-    if abs(at[2]) > max(draught, SUNK * float(model.size)) or (np.abs(at[3:5]) > 1.0).any():
+    if abs(at[2]) > max(draught, MAX_HEAVE * float(model.size)) or (np.abs(at[3:5]) > 1.0).any():
         where = ", ".join(f"{dof} {x:.3g} {unit}" for dof, x, unit in zip(DOFS[2:5], at[2:5], ("m", "rad", "rad")))
         raise EquilibriumError(f"the platform only balances at {where}: check mass, centre of mass, volume and mooring")
     return position
 
 
 def held_at(model: Model, dof: int, value: Float[Array, ""]) -> Float[Array, "6"]:
-    """Where the platform rests (m, rad) with one motion held: the other five forces balance. Motions that nothing restrains
-    stay at zero; differentiable in all."""
-    return _root(model, _Held(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))
+    """Static equilibrium (m, rad) of the other five motions while one is held; differentiable.
+
+    Motions without restoring stay at zero.
+
+    Args:
+        model: The platform.
+        dof: Number of the motion that is held.
+        value: Where it is held (m or rad).
+    """
+    return _root(model, _HeldMotion(jnp.zeros(6).at[dof].set(1.0), jnp.asarray(value, float)))
 
 
 class Modes(NamedTuple):
-    """Undamped natural modes of small motion: period (s), longest first; shape (mode, dof), the largest entry 1; motions in
-    which the platform falls away from rest; and the motion with the largest strain energy in every mode."""
+    """Undamped natural modes of small motion.
+
+    Attributes:
+        period: Natural periods (s), longest first, (m,).
+        shape: Mode shapes, (mode, dof); the largest entry is 1.
+        unstable: Degrees of freedom in which the platform falls away from rest.
+        motion: Degree of freedom with the largest strain energy in each mode.
+    """
 
     period: np.ndarray
     shape: np.ndarray
@@ -125,13 +151,15 @@ class Modes(NamedTuple):
     motion: tuple[str, ...]
 
     def number(self, dof: str) -> int | None:
-        """Place of the longest mode in which `dof` has the largest strain energy; None if there is none."""
+        """Index of the longest mode in which `dof` has the largest strain energy, or None."""
         return self.motion.index(dof) if dof in self.motion else None
 
     def of(self, dof: str) -> float:
-        """Longest period (s) of a mode in which `dof` has the largest strain energy; nan if there is none.
+        """Longest period (s) of a mode in which `dof` has the largest strain energy, or NaN.
 
-        Raises UnknownName for another name."""
+        Raises:
+            UnknownName: The name is not a degree of freedom.
+        """
         if dof not in DOFS:
             raise unknown("degree of freedom", dof, DOFS)
         at = self.number(dof)
@@ -139,10 +167,14 @@ class Modes(NamedTuple):
 
 
 def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) -> Float[Array, "6 m"]:
-    """Share (-) of every degree of freedom in the potential energy of modes with the shapes `vectors`.
+    """Fraction of each degree of freedom in the potential energy of modes, (6, m).
 
-    It has no unit to choose, and the height of the reference point hardly matters: a spar that pitches about a point far below
+    It does not depend on units, and hardly on the height of the reference point. A spar that pitches about a point far below
     still water moves the reference point by more than its angle, but only the angle is restored.
+
+    Args:
+        stiffness: Stiffness matrix, (6, 6).
+        vectors: Mode shapes, (6, m).
     """
     energy = abs(vectors * (stiffness @ vectors))
     return energy / energy.sum(axis=0)
@@ -150,10 +182,17 @@ def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) 
 
 @eqx.filter_jit
 def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, "6 6"], Float[Array, "6 6"]]:
-    """Mass matrix with added mass, and stiffness (N/m, ...), of small motion about a position of rest.
+    """Mass matrix with added mass, and stiffness matrix, of small motion about a position of rest.
 
-    Every load's memory stays at rest. That is exact for drag laws, whose force is of second order in the motion and the memory
-    together; a memory that a force is proportional to would add to both matrices what is not in them.
+    The loads' memories stay at rest. That is exact for drag laws, whose force is of second order in motion and memory
+    together. A force proportional to a memory would add to both matrices.
+
+    Args:
+        model: The platform.
+        position: Position of rest (m, rad), (6,).
+
+    Returns:
+        Mass (kg, kg m, kg m²) and stiffness (N/m, N, N m), (6, 6) each.
     """
     rest = model.rest()
 
@@ -170,14 +209,25 @@ def linearised(model: Model, position: Float[Array, "6"]) -> tuple[Float[Array, 
 
 
 def widths(model: Model) -> np.ndarray:
-    """What displacements (1) and rotations (m) are times where they are compared: (6,)."""
-    return np.array([1.0, 1.0, 1.0, *3 * [WIDTH * float(model.size)]])
+    """Factors by which displacements (1) and rotations (m) are compared, (6,)."""
+    return np.array([1.0, 1.0, 1.0, *3 * [ROTATION_LENGTH * float(model.size)]])
 
 
 def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Modes:
-    """Natural modes about a position of rest (the equilibrium), damping left out. Motions without restoring have none.
+    """Undamped natural modes about a position of rest.
 
-    In shapes, rotations are times `widths`, so that metres and radians can be compared.
+    Motions without restoring have no mode. In mode shapes, rotations are multiplied by `widths`, so that metres and radians
+    can be compared.
+
+    Args:
+        model: The platform.
+        position: Position of rest (m, rad), (6,); None: the static equilibrium.
+
+    Returns:
+        Periods, shapes and dominant motions.
+
+    Raises:
+        EquilibriumError: The platform has no static equilibrium.
     """
     position = equilibrium(model) if position is None else position
     mass, stiffness = (np.asarray(m) for m in linearised(model, position))
@@ -196,17 +246,25 @@ def natural_modes(model: Model, position: Float[Array, "6"] | None = None) -> Mo
 
 
 def _coupled(model: Model, moved: Collection[str]) -> set[str]:
-    """Motions that go with some in small motion: by mass or stiffness, or through others that do."""
+    """Degrees of freedom coupled with some in small motion, directly or through others."""
     both = [np.abs(np.asarray(matrix)) for matrix in linearised(model, equilibrium(model))]
-    scales = [np.sqrt(np.maximum(np.diag(matrix), UNCOUPLED * matrix.max())) for matrix in both]
-    goes = np.any([matrix > UNCOUPLED * np.outer(s, s) for matrix, s in zip(both, scales)], axis=0)
+    scales = [np.sqrt(np.maximum(np.diag(matrix), MIN_COUPLING * matrix.max())) for matrix in both]
+    goes = np.any([matrix > MIN_COUPLING * np.outer(s, s) for matrix, s in zip(both, scales)], axis=0)
     reached = np.linalg.matrix_power(goes | np.eye(6, dtype=bool), 6)
     return {dof for i, dof in enumerate(DOFS) if any(reached[DOFS.index(name), i] for name in moved)}
 
 
 def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
-    """Natural modes about the equilibrium. Raises EquilibriumError where the platform does not stay there, once it is `moved`:
-    a motion that goes with none of these may be unstable."""
+    """Natural modes about the equilibrium of a platform that stays there.
+
+    Args:
+        model: The platform.
+        moved: Degrees of freedom that are displaced. Others that are not coupled with them may be unstable.
+
+    Raises:
+        EquilibriumError: The platform has no equilibrium, or is unstable in it.
+        UnknownName: A name is not a degree of freedom.
+    """
     for dof in moved:
         if dof not in DOFS:
             raise unknown("degree of freedom", dof, DOFS)
@@ -218,6 +276,6 @@ def stable_modes(model: Model, moved: Collection[str] = DOFS) -> Modes:
 
 
 def characteristic_length(model: Model) -> float:
-    """Length (m) that makes an angle comparable to a displacement: the radius of gyration in roll and pitch."""
+    """Radius of gyration (m) in roll and pitch, by which an angle is compared with a displacement."""
     inertia = np.asarray(model.body.inertia_at_reference())
     return float(np.sqrt(0.5 * (inertia[0, 0] + inertia[1, 1]) / float(model.body.mass)))

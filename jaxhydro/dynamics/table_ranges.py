@@ -1,4 +1,4 @@
-"""Waves that tables of other programs do not have: frequencies outside those that a platform's loads were computed at."""
+"""Waves outside the frequency range of the tables that a platform's loads come from."""
 
 import math
 from typing import NamedTuple
@@ -10,11 +10,11 @@ from jaxtyping import Float
 from jaxhydro.dynamics.model import Model
 from jaxhydro.remarks import Remark
 from jaxhydro.waves.components import Components
-from jaxhydro.waves.excitation import CLOSE
+from jaxhydro.waves.excitation import TABLE_END_TOLERANCE
 from jaxhydro.waves.sea import AbstractSea, WaveSea
 
-WARNED = 0.01  # of a sea's energy outside a table, from which it is a warning
-SAID = 5e-5  # of a sea's energy outside a table, from which it is said at all
+WARNING_SHARE = 0.01  # of a sea's energy outside a table, from which it is a warning
+NOTE_SHARE = 5e-5  # of a sea's energy outside a table, from which it is said at all
 WHAT = {
     "excitation": "these waves do not excite the platform",
     "drift": "these waves do not make it drift",
@@ -23,7 +23,7 @@ WHAT = {
 
 
 class TableRange(NamedTuple):
-    """Frequencies (rad/s), `low` to `high`, that the table of a load was computed at; `key` is its key in the platform file."""
+    """Frequency range (rad/s) of a load's table; `key` is its key in the platform file."""
 
     key: str
     low: float
@@ -31,31 +31,36 @@ class TableRange(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The range in rad/s and in s."""
+        """Range in rad/s and in s, in words."""
         if self.low <= 0:
             return f"up to {self.high:.5g} rad/s (periods from {2 * math.pi / self.high:.5g} s)"
         periods = f"{2 * math.pi / self.high:.5g} to {2 * math.pi / self.low:.5g} s"
         return f"{self.low:.5g} to {self.high:.5g} rad/s (periods {periods})"
 
     def outside(self, omega: Float[np.ndarray, " w"]) -> Float[np.ndarray, " w"]:
-        """Which frequencies (rad/s) the table has not."""
-        return (omega < self.low * (1 - CLOSE)) | (omega > self.high * (1 + CLOSE))
+        """Whether each frequency (rad/s) is outside the table."""
+        return (omega < self.low * (1 - TABLE_END_TOLERANCE)) | (omega > self.high * (1 + TABLE_END_TOLERANCE))
 
     def share_outside(self, omega: Float[np.ndarray, " w"], energy: Float[np.ndarray, " w"]) -> float:
-        """Share of the energy (any unit) at frequencies (rad/s) that the table has not."""
+        """Fraction of the energy (any unit) at frequencies (rad/s) outside the table."""
         total = float(np.sum(energy))
         return float(np.sum(energy[self.outside(omega)])) / total if total > 0 else 0.0
 
     def remark(self, share: float, where: str = "the sea") -> Remark | None:
-        """What is said of a share of a sea's energy outside; None: it is nothing to speak of."""
-        if share < SAID:
+        """Remark on a fraction of a sea's energy outside the table; None where it is negligible."""
+        if share < NOTE_SHARE:
             return None
         outside = f"{share:.2%} of the energy of {where} lies outside the {self.key} table"
-        return Remark(f"{outside}, which has {self.words}: {WHAT[self.key]}", warning=share > WARNED)
+        return Remark(f"{outside}, which has {self.words}: {WHAT[self.key]}", warning=share > WARNING_SHARE)
 
 
 def table_ranges(model: Model, candidates: bool = False) -> tuple[TableRange, ...]:
-    """Ranges of the tables that act in a model; with `candidates` also of tables that a diagnosis may add."""
+    """Frequency ranges of the tables that act in a model.
+
+    Args:
+        model: The platform.
+        candidates: Include tables that a diagnosis may add.
+    """
     found = []
     for load in model.loads:
         covers = load.covers()
@@ -71,13 +76,13 @@ def _acts(value: object) -> bool:
 
 
 def outside_tables(model: Model, waves: Components) -> dict[TableRange, float]:
-    """Share of the energy of an irregular sea's first order that every table of the model has not."""
+    """Fraction of the first-order energy of an irregular sea outside each table of the model."""
     omega, energy = np.asarray(waves.omega), np.asarray(waves.amplitude) ** 2
     return {one: one.share_outside(omega, energy) for one in table_ranges(model)}
 
 
 def regular_fault(model: Model, period: float) -> tuple[str, str] | None:
-    """What is expected and what was found of the period (s) of a regular wave that a table has not; None: all have it."""
+    """Expected range and found period of a regular wave outside a table, in words, or None."""
     omega = np.array([2 * math.pi / period])
     for one in table_ranges(model):
         if one.outside(omega)[0]:
@@ -86,7 +91,9 @@ def regular_fault(model: Model, period: float) -> tuple[str, str] | None:
 
 
 def check_waves(model: Model, sea: AbstractSea) -> None:
-    """Refuse plane waves that a table of the model has not; irregular seas are for `outside_tables`.
+    """Raise ValueError for regular waves outside a table of the model.
+
+    Irregular seas are for `outside_tables`.
 
     Raises:
         ValueError: With the table's range and the wave.

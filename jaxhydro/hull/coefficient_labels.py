@@ -1,4 +1,4 @@
-"""Labels of members' coefficients, such as column.Cd_t, where groups may share one."""
+"""Labels of member coefficients, such as column.Cd_t, and coefficients that groups share."""
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -7,7 +7,7 @@ OF_ADDED_MASS = ("Ca", "Cp")  # symbols of what goes with Ca; all others go with
 
 
 class Share(NamedTuple):
-    """A coefficient, Ca_t for example, that a group has from the group `owner`."""
+    """Coefficient, such as Ca_t, that a group takes from the group `owner`."""
 
     group: str
     name: str
@@ -34,7 +34,7 @@ def parameter_labels(rows: Iterable[tuple[str, str]], symbol: str, shares: Share
 
 
 def sharing(label: str, shares: Shares) -> tuple[str, ...]:
-    """Groups that share the coefficient of a label with its owner; none where it is nobody else's."""
+    """Groups that share the coefficient of a label with its owner."""
     owner, _, parameter = label.removeprefix("wave_excitation.").rpartition(".")
     symbol, _, kind = parameter.rpartition("_")
     return tuple(one.group for one in shares if (one.owner, one.name) == (owner, coefficient_of(symbol, kind)))

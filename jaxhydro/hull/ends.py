@@ -1,4 +1,7 @@
-"""Ends of members and faces of tapered strips: what is loaded along a member's axis. Body axes; the end is the last axis."""
+"""Member ends and faces of tapered strips, loaded along a member's axis.
+
+Positions are in body axes; the end is the last axis.
+"""
 
 import math
 from collections.abc import Sequence

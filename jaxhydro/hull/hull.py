@@ -1,7 +1,7 @@
-"""The hull: elements, strips and ends, and the constant matrices between the platform's motion and theirs.
+"""Hull: elements, strips and ends, and matrices that map the platform's motion to theirs.
 
-A *line* is a strip's direction or an end's axis. Its velocity is `lever . (u, v, w, p, q, r)`, so the velocities of all lines
-are one matrix product and the load on the platform is its transpose.
+A *line* is a strip's direction or an end's axis. Its velocity is `lever . (u, v, w, p, q, r)`, so the velocities of all
+lines are one matrix product and the load on the platform is its transpose.
 """
 
 from collections.abc import Sequence
@@ -13,14 +13,14 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.ends import Ends, ends
-from jaxhydro.hull.strips import COVERING, ENTERING, Elements, Member, Strips, cut
+from jaxhydro.hull.strips import END_WETTING_LENGTH, FACE_WETTING_LENGTH, Elements, Member, Strips, cut
 from jaxhydro.hull.waterplane import Leaning, Waterplane, leaning, segment, waterplane
 from jaxhydro.scales import covered, entered
 from jaxhydro.waves.flow import Cylinders
 
 
 class Wetted(NamedTuple):
-    """Length (m) of every element that is under water, and over which its strips are distributed."""
+    """Submerged length (m) of every load element, and length over which its strips are distributed."""
 
     length: Float[Array, " e"]
     reach: Float[Array, " e"]
@@ -50,7 +50,12 @@ class Hull(eqx.Module):
 
     @classmethod
     def of(cls, members: Sequence[Member], size: float = 1.0) -> "Hull":
-        """The hull that members make, of a platform of a `size` (`scales.size_of`)."""
+        """Hull from members.
+
+        Args:
+            members: Members of the platform.
+            size: Length scale (-) of the platform (`scales.size_of`).
+        """
         elements, strips = cut(members, size)
         tips = ends(members, strips, size)
         powers = 5 if np.asarray(strips.taper).any() else 3
@@ -68,7 +73,7 @@ class Hull(eqx.Module):
         return cls(elements, strips, tips, cylinders, jnp.asarray(place), gauge_of, *matrices, *more)
 
     def turned(self, rotation: Float[Array, "3 3"]) -> "Hull":
-        """With the directions of strips and ends turned about their points, which stay."""
+        """Hull with the directions of strips and ends rotated about their points."""
         strips = eqx.tree_at(lambda x: x.directions, self.strips, jnp.einsum("ij,jdn->idn", rotation, self.strips.directions))
         tips = eqx.tree_at(lambda x: x.axis, self.ends, rotation @ self.ends.axis)
         powers = (self.moments.shape[2] - tips.area.size) // max(2 * len(self.elements.length), 1)
@@ -77,12 +82,16 @@ class Hull(eqx.Module):
         return Hull(self.elements, strips, tips, *points, *matrices, *more)
 
     def wrench(self, force: Float[Array, " l"], away: Float[Array, " l"]) -> Float[Array, "6"]:
-        """Force and moment (N, N m) on the platform, in body axes, of forces (N) along lines whose strips are `away` (m) from
-        the element's start."""
+        """Force and moment (N, N m) on the platform, body axes, from forces along lines.
+
+        Args:
+            force: Forces along the lines (N), (l,).
+            away: Distances of the lines' strips from their elements' starts (m), (l,).
+        """
         return self.motion @ jnp.concatenate([force, away * force])
 
     def split(self, lines: Float[Array, " l"]) -> tuple[Float[Array, "2 n"], Float[Array, " m"]]:
-        """What belongs to the strips, by direction, and what to the ends."""
+        """Values per line split into those of strips, by direction, and those of ends."""
         n = len(self.strips.element)
         return lines[: 2 * n].reshape(2, n), lines[2 * n :]
 
@@ -91,11 +100,15 @@ class Hull(eqx.Module):
         return jnp.concatenate([strips.reshape(-1), ends])
 
     def masses(self, elements: Float[Array, "2 e"], ends: Float[Array, " m"], wetted: Wetted) -> Float[Array, " k"]:
-        """What `moments` is to be multiplied by for the added mass matrix (kg, kg m, kg m2) in body axes.
+        """Factors of `moments` in the added mass matrix (kg, kg m, kg m²), body axes.
 
-        `elements` (kg/m3) is added mass per displaced volume by direction and element, `ends` (kg) that of the ends. Equal to
-        the sum over strips of m h h^T, h the lever, but worked out once: in an element of wetted length s that sum is s times a
-        polynomial in s.
+        The product equals the sum over strips of m h h^T, h the lever, but costs less: in an element of wetted length s that
+        sum is s times a polynomial in s.
+
+        Args:
+            elements: Added mass per displaced volume (kg/m³) by direction and element.
+            ends: Added mass of the ends (kg).
+            wetted: Submerged part of each element.
         """
         count, reach = elements.size, wetted.reach
         powers = (self.moments.shape[2] - ends.size) // count if count else 0
@@ -104,23 +117,27 @@ class Hull(eqx.Module):
         return jnp.concatenate([*[row.reshape(-1) for row in rows[:powers]], ends])
 
     def extremities(self) -> np.ndarray:
-        """Where a sea has to be known (m): the ends of all elements and members, and the reference point."""
+        """Points (m) where a sea must be known: ends of all elements and members, and the reference point."""
         start, axis = np.asarray(self.elements.start), np.asarray(self.elements.axis)
         ends = (start, start + axis * np.asarray(self.elements.length), np.asarray(self.ends.position))
         return np.concatenate([*ends, np.zeros((3, 1))], axis=1)
 
     def wetted(self, vertical: Float[Array, "3"], depth: Float[Array, " e"]) -> Wetted:
-        """What of every element is under water.
+        """Submerged part of every load element.
 
-        `vertical` is the vertical in body axes, `depth` (m) that of the elements' lower ends under the surface. Exact, but
-        where an end has just entered the water (`scales.entered`). A pontoon loses volume evenly as it leaves the water.
+        It is exact, except where an end has just entered the water (`scales.entered`). A pontoon loses volume evenly as it
+        leaves the water.
+
+        Args:
+            vertical: Vertical in body axes.
+            depth: Depth of the elements' lower ends below the surface (m).
         """
         elements = self.elements
         column, slope = elements.thickness == 0, vertical @ elements.axis
         steep = jnp.where(column, jnp.maximum(slope, 1e-3), 1.0)
         rise = jnp.where(column, steep * elements.length, jnp.abs(slope) * elements.length + elements.thickness)
         low = depth + jnp.where(column, 0.0, 0.5 * elements.thickness + jnp.maximum(-slope, 0.0) * elements.length)
-        width = ENTERING * self.size
+        width = END_WETTING_LENGTH * self.size
         under = entered(low, width) - entered(low - rise, width)
         share = under / rise
         if self.waterplane is not None:
@@ -129,8 +146,8 @@ class Hull(eqx.Module):
         return Wetted(wet, jnp.where(column, wet, elements.length))
 
     def ends_wetted(self, depth: Float[Array, " m"]) -> Float[Array, " m"]:
-        """Share of ends at a `depth` (m) that is under water."""
-        return covered(depth, COVERING * self.size)
+        """Submerged fraction of ends at a `depth` (m)."""
+        return covered(depth, FACE_WETTING_LENGTH * self.size)
 
 
 def _matrices(elements: Elements, strips: Strips, ends: Ends, powers: int) -> tuple[Array, Array, Array]:

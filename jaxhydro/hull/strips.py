@@ -1,4 +1,4 @@
-"""Members cut into load elements, and these into the points that every hydrodynamic load is integrated over.
+"""Members cut into load elements, and these into strips (Gauss points).
 
 Everything is in body axes about the reference point; the strip is the last axis. A strip is loaded in the two directions
 across its member's axis, an end along it. A member steeper than 45 degrees is a column: both directions take the transverse
@@ -27,22 +27,34 @@ from jaxhydro.hull.coefficient_labels import Shares, parameter_labels, shares_of
 from jaxhydro.hull.waterplane import wet_section
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
-UPRIGHT = math.cos(math.radians(10.0))  # of an axis that counts as vertical
-SPACING = 2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
+VERTICAL_COSINE = math.cos(math.radians(10.0))  # of an axis that counts as vertical
+COLUMN_SPACING = (
+    2.5  # m times the size of the hull, of the strips of a column under still water, if the platform file does not say
+)
 PONTOON_SPACING = 5.0  # the same of a pontoon
 PARTLY_WET = 0.05  # of the height of a pontoon: less, under or above still water, does not matter
-FLOATING = 8  # load elements at least along a member that lies at the surface
-NEARLY = 0.05  # of a strip, that a hull may ask for beyond a whole number
-ENTERING = 0.1  # m times the size of the hull, in which an element's end enters the water
-COVERING = 0.5  # the same, in which water covers a face
+MIN_FLOATING_ELEMENTS = 8  # load elements at least along a member that lies at the surface
+WHOLE_NUMBER_TOLERANCE = 0.05  # of a strip, that a hull may ask for beyond a whole number
+END_WETTING_LENGTH = 0.1  # m times the size of the hull, in which an element's end enters the water
+FACE_WETTING_LENGTH = 0.5  # the same, in which water covers a face
 
 
 class Member(NamedTuple):
-    """One straight member: ends a, b (m), station sizes along it, and the group whose coefficients it uses.
+    """Straight member of the hull.
 
-    `stations` are fractions 0..1 of the length, `sizes` (station, 2) the extents (m) along direction 1 and 2: a diameter twice,
-    or width and height. `twist` (rad) turns the directions about the axis. `shared` names the groups whose coefficients
-    it uses in place of its own group's, by the coefficient's name, such as Ca_t.
+    Attributes:
+        name: Name of the member.
+        group: Group whose coefficients it uses.
+        circular: Whether its section is a circle or a rectangle.
+        a: Start (m), (3,).
+        b: End (m), (3,).
+        stations: Fractions (0 to 1) of the length, (n,).
+        sizes: Size (m) along directions 1 and 2 at the stations, (n, 2): a diameter twice, or width and height.
+        twist: Rotation (rad) of the directions about the axis.
+        elements: Number of load elements, or None.
+        maccamy_fuchs: Whether it diffracts waves; None: where it is vertical, circular and pierces the surface.
+        points: Strips of each of `elements`.
+        shared: Group whose coefficient is used in place of its own group's, by coefficient such as Ca_t.
     """
 
     name: str
@@ -88,13 +100,16 @@ class Member(NamedTuple):
 
     @property
     def gauge(self) -> np.ndarray:
-        """Where (m) the surface elevation is looked up for it: its axis at still water if it `fills`, else its middle."""
+        """Point (m) where the surface elevation is looked up.
+
+        It is on the axis at still water if the member `fills`, else its middle.
+        """
         if self.fills:
             return self.a + (self.b - self.a) * (-self.a[2] / (self.b[2] - self.a[2]))
         return 0.5 * (self.a + self.b)
 
     def size(self, fraction: np.ndarray) -> np.ndarray:
-        """Extents (n, 2) at fractions of the length."""
+        """Size along both directions (m) at fractions of the length, (n, 2)."""
         return np.stack([np.interp(fraction, self.stations, self.sizes[:, i]) for i in range(2)], axis=-1)
 
     @property
@@ -103,17 +118,17 @@ class Member(NamedTuple):
         if self.maccamy_fuchs is not None:
             return self.maccamy_fuchs
         low, high = sorted((self.a[2], self.b[2]))
-        return self.circular and self.axis[2] > UPRIGHT and low < 0 <= high
+        return self.circular and self.axis[2] > VERTICAL_COSINE and low < 0 <= high
 
     def kinks(self) -> list[float]:
-        """Fractions of the length, strictly inside, at which the change of size along the axis is another."""
+        """Fractions of the length, strictly inside, at which the taper changes."""
         slope = np.diff(self.sizes, axis=0) / np.diff(self.stations)[:, None]
         bend = np.abs(np.diff(slope, axis=0)).max(axis=1)
         return [float(at) for at, one in zip(self.stations[1:-1], bend, strict=True) if one > 1e-9 * self.sizes.max()]
 
     @property
     def submerged(self) -> float:
-        """Share (-) of its height that is under still water at the reference position."""
+        """Fraction (-) of its height that is below still water at the reference position."""
         heights = np.concatenate(self._edges())
         low, high = float(heights.min()), float(heights.max())
         return min(1.0, max(0.0, -low / (high - low)))
@@ -129,14 +144,14 @@ class Member(NamedTuple):
 
     @property
     def pierced(self) -> bool:
-        """Whether still water cuts it lengthwise: a pontoon that is partly wet."""
+        """Whether still water cuts it lengthwise, as a pontoon that is partly wet."""
         return not self.column and PARTLY_WET < self.submerged < 1 - PARTLY_WET
 
     @property
     def upward(self) -> int | None:
         """Which of its two directions is near vertical, where it lies level enough to be wet by its local depth; else None."""
-        steep = [abs(float(direction[2])) > UPRIGHT for direction in self._across(self._along)]
-        if abs(float(self._along[2])) > math.sqrt(1 - UPRIGHT**2) or not (any(steep) or self.circular):
+        steep = [abs(float(direction[2])) > VERTICAL_COSINE for direction in self._across(self._along)]
+        if abs(float(self._along[2])) > math.sqrt(1 - VERTICAL_COSINE**2) or not (any(steep) or self.circular):
             return None
         return 0 if steep[0] else 1
 
@@ -164,7 +179,7 @@ class Member(NamedTuple):
         """
         length = float(np.linalg.norm(self.b - self.a))
         if self.floats:
-            at = np.linspace(0.0, 1.0, max(self.elements or 0, FLOATING) + 1)
+            at = np.linspace(0.0, 1.0, max(self.elements or 0, MIN_FLOATING_ELEMENTS) + 1)
             far = [kink for kink in self.kinks() if np.abs(at - kink).min() > 1e-9]
             return [(lo, hi, self.points) for lo, hi in pairwise(np.sort([*at, *far]))]
         if self.elements is not None:
@@ -175,8 +190,8 @@ class Member(NamedTuple):
         for lo, hi in pairwise(self.stations):
             low, high = sorted((self.a + (self.b - self.a) * at)[2] for at in (lo, hi))
             under = min(1.0, max(0.0, -low) / max(high - low, 1e-9 * length)) if self.fills else 1.0
-            spacing = size * (SPACING if self.column else PONTOON_SPACING)
-            count = math.ceil(under * (hi - lo) * length / spacing - NEARLY)
+            spacing = size * (COLUMN_SPACING if self.column else PONTOON_SPACING)
+            count = math.ceil(under * (hi - lo) * length / spacing - WHOLE_NUMBER_TOLERANCE)
             found.append((float(lo), float(hi), max(2, min(count, 20))))
         return found
 

@@ -1,8 +1,8 @@
-"""Members that lie at the surface: boxes and cylinders within 10 degrees of the horizontal that still water cuts.
+"""Members within 10 degrees of the horizontal that still water cuts.
 
-They are wet by the depth of every part of their length. Strips have the wet section's volume, at its centroid. The pressure of
-the waves on the lid that still water makes of the section, which a wet body does not have, is a load of its own: without it the
-force would be that on a closed body under water.
+They are wet by the depth of every part of their length. Strips have the wet section's volume, at its centroid. The pressure
+of the waves on the lid that still water makes of the section, which a wet body does not have, is a load of its own: without
+it the force would be that on a closed body under water.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.scales import covered
 
-EDGE = 0.02  # of a section's height: share that is wet or dry, below which the surface has left it
+MIN_SECTION_SHARE = 0.02  # of a section's height: share that is wet or dry, below which the surface has left it
 
 
 @jax.custom_jvp
@@ -68,7 +68,7 @@ class Waterplane(eqx.Module):
         of, up = jnp.array(self.strip, dtype=int), jnp.array(self.up, dtype=int)
         home = jnp.array(strips.element, dtype=int)[of]
         share = now.wetted.length[home] / now.hull.elements.length[home]
-        pierced = covered(share, EDGE) * covered(1 - share, EDGE)
+        pierced = covered(share, MIN_SECTION_SHARE) * covered(1 - share, MIN_SECTION_SHARE)
         point = strips.start[:, of] + now.wetted.reach[home] * strips.fraction[of] * strips.axis[:, of]
         height = jnp.maximum(-(now.position[2] + now.rotation[2] @ point), 0.0)
         rising, aside = flow.acceleration[up, of], flow.acceleration[1 - up, of]
@@ -114,7 +114,7 @@ class Leaning(eqx.Module):
         return jnp.concatenate([force, moment]).sum(axis=1)
 
 
-LEAN = 0.02  # rad: what leans less is upright
+MIN_LEAN = 0.02  # rad: what leans less is upright
 
 
 def leaning(members: Sequence[Any]) -> Leaning | None:
@@ -122,7 +122,7 @@ def leaning(members: Sequence[Any]) -> Leaning | None:
     found = []
     for member in members:
         low, high = sorted((float(member.a[2]), float(member.b[2])))
-        if member.fills and low < 0 < high and abs(float(member.axis[2])) < np.cos(LEAN):
+        if member.fills and low < 0 < high and abs(float(member.axis[2])) < np.cos(MIN_LEAN):
             share = float(-member.a[2] / (member.b[2] - member.a[2]))
             size, directions = member.size(np.array(share)), np.stack(member.directions)
             along = size**2 / (16 if member.circular else 12)  # of the area: mean squares of the distances

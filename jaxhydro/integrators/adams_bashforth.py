@@ -1,7 +1,9 @@
-"""The four-step Adams-Bashforth scheme at fixed steps, differentiable forward and reverse: one evaluation per step.
+"""Four-step Adams-Bashforth scheme at fixed steps, one evaluation per step.
 
-What a sea costs is its kinematics, and these are known at even times: so half the evaluations of any Runge-Kutta scheme of that
-order. Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, section III.1, eq. (1.5).
+It is differentiable forward and in reverse. The cost of a sea is its kinematics, which are known at even times. The scheme
+needs half the evaluations of any Runge-Kutta scheme of that order.
+
+References: Hairer, Norsett and Wanner (1993), Solving Ordinary Differential Equations I, section III.1, eq. (1.5).
 """
 
 from typing import Any
@@ -14,43 +16,43 @@ from jaxtyping import Array, Float, Int
 
 from jaxhydro.integrators.runge_kutta import RK4, Rate, linearised
 
-BLOCK = 64  # steps per checkpointed block of a reverse gradient
+CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
 BATCH = 4  # evaluations linearised together: their flow fills the cache
-START = 3  # steps by RK4, of four evaluations each
-MEMORY = 4 * START + 1  # slopes that are remembered
+START_STEPS = 3  # steps by RK4, of four evaluations each
+STORED_SLOPES = 4 * START_STEPS + 1  # slopes that are remembered
 
 
 class _Rows:
-    """What each evaluation does: where it is taken, y + h `at` . slopes, and what it adds to y afterwards, h `add` . slopes.
+    """Coefficients of each evaluation: its point y + h `at` . slopes, and the update h `add` . slopes.
 
     Slopes are counted backwards from the newest, which `add` includes and `at` does not.
     """
 
     def __init__(self) -> None:
-        rows = 4 * START + 4  # the last one repeats
-        self.at, self.add = np.zeros((rows, MEMORY)), np.zeros((rows, MEMORY))
+        rows = 4 * START_STEPS + 4  # the last one repeats
+        self.at, self.add = np.zeros((rows, STORED_SLOPES)), np.zeros((rows, STORED_SLOPES))
         self.time, self.step = np.zeros(rows), np.zeros(rows, int)
         table = RK4.coefficients()
-        for i in range(4 * START):
+        for i in range(4 * START_STEPS):
             stage, self.step[i] = i % 4, i // 4
             self.at[i, :stage] = table[stage, :stage][::-1]
             self.time[i] = i // 4 + RK4.nodes[stage]
             if stage == 3:
                 self.add[i, :4] = RK4.weights[::-1]
-        for i in range(4 * START, rows):
-            step = i - 4 * START + START
+        for i in range(4 * START_STEPS, rows):
+            step = i - 4 * START_STEPS + START_STEPS
             self.time[i] = self.step[i] = step
             for back, weight in enumerate((55 / 24, -59 / 24, 37 / 24, -9 / 24)):
                 taken = step - back
-                self.add[i, i - (4 * taken if taken < START else 4 * START + taken - START)] = weight
+                self.add[i, i - (4 * taken if taken < START_STEPS else 4 * START_STEPS + taken - START_STEPS)] = weight
 
 
 ROWS = _Rows()
 
 
 def evaluations(steps: int | Int[Array, ""]) -> Any:
-    """Evaluations that `steps` steps take."""
-    return steps + 3 * START
+    """Number of evaluations in `steps` steps."""
+    return steps + 3 * START_STEPS
 
 
 def _row(index: Int[Array, ""]) -> tuple[Array, Array, Array, Array]:
@@ -78,13 +80,13 @@ def _march(driver, y, start, step, count, rate: Rate, capacity: int, keep: bool,
 
     size = y.shape[0]
     taken = jnp.zeros((evaluations(capacity + 1), size)) if keep else None
-    carry = (y, jnp.zeros((MEMORY, size)), jnp.zeros((capacity + 1, y[:shown].shape[0])), taken)
+    carry = (y, jnp.zeros((STORED_SLOPES, size)), jnp.zeros((capacity + 1, y[:shown].shape[0])), taken)
     _, _, path, taken = jax.lax.fori_loop(0, evaluations(count + 1), body, carry)
     return path, taken
 
 
 def direct(driver, y, start, step, count, *, rate: Rate, capacity: int, shown: int) -> Float[Array, "n _"]:
-    """As `runge_kutta.direct`."""
+    """Path without checkpoints, as `runge_kutta.direct`."""
     return _march(driver, y, start, step, count, rate, capacity, False, shown)[0]
 
 
@@ -124,15 +126,14 @@ def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int):
         return _advance(d_y, slopes, d_slope, add, step), d_y
 
     d_y = jnp.zeros_like(y) if d_y is None else d_y
-    _, found = jax.lax.scan(body, (d_y, jnp.zeros((MEMORY, y.shape[0]))), (slope, push, at, add))
+    _, found = jax.lax.scan(body, (d_y, jnp.zeros((STORED_SLOPES, y.shape[0]))), (slope, push, at, add))
     # the state before the first evaluation of every step
-    first = np.concatenate([4 * np.arange(START), np.arange(4 * START, total)])
+    first = np.concatenate([4 * np.arange(START_STEPS), np.arange(4 * START_STEPS, total)])
     return path, found[first]
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Float[Array, "n s"]:
-    """The same path, all of it, for a reverse gradient: what is carried at the beginning of blocks is kept, the rest
-    recomputed."""
+    """The same path for a reverse gradient: states at block starts are stored, the others recomputed."""
 
     def advance(carry, index):
         y, slopes = carry
@@ -141,9 +142,9 @@ def backward(driver, y, start, step, count, *, rate: Rate, capacity: int) -> Flo
         return _advance(y, slopes, slope, add, step), y
 
     total = evaluations(capacity + 1)
-    blocks = -(-total // BLOCK)
-    index = jnp.arange(blocks * BLOCK).reshape(blocks, BLOCK)
-    carry = (y, jnp.zeros((MEMORY, y.shape[0])))
+    blocks = -(-total // CHECKPOINT_STEPS)
+    index = jnp.arange(blocks * CHECKPOINT_STEPS).reshape(blocks, CHECKPOINT_STEPS)
+    carry = (y, jnp.zeros((STORED_SLOPES, y.shape[0])))
     _, saved = jax.lax.scan(jax.checkpoint(lambda c, i: jax.lax.scan(advance, c, i)), carry, index)
-    first = np.concatenate([4 * np.arange(START), np.arange(4 * START, total)])
+    first = np.concatenate([4 * np.arange(START_STEPS), np.arange(4 * START_STEPS, total)])
     return saved.reshape(-1, y.shape[0])[first]

@@ -1,7 +1,7 @@
-"""Explicit Runge-Kutta schemes at fixed steps as loops of our own, differentiable forward and reverse.
+"""Explicit Runge-Kutta schemes at fixed steps, differentiable forward and in reverse.
 
-diffrax has the same schemes. These loops are kept for what this package does most, many simulations of different lengths with
-free initial states: one compilation, from the persistent cache too, and Jacobians in which initial states cost nothing.
+diffrax has the same schemes. These loops are kept for what this package does most, many simulations of different lengths
+with free initial states: one compilation, from the persistent cache too, and Jacobians in which initial states cost nothing.
 """
 
 import functools
@@ -14,14 +14,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-BLOCK = 64  # steps per checkpointed block of a reverse gradient
+CHECKPOINT_STEPS = 64  # steps per checkpointed block of a reverse gradient
 BATCH = 32  # stages linearised together: fills the vector units and stays in the cache
 
 Rate = Callable[[Any, Float[Array, ""], Float[Array, " s"]], tuple[Float[Array, " _"], ...]]  # part by part
 
 
 class Scheme(NamedTuple):
-    """A Butcher tableau: nodes, weights, and the strictly lower triangular coefficients row by row."""
+    """Butcher tableau: nodes, weights, and the strictly lower triangular coefficients row by row."""
 
     nodes: tuple[float, ...]
     weights: tuple[float, ...]
@@ -37,9 +37,10 @@ RK4 = Scheme((0.0, 0.5, 0.5, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6), ((), (0.5,), (0
 
 @functools.cache
 def tsit5() -> Scheme:
-    """Tsitouras 2011, Computers and Mathematics with Applications 62, 770-775, table 1: diffrax's tableau.
+    """Tsitouras 5(4) scheme with diffrax's tableau, without its last stage, which has weight 0.
 
-    Without its last stage, which is the first of the next step and weighs nothing.
+    References:
+        Tsitouras (2011), Computers and Mathematics with Applications 62, 770-775, table 1.
     """
     import diffrax  # takes a fifth of a second
 
@@ -173,12 +174,12 @@ def linearised(
 
 
 def backward(driver, y, start, step, count, *, rate: Rate, scheme: Scheme, capacity: int) -> Float[Array, "n s"]:
-    """The same path, all of it, for a reverse gradient: states at the beginning of blocks are kept, the rest recomputed."""
+    """The same path for a reverse gradient: states at block starts are stored, the others recomputed."""
 
     def advance(y, index):
         return _step(driver, y, start + step * index, step, rate, scheme, False)[0], y
 
-    blocks = -(-(capacity + 1) // BLOCK)
-    index = jnp.arange(blocks * BLOCK, dtype=float).reshape(blocks, BLOCK)
+    blocks = -(-(capacity + 1) // CHECKPOINT_STEPS)
+    index = jnp.arange(blocks * CHECKPOINT_STEPS, dtype=float).reshape(blocks, CHECKPOINT_STEPS)
     _, saved = jax.lax.scan(jax.checkpoint(lambda y, index: jax.lax.scan(advance, y, index)), y, index)
     return saved.reshape(-1, y.shape[0])[: capacity + 1]

@@ -1,1 +1,1 @@
-"""Files of other programs of the field, read into plain arrays."""
+"""Readers of other programs' files into plain arrays."""

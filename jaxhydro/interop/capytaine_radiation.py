@@ -1,4 +1,7 @@
-"""Capytaine's datasets (https://capytaine.org, `assemble_dataset`) in NetCDF: added mass and radiation damping."""
+"""Added mass and radiation damping from Capytaine's NetCDF datasets (`assemble_dataset`).
+
+Capytaine: https://capytaine.org.
+"""
 
 from os import PathLike
 from pathlib import Path
@@ -11,21 +14,21 @@ from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem, shown, suggest
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 
-FEWEST = 4  # frequencies
+MIN_FREQUENCIES = 4  # frequencies
 HDF5 = b"\x89HDF\r\n\x1a\n"  # how a file of NetCDF-4 begins
 PAIR = ("radiating_dof", "influenced_dof")
-BETWEEN = "__"  # a body's name and its motion, in datasets of several bodies: buoy__Heave
+BODY_SEPARATOR = "__"  # a body's name and its motion, in datasets of several bodies: buoy__Heave
 BODY = ("body", "body_name")  # dimensions along which datasets of several bodies may be put together
-LISTED = 8  # frequencies that a note names
-OFF = 1e-3  # of a value, by which water and dataset may differ without a note
-AT_ORIGIN = 1e-6  # m
+MAX_LISTED_FREQUENCIES = 8  # frequencies that a note names
+MAX_WATER_MISMATCH = 1e-3  # of a value, by which water and dataset may differ without a note
+ORIGIN_TOLERANCE = 1e-6  # m
 
 
 class Dataset(NamedTuple):
-    """A dataset of one body: its variables (xarray), the file, the body's name ("" where it has none), and notes on it.
+    """Capytaine dataset of one body: its variables (xarray), file, body name ("" where none), and notes.
 
-    `origin` (x, y; m) is where the platform's reference point lies in the dataset, at still water level. `shift` (6, 6) takes
-    velocities of that point to those of the point that the dataset's motions are about.
+    `origin` (x, y; m) is the platform's reference point in the dataset, at still water level. `shift` (6, 6) maps velocities
+    of that point to those of the point that the dataset's motions are about.
     """
 
     data: Any
@@ -40,15 +43,15 @@ class Dataset(NamedTuple):
         return InputError(self.source, [Problem(where, expected, found, hint)])
 
     def scale(self, density: float | None) -> float:
-        """By what forces of the dataset's own water are multiplied for water of another density (kg/m3)."""
+        """Factor from forces in the dataset's water to forces in water of another density (kg/m³)."""
         own = self.number("rho")
-        if density is None or own is None or abs(density / own - 1) < OFF:
+        if density is None or own is None or abs(density / own - 1) < MAX_WATER_MISMATCH:
             return 1.0
         self.notes.append(f"{self.source}: computed for a density of {own:g} kg/m3: forces are scaled to {density:g} kg/m3")
         return density / own
 
     def number(self, name: str) -> float | None:
-        """A number that the dataset has once; None where it has not."""
+        """Scalar of the dataset; None where it has none."""
         if name not in self.data.variables or self.data[name].size != 1:
             return None
         value = float(self.data[name].values.reshape(()))
@@ -99,7 +102,7 @@ def open_capytaine(path: str | PathLike[str], needed: tuple[str, ...], body: str
             data = data.sel({dim: [name for name in data[dim].values if _text(name) == body]}).squeeze(dim, drop=True)
     for dim in PAIR:
         if dim in data.coords and data[dim].ndim == 1:
-            mine = [name for name in data[dim].values if _text(name).rpartition(BETWEEN)[0] in ("", body)]
+            mine = [name for name in data[dim].values if _text(name).rpartition(BODY_SEPARATOR)[0] in ("", body)]
             if len(mine) < data.sizes[dim]:
                 notes = [f"{source}: {body} of {len(names)} bodies: the others are held still, what they radiate is left out"]
                 data = data.sel({dim: mine})
@@ -116,7 +119,7 @@ def _bodies(data: Any) -> list[str]:
     found: dict[str, None] = {}
     for dim in PAIR:
         if dim in data.coords:
-            prefixed = [_text(name).rpartition(BETWEEN) for name in np.atleast_1d(data[dim].values)]
+            prefixed = [_text(name).rpartition(BODY_SEPARATOR) for name in np.atleast_1d(data[dim].values)]
             found |= {name: None for name, between, _ in prefixed if between}
     for dim in BODY:
         if not found and dim in data.coords:
@@ -137,11 +140,11 @@ def _reference(
     centre = np.asarray(data["rotation_center"].values, float).squeeze()
     if centre.shape != (3,) or not np.isfinite(centre).all():
         raise wrong("rotation_center", "three numbers", shown(np.asarray(data["rotation_center"].values).tolist()))
-    if several and np.abs(centre[:2]).max() > AT_ORIGIN:
+    if several and np.abs(centre[:2]).max() > ORIGIN_TOLERANCE:
         origin = centre[:2]
         notes.append(f"{source}: the platform's reference point is at ({origin[0]:g}, {origin[1]:g}, 0) m of the dataset")
     x, y, z = centre - np.append(origin, 0.0)
-    if np.abs([x, y, z]).max() > AT_ORIGIN:
+    if np.abs([x, y, z]).max() > ORIGIN_TOLERANCE:
         shift[:3, 3:] = [[0, z, -y], [-z, 0, x], [y, -x, 0]]
         there = ", ".join(f"{one:g}" for one in centre)
         notes.append(f"{source}: computed about ({there}) m: moved to the platform's reference point")
@@ -176,8 +179,8 @@ def read_capytaine(
     inner = (omega > 0) & np.isfinite(omega)
     kept = computed(one, {"added_mass": (omega, mass), "radiation_damping": (omega[inner], damping[inner])})
     inner &= np.isin(omega, kept)
-    if inner.sum() < FEWEST:
-        raise one.wrong("omega", f"{FEWEST} finite frequencies above 0 or more", f"{inner.sum()}")
+    if inner.sum() < MIN_FREQUENCIES:
+        raise one.wrong("omega", f"{MIN_FREQUENCIES} finite frequencies above 0 or more", f"{inner.sum()}")
     scale = one.scale(density)
 
     def about(matrix: np.ndarray) -> np.ndarray:
@@ -228,8 +231,8 @@ def computed(one: Dataset, variables: dict[str, tuple[np.ndarray, np.ndarray]]) 
 
 def listed(omega: Float[np.ndarray, " n"]) -> str:
     """Frequencies as a message names them."""
-    some = ", ".join(f"{w:.4g}" for w in omega[:LISTED])
-    return some + (f" ... {omega[-1]:.4g}" if len(omega) > LISTED else "")
+    some = ", ".join(f"{w:.4g}" for w in omega[:MAX_LISTED_FREQUENCIES])
+    return some + (f" ... {omega[-1]:.4g}" if len(omega) > MAX_LISTED_FREQUENCIES else "")
 
 
 def single(one: Dataset, name: str, apart: tuple[str, ...]) -> Any:
@@ -256,7 +259,7 @@ def motions(one: Dataset, name: str, dim: str) -> list[int]:
     values = one.data[name]
     if dim not in values.dims or dim not in values.coords:
         raise one.wrong(f"{name}.{dim}", "a dimension with names", f"dimensions {', '.join(map(str, values.dims))}")
-    names = [_text(label).rpartition(BETWEEN)[2].strip().lower() for label in values.coords[dim].values]
+    names = [_text(label).rpartition(BODY_SEPARATOR)[2].strip().lower() for label in values.coords[dim].values]
     if unknown := [label for label in names if label not in DOFS]:
         among = f"motions among {', '.join(DOFS).title()}"
         raise one.wrong(f"{name}.{dim}", among, shown(unknown[0]), suggest(unknown[0], DOFS))

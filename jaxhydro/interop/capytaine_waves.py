@@ -19,8 +19,8 @@ WHOLE = "excitation_force"
 PARTS = ("Froude_Krylov_force", "diffraction_force")
 REAL, IMAGINARY = "re", "im"  # along the dimension `complex` of files, which NetCDF has no numbers for
 VOLUME = ("disp_volume", "displaced_volume")
-DEEP = np.pi  # k h from which on the bed does not matter
-BOTTOMLESS = 1e5  # m, where the dataset's depth is infinite
+DEEP_WATER_KH = np.pi  # k h from which on the bed does not matter
+INFINITE_DEPTH = 1e5  # m, where the dataset's depth is infinite
 
 
 def read_capytaine_excitation(
@@ -76,7 +76,7 @@ def _phase(one: Dataset, omega: Float[np.ndarray, " w"], heading: float) -> Comp
     """exp(i k r): from waves at the dataset's origin to those at a reference point r from it."""
     if not one.origin.any():
         return np.ones(len(omega), complex)
-    gravity, depth = one.number("g") or STANDARD_GRAVITY, one.number("water_depth") or BOTTOMLESS
+    gravity, depth = one.number("g") or STANDARD_GRAVITY, one.number("water_depth") or INFINITE_DEPTH
     k = np.asarray(wavenumber(jnp.asarray(omega), depth, gravity))
     return np.exp(1j * k * (one.origin @ [np.cos(np.radians(heading)), np.sin(np.radians(heading))]))
 
@@ -117,7 +117,7 @@ def _compare(one: Dataset, omega: Float[np.ndarray, " w"], gravity: float | None
     if depth is None or "water_depth" not in one.data.variables or one.data["water_depth"].size != 1:
         return
     there = float(one.data["water_depth"].values.reshape(()))
-    shallow = omega[0] ** 2 / (own or 9.81) * min(there, depth) < DEEP
+    shallow = omega[0] ** 2 / (own or 9.81) * min(there, depth) < DEEP_WATER_KH
     if abs(min(there, 1e9) / depth - 1) > 0.02 and shallow:
         depths = f"computed for a depth of {there:g} m, the platform has {depth:g} m"
         one.notes.append(f"{one.source}: {depths}, and its longest waves feel the bed")

@@ -1,4 +1,4 @@
-"""Written times to seconds: ISO time stamps, dates with a time of day, elapsed or daily hours:minutes:seconds."""
+"""Times in seconds from ISO time stamps, dates with a time of day, or hours:minutes:seconds."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Data files to tables: delimited text, MATLAB .mat, NetCDF, Excel, OpenFAST .out and .outb. The content says which, then
-the ending; what has another ending and is text is read as delimited text.
+"""Tables from data files: text, MATLAB .mat, NetCDF, Excel, OpenFAST .out and .outb.
 
-`read_table` is the only public name. Columns keep the file's names and their order; a text file without a header gets
-"0", "1", ... Values are as written: no units, no signs, no repairs.
+The content decides the format, then the ending. Text with another ending is read as delimited text. `read_table` is the only
+public name. Columns keep the file's names and their order; a text file without a header gets "0", "1", ... Values are as
+written: no units, no signs, no repairs.
 """
 
 from __future__ import annotations
@@ -27,13 +27,17 @@ from jaxhydro.interop.stated_units import stated_unit
 
 
 def read_table(path: str | Path) -> pd.DataFrame:
-    """The table in a data file, one row per sample.
+    """Table of a data file, one row per sample.
 
-    The table's `attrs` may have `stated`, the units that the file itself states, by column; `times`, the columns that were
-    written as times of day or time stamps and are seconds; `row`, the number of the first row of a text file.
+    `attrs` of the table may have `stated`, the units that the file states, by column. `times` are the columns that were
+    written as times of day or time stamps and are now seconds. `row` is the number of the first row of a text file.
 
-    Raises InputError, and nothing else, for a file that is absent, unreadable or not a table of numbers; it names the
-    row (counted from 1, as an editor does) and the column where that can be said.
+    Args:
+        path: The file.
+
+    Raises:
+        InputError: The file is absent, unreadable or not a table of numbers. It names the row (counted from 1, as an editor
+            does) and the column where known.
     """
     path = Path(path)
     try:

@@ -1,9 +1,9 @@
-"""Delimited text to a table: comma, semicolon, tab or white space, found by trying; decimal points or commas.
+"""Tables from delimited text: comma, semicolon, tab or white space; decimal points or commas.
 
-A line that starts with # or % is a comment, and the header may stand in the last of them. What a logger wrote above
-the header or below the last row is left out. The header may have another delimiter than the rows. Times such as
-10:22:33.5 become seconds. Empty cells and `nan` become NaN; what else is not a number is told by its row, counted as an
-editor does.
+The delimiter is found by trying. A line that starts with # or % is a comment, and the header may stand in the last of them.
+Lines of a logger above the header or below the last row are left out. The header may have another delimiter than the rows.
+Times such as 10:22:33.5 become seconds. Empty cells and `nan` become NaN. Anything else that is not a number is reported by
+its row, counted as an editor does.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""MATLAB .mat files to tables: version 7.3, which is HDF5, and those before it."""
+"""Tables from MATLAB .mat files: version 7.3 (HDF5) and earlier ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Added mass and radiation damping over frequency, as programs of potential theory work them out."""
+"""Added mass and radiation damping over frequency, as from potential theory."""
 
 from typing import NamedTuple
 

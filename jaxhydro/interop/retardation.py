@@ -1,4 +1,4 @@
-"""The retardation function of computed radiation damping, and a state space that has it."""
+"""Retardation function of computed radiation damping, and its state-space realisation."""
 
 import math
 from typing import NamedTuple
@@ -8,24 +8,25 @@ from jaxtyping import Complex, Float
 
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 
-TAIL = 4  # power of 1/omega with which damping ends: that of an even kernel without a kink at t = 0
-BEYOND = 3.0  # times the last frequency, where the tail is let go
-FINENESS = 8  # integration steps between the two nearest frequencies
-LEFT = 2e-5  # of the squares: what lies above the frequencies that are sampled for, and after the last sample
-SAMPLES = 1.5  # per half period of the highest of these frequencies
-SHORTEST, LONGEST = 16, 480  # samples
-UNCOUPLED = 0.003  # of the motions' own: what is coupled less is taken apart
-SILENT = 1e-6  # of the largest of translations or of rotations
-GIVES = 0.02  # of the largest damping: what of it may be below zero, as computed coefficients are
-SWEEP = 400  # frequencies at which that is looked for
+TAIL_POWER = 4  # power of 1/omega with which damping ends: that of an even kernel without a kink at t = 0
+TAIL_END = 3.0  # times the last frequency, where the tail is let go
+STEPS_PER_INTERVAL = 8  # integration steps between the two nearest frequencies
+MAX_MISSED_ENERGY = 2e-5  # of the squares: what lies above the frequencies that are sampled for, and after the last sample
+SAMPLES_PER_HALF_PERIOD = 1.5  # per half period of the highest of these frequencies
+MIN_SAMPLES, MAX_SAMPLES = 16, 480  # samples
+MIN_COUPLING = 0.003  # of the motions' own: what is coupled less is taken apart
+NEGLIGIBLE_DAMPING = 1e-6  # of the largest of translations or of rotations
+MAX_NEGATIVE_DAMPING = 0.02  # of the largest damping: what of it may be below zero, as computed coefficients are
+CHECKED_FREQUENCIES = 400  # frequencies at which that is looked for
 
 
 class Realisation(NamedTuple):
-    """dr/dt = rates r + drive v, force = -output r: a state space for the retardation function; v velocity (m/s, rad/s).
+    """State space of a retardation function: dr/dt = rates r + drive v, force = -output r.
 
-    `misfit` is the largest difference, of any pair of motions, between its step response and the computed one: root mean square
-    over time, over that of the two motions' own (their geometric mean). `least_damping` is the least eigenvalue of its
-    radiation damping at any frequency over the largest, each motion scaled alike: it gives energy where that is below 0.
+    v is the velocity (m/s, rad/s). `misfit` is the largest difference, of any pair of motions, between its step response and
+    the computed one. It is the root mean square over time, over the geometric mean of the two motions' own. `least_damping`
+    is the least eigenvalue of its radiation damping at any frequency over the largest, each motion scaled alike. Below 0 the
+    state space generates energy.
     """
 
     rates: Float[np.ndarray, "n n"]
@@ -45,34 +46,39 @@ class Realisation(NamedTuple):
 
 
 class Damping(NamedTuple):
-    """Radiation damping (N s/m, N s, N m s/rad) at even frequencies (rad/s) from 0 to where nothing is left."""
+    """Radiation damping (N s/m, N s, N m s/rad) at even frequencies (rad/s) from 0 to where it vanishes."""
 
     omega: Float[np.ndarray, " w"]
     damping: Float[np.ndarray, "w 6 6"]
 
     @classmethod
     def of(cls, coefficients: RadiationCoefficients) -> "Damping":
-        """By a cubic spline between the file's frequencies, symmetric, even about 0 where there is none; beyond the last one it
-        falls with the fourth power of frequency."""
+        """Damping by a cubic spline between the file's frequencies.
+
+        It is symmetric, and even about frequency 0 where the file has none. Beyond the last frequency it falls with the
+        fourth power of frequency.
+        """
         from scipy.interpolate import CubicSpline
 
         last = coefficients.omega[-1]
         known = np.concatenate([-coefficients.omega[::-1], [0.0], coefficients.omega])
         symmetric = 0.5 * (coefficients.damping + coefficients.damping.transpose(0, 2, 1))
         even = np.concatenate([symmetric[::-1], np.zeros((1, 6, 6)), symmetric])
-        omega = np.arange(0.0, BEYOND * last, float(np.diff(known).min()) / FINENESS)
+        omega = np.arange(0.0, TAIL_END * last, float(np.diff(known).min()) / STEPS_PER_INTERVAL)
         inside = CubicSpline(known, even)(np.minimum(omega, last))
-        return cls(omega, inside * (last / np.maximum(omega, last))[:, None, None] ** TAIL)
+        return cls(omega, inside * (last / np.maximum(omega, last))[:, None, None] ** TAIL_POWER)
 
     def kernel(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 6 6"]:
-        """K(t) = 2/pi int_0^inf B cos(omega t) d omega (N/m, N, N m/rad) at times (s)."""
+        """Retardation function K(t) = 2/pi int_0^inf B cos(omega t) d omega (N/m, N, N m/rad) at times (s)."""
         weight = np.full(len(self.omega), self.omega[1])
         weight[[0, -1]] *= 0.5
         return 2 / math.pi * np.tensordot(np.cos(np.outer(time, self.omega)) * weight, self.damping, 1)
 
     def step_response(self, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 6 6"]:
-        """int_0^t K ds = 2/pi int_0^inf B/omega sin(omega t) d omega (N s/m, N s, N m s/rad): minus the force at times (s)
-        after a velocity of 1 was begun with."""
+        """Step response int_0^t K ds = 2/pi int_0^inf B/omega sin(omega t) d omega.
+
+        Its units are N s/m, N s, N m s/rad. It is minus the force at times (s) after a unit velocity began.
+        """
         weight = np.concatenate([[0.0], self.omega[1] / self.omega[1:]])
         return 2 / math.pi * np.tensordot(np.sin(np.outer(time, self.omega)) * weight, self.damping, 1)
 
@@ -90,7 +96,7 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
     properties of Perez and Fossen 2008, Modeling, Identification and Control 29, 1-19). The step response rather than K is
     followed because it weighs an error in force by 1/omega, as added mass does: slow motion, where a platform resonates, is
     met best, and what is too fast for a simulation's step counts least. Poles that grow are never taken, nor a state space
-    whose damping goes below zero by more than `GIVES` of the largest.
+    whose damping goes below zero by more than `MAX_NEGATIVE_DAMPING` of the largest.
 
     Only damping is used: A(omega) of the file is left for a check. Raises ValueError where there is no damping, or no such
     state space.
@@ -98,15 +104,15 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
     damping = Damping.of(coefficients)
     fine = (damping.damping[1:] / damping.omega[1:, None, None]).diagonal(axis1=1, axis2=2) ** 2
     size = fine.sum(axis=0)
-    active = np.flatnonzero(size > SILENT**2 * np.repeat([size[:3].max(), size[3:].max()], 3))
+    active = np.flatnonzero(size > NEGLIGIBLE_DAMPING**2 * np.repeat([size[:3].max(), size[3:].max()], 3))
     if not active.size:
         raise ValueError("no radiation damping")
     highest = damping.omega[1 + _enough((fine[:, active] / size[active]).sum(axis=1))]
-    step = math.pi / (SAMPLES * highest)
-    response = damping.step_response(step * np.arange(LONGEST))[:, active[:, None], active]
+    step = math.pi / (SAMPLES_PER_HALF_PERIOD * highest)
+    response = damping.step_response(step * np.arange(MAX_SAMPLES))[:, active[:, None], active]
     size = (response**2).sum(axis=0).diagonal() ** 0.25
     power = ((response / np.outer(size, size)) ** 2).sum(axis=(1, 2))
-    half = min(max(_enough(power) + 1, SHORTEST), LONGEST) // 2
+    half = min(max(_enough(power) + 1, MIN_SAMPLES), MAX_SAMPLES) // 2
     response = response[: 2 * half]
     size = (response**2).mean(axis=0).diagonal() ** 0.25
     hankel = _Hankel(response / np.outer(size, size), step)
@@ -114,7 +120,11 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
     best: Realisation | None = None
     for n in range(2, min(order, len(hankel.values)) + 1):
         rates, drive, output, misfit = hankel.space(n)
-        if len(rates) and (best is None or misfit < best.misfit) and (least := _least(rates, drive, output)) > -GIVES:
+        if (
+            len(rates)
+            and (best is None or misfit < best.misfit)
+            and (least := _least(rates, drive, output)) > -MAX_NEGATIVE_DAMPING
+        ):
             best = Realisation(rates, drive @ onto.T, onto @ output, misfit, least)
             if misfit < tolerance:
                 break
@@ -130,7 +140,7 @@ class _Hankel:
         self.response, self.step, self.time = response, step, step * np.arange(len(response))
         half, self.motions = len(response) // 2, response.shape[1]
         values, vectors = [], []
-        for group in _groups(np.sqrt((response**2).mean(axis=0)) > UNCOUPLED):
+        for group in _groups(np.sqrt((response**2).mean(axis=0)) > MIN_COUPLING):
             blocks = response[:, group[:, None], group][np.add.outer(np.arange(half), np.arange(half))]
             found, mine = np.linalg.eigh(blocks.transpose(0, 2, 1, 3).reshape(half * group.size, -1))
             whole = np.zeros((half, self.motions, len(found)))
@@ -175,9 +185,9 @@ class _Hankel:
 
 
 def _enough(power: np.ndarray) -> int:
-    """Index after which no more than `LEFT` of the whole is left."""
+    """Index after which no more than `MAX_MISSED_ENERGY` of the whole is left."""
     total = power.cumsum()
-    return int(np.searchsorted(total, (1 - LEFT) * total[-1]))
+    return int(np.searchsorted(total, (1 - MAX_MISSED_ENERGY) * total[-1]))
 
 
 def _groups(coupled: np.ndarray) -> list[np.ndarray]:
@@ -194,6 +204,6 @@ def _transfer(rates: np.ndarray, drive: np.ndarray, output: np.ndarray, omega: n
 def _least(rates: np.ndarray, drive: np.ndarray, output: np.ndarray) -> float:
     """Least eigenvalue of the damping of a state space, over its largest."""
     poles = np.abs(np.linalg.eigvals(rates))
-    transfer = _transfer(rates, drive, output, np.geomspace(0.05 * poles.min(), 20 * poles.max(), SWEEP))
+    transfer = _transfer(rates, drive, output, np.geomspace(0.05 * poles.min(), 20 * poles.max(), CHECKED_FREQUENCIES))
     values = np.linalg.eigvalsh(0.5 * (transfer + transfer.conj().transpose(0, 2, 1)))
     return float(values.min() / np.abs(values).max())

@@ -1,4 +1,4 @@
-"""Excel workbooks to the lines of a text table: the one sheet that has numbers."""
+"""Tables from Excel workbooks: the one sheet with numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Units that a data file states itself: Roll [rad], eta (mm), surge_m, a row of units, a NetCDF attribute."""
+"""Units that a data file states: Roll [rad], eta (mm), surge_m, a row of units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the table of a text file begins and ends: header, row of units, what a logger wrote above and below."""
+"""Layout of a text table: header, row of units, and lines of a logger above and below."""
 
 from __future__ import annotations
 

@@ -11,9 +11,9 @@ from jaxhydro.interop.wamit_tables import UNITS, contradictions, of_heading, tab
 from jaxhydro.waves.transfer import Transfer
 
 COLUMNS = "PER1 PER2 BETA1 BETA2 I MOD PHASE RE IM"
-SAME = 1e-6  # of a period or frequency
-CONJUGATE = 0.01  # of the larger of two values, by which they may differ and still be conjugate
-NOTHING = 1e-4  # of the largest force or moment: smaller differences are rounding
+FREQUENCY_TOLERANCE = 1e-6  # of a period or frequency
+MAX_ASYMMETRY = 0.01  # of the larger of two values, by which they may differ and still be conjugate
+NEGLIGIBLE_FORCE = 1e-4  # of the largest force or moment: smaller differences are rounding
 
 
 def read_transfer(
@@ -54,7 +54,7 @@ def read_transfer(
         return InputError(str(path), [Problem(where, expected, found)])
 
     column = np.unique(mine[:, :2])[::-1]
-    column = column[np.r_[True, np.abs(np.diff(column)) > SAME * column[:-1]]]
+    column = column[np.r_[True, np.abs(np.diff(column)) > FREQUENCY_TOLERANCE * column[:-1]]]
     n, many = len(column), "periods" if by == "period" else "frequencies"
     if n < 2:
         raise wrong(f"two {many} or more", f"{n}", "PER1")
@@ -108,7 +108,7 @@ def _contradicting(
         pairs = [(turned[order[k]], turned[order[k + 1]], order[k]) for k in np.flatnonzero(same)]
         pairs += [(turned[k], turned[k].conj(), k) for k in of[low[of] == high[of]]]
         for one, other, k in pairs:
-            limit = CONJUGATE * max(abs(one), abs(other)) + NOTHING * largest
+            limit = MAX_ASYMMETRY * max(abs(one), abs(other)) + NEGLIGIBLE_FORCE * largest
             if limit > 0 and (excess := abs(one - other) / limit) > worst[0]:
                 worst = (excess, (complex(one), complex(other), int(i), int(low[k]), int(high[k])))
     return worst[1]

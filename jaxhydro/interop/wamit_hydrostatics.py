@@ -1,4 +1,4 @@
-"""Hydrostatics that WAMIT writes: the stiffness of a .hst file, stiffness and volume of an .out file."""
+"""Hydrostatics from WAMIT: stiffness of a .hst file, stiffness and volume of an .out file."""
 
 import re
 from os import PathLike
@@ -18,8 +18,13 @@ SYMMETRIC = 0.01  # of the geometric mean of two motions' own stiffness, by whic
 
 
 class FileHydrostatics(NamedTuple):
-    """Hydrostatic `stiffness` (6, 6; N/m, N, N m/rad), displaced `volume` (m3) and the height of the centre of mass whose
-    weight the stiffness has (m); None: the file has it not."""
+    """Hydrostatics of a file; None for what it does not have.
+
+    Attributes:
+        stiffness: Hydrostatic stiffness (N/m, N, N m/rad), (6, 6).
+        volume: Displaced volume (m³).
+        centre_of_mass: Height (m) of the centre of mass whose weight the stiffness includes.
+    """
 
     stiffness: Float[np.ndarray, "6 6"]
     volume: float | None = None

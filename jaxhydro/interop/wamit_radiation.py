@@ -1,4 +1,7 @@
-"""WAMIT's `.1` file: added mass and radiation damping, by the conventions of its manual as HydroDyn reads them (WAMIT.f90)."""
+"""Added mass and radiation damping from WAMIT's .1 files.
+
+Conventions are those of WAMIT's manual, as HydroDyn reads them (WAMIT.f90).
+"""
 
 import math
 from os import PathLike
@@ -10,7 +13,7 @@ from jaxhydro.errors import InputError, Problem, shown
 from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.wamit_tables import UNITS, quantity, several_bodies, to_omega
 
-FEWEST = 4  # frequencies
+MIN_FREQUENCIES = 4  # frequencies
 
 
 def read_wamit(
@@ -57,8 +60,8 @@ def read_wamit(
     if body is not None and not mass:
         raise InputError(source, [Problem("body", f"rows of body {body}", f"{math.ceil(highest / 6)} bodies")])
     column = np.array(sorted(damping))
-    if len(column) < FEWEST:
-        expected = f"added mass and damping at {FEWEST} {'periods' if by == 'period' else 'frequencies'} or more"
+    if len(column) < MIN_FREQUENCIES:
+        expected = f"added mass and damping at {MIN_FREQUENCIES} {'periods' if by == 'period' else 'frequencies'} or more"
         raise InputError(source, [Problem("", expected, f"{len(column)}")])
     omega = to_omega(column, by)
     order = np.argsort(omega)

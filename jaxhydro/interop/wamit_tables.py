@@ -1,4 +1,4 @@
-"""WAMIT's numeric output files that tabulate forces by period, or by frequency, and heading."""
+"""WAMIT's numeric output files: forces by period or frequency, and heading."""
 
 import math
 from os import PathLike
@@ -12,14 +12,15 @@ from jaxhydro.errors import InputError, Problem
 
 By = Literal["period", "rad/s", "Hz"]
 UNITS: dict[str, str] = {"period": "s", "rad/s": "rad/s", "Hz": "Hz"}
-SAME = 1e-6  # of a degree
-CONTRADICTION = 0.02  # of a value's modulus, by which MOD and PHASE may differ from RE and IM
+HEADING_TOLERANCE = 1e-6  # of a degree
+MAX_MODULUS_MISMATCH = 0.02  # of a value's modulus, by which MOD and PHASE may differ from RE and IM
 
 
 def to_omega(values: Any, by: str) -> Any:
-    """Angular frequencies (rad/s) of the first column of a file that is by `period` (s), `rad/s` or `Hz`.
+    """Angular frequencies (rad/s) from a first column by "period" (s), "rad/s" or "Hz".
 
-    Raises UnknownName for another word.
+    Raises:
+        UnknownName: Another word.
     """
     check(by=(by, get_args(By)))
     if by == "period":
@@ -28,7 +29,7 @@ def to_omega(values: Any, by: str) -> Any:
 
 
 def quantity(by: str) -> str:
-    """What the first column of a file is called in messages."""
+    """Name of a file's first column in messages."""
     return "period" if by == "period" else "frequency"
 
 
@@ -98,17 +99,17 @@ def table_of(
 
 
 def several_bodies(highest_mode: float) -> str:
-    """What to do about a file of several bodies, by its highest mode."""
+    """Hint for a file of several bodies, by its highest mode."""
     count = math.ceil(highest_mode / 6)
     return f"A file of {count} bodies: say which, `body: 1` to `body: {count}`."
 
 
 def contradictions(rows: Float[np.ndarray, "r c"], first: int, source: str) -> list[str]:
-    """A warning where MOD and PHASE (deg) are not RE and IM; `first` is the column of MOD."""
+    """Warning where MOD and PHASE (deg) do not agree with RE and IM; `first` is the column of MOD."""
     polar = rows[:, first] * np.exp(1j * np.radians(rows[:, first + 1]))
     value = rows[:, first + 2] + 1j * rows[:, first + 3]
     size = np.maximum(np.abs(polar), np.abs(value))
-    bad = np.abs(polar - value) > CONTRADICTION * size + 1e-4 * size.max(initial=0.0)
+    bad = np.abs(polar - value) > MAX_MODULUS_MISMATCH * size + 1e-4 * size.max(initial=0.0)
     if not bad.any():
         return []
     row = " ".join(f"{x:g}" for x in rows[int(np.argmax(bad))])
@@ -125,17 +126,21 @@ def _is_number(word: str) -> bool:
 
 
 def same_heading(one: float | Float[np.ndarray, "..."], other: float) -> Any:
-    """Whether waves run the same way (deg), whole turns aside."""
-    return np.abs((one - other + 180) % 360 - 180) < SAME
+    """Whether two headings (deg) are equal up to whole turns."""
+    return np.abs((one - other + 180) % 360 - 180) < HEADING_TOLERANCE
 
 
 def of_heading(
     path: str | PathLike[str], rows: Float[np.ndarray, "r c"], headings: slice, heading: float
 ) -> Float[np.ndarray, "s c"]:
-    """The rows for waves of one heading (deg). Raises InputError where there are none."""
+    """Rows for waves of one heading (deg).
+
+    Raises:
+        InputError: There are none.
+    """
     mine = rows[same_heading(rows[:, headings], heading).all(axis=1)]
     if not len(mine):
-        same = np.ptp(rows[:, headings], axis=1) < SAME
+        same = np.ptp(rows[:, headings], axis=1) < HEADING_TOLERANCE
         known = ", ".join(f"{beta:g}" for beta in np.unique(rows[same, headings.start]))
         raise InputError(str(path), [Problem("BETA", f"waves of heading {heading:g} deg", f"{known} deg")])
     return mine

@@ -1,4 +1,7 @@
-"""The loads, by name. A new effect is one file here and one line in `LOADS`."""
+"""All loads, and the registry `LOADS` by name.
+
+A new effect is one file in this folder and one line in `LOADS`.
+"""
 
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter

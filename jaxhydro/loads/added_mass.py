@@ -9,7 +9,9 @@ from jaxhydro.loads.matrix import assemble, meaning, place, unit
 
 
 class AddedMass(AbstractLoad):
-    """F = -A a, a the acceleration of the reference point in body axes: added mass that members do not give.
+    """Lumped added mass that members do not give.
+
+    F = -A a, a the acceleration of the reference point in body axes: added mass that members do not give.
 
     Labels are `added_mass.A44` and so on. Newman 1977, Marine Hydrodynamics, chapter 4, its quadratic terms left out.
     """

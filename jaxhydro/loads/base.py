@@ -1,4 +1,4 @@
-"""What a load is: one force law with named parameters, and the instant at which it acts."""
+"""Base class of loads, their parameters, and the instant at which they act."""
 
 import abc
 import math
@@ -20,10 +20,18 @@ from jaxhydro.waves.transfer import Transfer
 
 
 class Parameter(NamedTuple):
-    """What a load's parameter means: its unit, the range in which a fit looks for it, and where the load is silent.
+    """Unit, meaning, bounds and neutral value of a load's parameter.
 
-    A `lower` end of 0 or more says that the quantity has a sign by physics, as drag, stiffness and times have: it may not be
-    negative (`check`). All other ends are of fits only: published values beyond them, a Cd of 30 for a plate, are not wrong.
+    A `lower` bound of 0 or more means that the quantity cannot be negative, as drag, stiffness and times cannot (`check`). All
+    other bounds only limit where a fit searches: published values beyond them, such as a Cd of 30 for a plate, are not wrong.
+
+    Attributes:
+        unit: Unit, "-" where there is none.
+        meaning: What the parameter is, in words.
+        lower: Lower bound.
+        upper: Upper bound.
+        null: Neutral value, at which the parameter has no effect.
+        of_hull: Whether bounds that are lengths or times scale with the platform's size.
     """
 
     unit: str
@@ -34,7 +42,15 @@ class Parameter(NamedTuple):
     of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not where a wave gauge may have stood
 
     def check(self, label: str, value: Any) -> None:
-        """Raise ValueError for a value of the parameter `label` that is no finite number, or negative where it cannot be."""
+        """Raise ValueError for a value that is not finite, or is negative where it cannot be.
+
+        Args:
+            label: Label of the parameter, for the message.
+            value: Number or array to check.
+
+        Raises:
+            ValueError: The value is not a finite number, or is negative although `lower` is 0 or more.
+        """
         try:
             numbers = np.asarray(value, float)
         except (TypeError, ValueError):
@@ -46,27 +62,48 @@ class Parameter(NamedTuple):
             raise ValueError(f"{label}: expected {expected} ({self.unit}: {self.meaning}), found {found}")
 
     def sized(self, size: float, pace: float) -> "Parameter":
-        """With the bounds of a platform of other `size` and `pace` (-, `scales`), where they are lengths or times."""
+        """The parameter with bounds for a platform of another size.
+
+        Args:
+            size: Length scale (-) relative to VolturnUS-S (`jaxhydro.scales`).
+            pace: Time scale (-) relative to VolturnUS-S.
+
+        Returns:
+            The same parameter; bounds in m, s, Hz or m/s are scaled where `of_hull` is set.
+        """
         factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
         lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
         return self if factor == 1.0 or not self.of_hull else self._replace(lower=lower, upper=upper)
 
 
 class StripShape(NamedTuple):
-    """What of each strip is under water: displaced volume (m3), and the area (m2) that a flow along either direction sees."""
+    """Submerged part of each strip.
+
+    Attributes:
+        volume: Displaced volume (m³), (n,).
+        facing: Area (m²) normal to the flow along each of the two directions, (2, n).
+    """
 
     volume: Float[Array, " n"]
     facing: Float[Array, "2 n"]
 
 
 class EndShape(NamedTuple):
-    """What ends and faces are: the area (m2) on which pressure acts, that which a flow along the axis sees, and the volume (m3)
-    to which added mass refers. Of a face it is that of the wet part of its strip; an end is wet by `EndFlow.wet`. The end of
-    a member that lies at the surface has the area of the wet section beside it.
+    """Areas and added-mass volumes of member ends and of the faces of tapered strips.
 
-    A face of a strip over which the section A grows by dA has the area dA, against the axis, and the volume r dA, A = pi r^2:
-    over a step that makes 2/3 pi (R^3 - r^3), the difference of two half spheres. OpenFAST HydroDyn, Morison module (tapered
-    members); RAFT, raft_member.py, getHydroConstants.
+    A face belongs to the wet part of its strip. An end is weighted by `EndFlow.wet`. The end of a member that lies at the
+    surface has the area of the wet section beside it.
+
+    A face of a strip over which the section A grows by dA has the area dA, against the axis, and the volume r dA, A = pi r².
+    Over a step that makes 2/3 pi (R³ - r³), the difference of two half spheres.
+
+    Attributes:
+        area: Area (m²) on which pressure acts, (m,).
+        facing: Area (m²) normal to the flow along the axis, (m,).
+        volume: Volume (m³) to which added mass refers, (m,).
+
+    References:
+        OpenFAST HydroDyn, Morison module (tapered members); RAFT, raft_member.py, getHydroConstants.
     """
 
     area: Float[Array, " m"]
@@ -75,7 +112,14 @@ class EndShape(NamedTuple):
 
     @classmethod
     def of(cls, hull: Hull, wetted: Wetted, covered: Float[Array, " n"], extent: Float[Array, "2 n"]) -> "EndShape":
-        """Those of a hull's ends and faces; `covered` (m) is the wet length of every strip, `extent` (m) its size."""
+        """Shape of a hull's ends and faces at an instant.
+
+        Args:
+            hull: The hull.
+            wetted: Submerged part of each load element.
+            covered: Wet length of each strip (m), (n,).
+            extent: Size of each strip along its two directions (m), (2, n).
+        """
         ends, strips, area = hull.ends, hull.strips, hull.ends.area
         if ends.afloat:
             at, beside, part = (jnp.array(column) for column in zip(*ends.afloat, strict=True))
@@ -94,21 +138,38 @@ class EndShape(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """Lines of strips, ends and faces: distance (m) from the element's start, centripetal acceleration along them (m/s2)."""
+    """Distances and centripetal accelerations of strips, ends and faces.
+
+    Attributes:
+        away: Distance (m) from the start of the load element, (l,).
+        inward: Centripetal acceleration (m/s²) along the line, (l,).
+    """
 
     away: Float[Array, " l"]
     inward: Float[Array, " l"]
 
 
 class Instant(eqx.Module):
-    """Everything a load may read, worked out once per evaluation of the equation of motion.
+    """Motion, submerged geometry and flow at one instant: everything that a load may read.
 
-    `position` is surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point; `rotation` takes body to earth axes;
-    `velocity` is the velocity of the reference point and the angular velocity in body axes (m/s, rad/s), `earth_velocity()` the
-    same along earth axes. `wetted`, `strip_shape` and `end_shape` say what of elements, strips and faces is under water,
-    `strip_flow` and `end_flow` how the water moves past strips and ends. `drift` (m2) and `excitation` (N, N m) are those of
-    the sea: see `AbstractSea.drift`, `AbstractSea.excitation`. `lid` is pressure over density
-    (m2/s2) and acceleration (m/s2, body axes) of the water at the points of `Hull.leaning`.
+    It is computed once per evaluation of the equation of motion.
+
+    Attributes:
+        time: Time (s).
+        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
+        rotation: Rotation matrix from body to earth axes.
+        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
+        environment: Water and gravity.
+        hull: The hull.
+        wetted: Submerged part of each load element.
+        strip_shape: Submerged part of each strip.
+        end_shape: Areas of ends and faces.
+        strip_flow: Flow past each strip.
+        end_flow: Flow past each end and face.
+        lines: Distances and centripetal accelerations of strips and ends.
+        drift: Squared wave envelopes (m²) of `AbstractSea.drift`, or None.
+        excitation: First-order force (N, N m) of `AbstractSea.excitation`, or None.
+        lid: Pressure over density (m²/s²) and acceleration (m/s², body axes) of the water at the points of `Hull.leaning`.
     """
 
     time: Float[Array, ""]
@@ -128,26 +189,32 @@ class Instant(eqx.Module):
     lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
 
     def earth_velocity(self) -> Float[Array, "6"]:
-        """Velocity of the reference point and angular velocity along earth axes (m/s, rad/s)."""
+        """Velocity of the reference point and angular velocity in earth axes (m/s, rad/s)."""
         return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
 
     def diffracting(self) -> Bool[Array, " n"]:
-        """Which strips diffract the waves."""
+        """Whether each strip diffracts the waves."""
         return jnp.array(self.hull.strips.diffracts) > 0
 
     def over_strips(self, elements: Float[Array, "2 e"]) -> Float[Array, "2 n"]:
-        """What is given by direction and element, by direction and strip."""
+        """Values per load element repeated for each of its strips: (2, e) to (2, n)."""
         return elements[:, jnp.array(self.hull.strips.element, dtype=int)]
 
 
 class Action(NamedTuple):
-    """What a load does at an instant; leave out what it does not.
+    """Forces, added mass and memory rate of a load at an instant; None for what it does not have.
 
-    `force` (N, N m) acts on the reference point along earth axes, `body_force` along body axes; `strip_force` and `end_force`
-    (N) act on strips along their two directions and on ends along their axes. Added mass multiplies acceleration: `added_mass`
-    (kg, kg m, kg m2) that of the reference point in body axes, `element_mass` (kg/m3, per displaced volume, by direction and
-    element) and `end_mass` (kg) that of strips and ends, the centripetal part included. `memory_rate` is the rate of the load's
-    own state.
+    Attributes:
+        force: Force and moment on the reference point, earth axes (N, N m).
+        body_force: Force and moment on the reference point, body axes (N, N m).
+        added_mass: Added mass at the reference point, body axes (kg, kg m, kg m²).
+        strip_force: Force on each strip along its two directions (N).
+        element_mass: Added mass of strips per displaced volume (kg/m³), by direction and load element.
+        end_force: Force on each end along its axis (N).
+        end_mass: Added mass of each end (kg).
+        memory_rate: Time derivative of the load's memory.
+
+    The added mass of strips and ends multiplies their whole acceleration, the centripetal part included.
     """
 
     force: Float[Array, "6"] | None = None
@@ -161,11 +228,15 @@ class Action(NamedTuple):
 
 
 class AbstractLoad(eqx.Module):
-    """A physical phenomenon: a differentiable force law with parameters that have names, units, bounds and a null.
+    """Base class of all loads: a differentiable force law with named, bounded parameters.
 
-    `values` holds what may be calibrated, by label; `about` tells what a label means. A load knows nothing of batches, of the
-    model around it or of calibration. What is no force has a method of its own: `stream` and `through` for the water, `seen`
-    and `clock_lag` for the sensors.
+    A load knows nothing of batches, of the model around it or of calibration. Loads that are not forces override other methods:
+    `stream` and `through` change the water, `seen` and `clock_lag` the sensors.
+
+    Attributes:
+        values: Parameters that may be calibrated, by label.
+        source: Publication or program that the law was taken from.
+        moves: Whether the load moves the sea, together with all that other loads make of it.
     """
 
     values: eqx.AbstractVar[Mapping[str, Float[Array, ""]]]
@@ -173,57 +244,71 @@ class AbstractLoad(eqx.Module):
     moves: ClassVar[bool] = False  # the sea, with all that others make of it
 
     def rest(self) -> Any:
-        """Its memory before t = 0; None where it has none (not `()`: diffrax cannot carry it)."""
+        """Memory before t = 0; None for a load without memory (not `()`, which diffrax cannot carry)."""
         return None
 
     def settled(self, displacement: Float[Array, "6"]) -> Any:
-        """Its memory after having been moved slowly to a displacement (m, rad, from rest) and held there."""
+        """Memory after a slow displacement (m, rad, from rest) that is held."""
         return self.rest()
 
     def fastest(self) -> float:
-        """Largest rate (1/s) of its memory by itself, which a time step has to resolve; 0: it has none, or slow ones only."""
+        """Largest rate (1/s) of the memory alone, which a time step must resolve.
+
+        0 for a load without memory, or with a slow one only.
+        """
         return 0.0
 
     def in_sea(self, state: SeaState) -> "AbstractLoad":
-        """The load as it is in a sea state; itself where it does not depend on that."""
+        """The load with the coefficients of a sea state; itself where it does not depend on the sea state."""
         return self
 
     def stream(self) -> Float[Array, "3"] | None:
-        """Steady velocity (m/s, earth axes) that it adds to the water everywhere; None: none."""
+        """Steady current (m/s, earth axes) that the load adds to the water everywhere, or None."""
         return None
 
     def through(self, sea: AbstractSea) -> AbstractSea:
-        """The sea as the platform meets it; itself where the load does not touch it."""
+        """The sea as changed by the load; the same sea where the load does not change it."""
         return sea
 
     def drifts(self) -> Transfer | None:
-        """What of second order an irregular sea has to be prepared with for it; None: nothing."""
+        """Difference-frequency transfer function with which an irregular sea is prepared, or None."""
         return None
 
     def excites(self) -> Excitation | None:
-        """What of first order an irregular sea has to be prepared with for it; None: nothing."""
+        """First-order excitation with which an irregular sea is prepared, or None."""
         return None
 
     def covers(self) -> tuple[str, float, float] | None:
-        """Key in the platform file, lowest and highest frequency (rad/s) of what was computed for it; None: it has no table."""
+        """Key in the platform file and frequency range (rad/s) of the load's table; None without one."""
         return None
 
     def replaces(self) -> Float[Array, ""] | None:
-        """Share of what accelerations and pressures of the water do to strips and ends that it stands for; None: none."""
+        """Fraction of the strips' inertial wave load that this load replaces (0 to 1), or None.
+
+        The fraction applies to the accelerations and pressures of the water at strips and ends.
+        """
         return None
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
-        """What the motion sensors make of a position (m, rad)."""
+        """Reading of the motion sensors at a position (m, rad), (..., 6)."""
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:
-        """Lag (s) of the recorded motions behind the waves: what is recorded at t is y(t - lag), the motion a lag earlier."""
+        """Lag (s) of the recorded motions behind the waves, or None.
+
+        The record at t shows the motion at t - lag.
+        """
         return None
 
     @abc.abstractmethod
     def about(self, label: str) -> Parameter:
-        """What the parameter `label` of this load means."""
+        """Unit, meaning, bounds and neutral value of one parameter of this load."""
 
     def act(self, now: Instant, memory: Any) -> Action:
-        """The load at an instant; none where all it does is something else."""
+        """Forces, added mass and memory rate at an instant; empty for a load that is not a force.
+
+        Args:
+            now: Motion, geometry and flow at the instant.
+            memory: The load's memory, as from `rest`.
+        """
         return Action()

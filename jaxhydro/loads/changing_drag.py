@@ -1,4 +1,4 @@
-"""Drag whose coefficients go with the speed and differ between slow and fast motion: two laws in one."""
+"""Drag with speed-dependent coefficients and another coefficient for slow motion."""
 
 from collections.abc import Mapping
 from typing import ClassVar
@@ -9,9 +9,9 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import (
-    OF_SHARE,
-    POWER,
-    SHARE,
+    POWER_LABEL,
+    SLOW_DRAG_LABEL,
+    SLOW_DRAG_PARAMETERS,
     about,
     about_exponent,
     end_area,
@@ -26,7 +26,9 @@ from jaxhydro.loads.drag import (
 
 
 class ChangingDrag(AbstractLoad):
-    """`SlowDrag` times the factor of `PowerDrag`: where a model may need either, or both. At both nulls plain drag.
+    """Drag that combines `SlowDrag` and `PowerDrag`.
+
+    `SlowDrag` times the factor of `PowerDrag`: where a model may need either, or both. At both nulls plain drag.
 
     Sources are those of the two: OpenFAST HydroDyn, Morison.f90; Keulegan and Carpenter 1958; Graham 1980.
     """
@@ -37,27 +39,27 @@ class ChangingDrag(AbstractLoad):
 
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "ChangingDrag":
-        """The law on the lines whose drag coefficients are in `values`; its own parameters are null where they are not."""
-        own = {label: jnp.asarray(about.null) for label, about in OF_SHARE.items()}
-        own |= {f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)}
+        """Load on the lines whose drag coefficients are in `values`; missing parameters are neutral."""
+        own = {label: jnp.asarray(about.null) for label, about in SLOW_DRAG_PARAMETERS.items()}
+        own |= {f"{POWER_LABEL}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)}
         return cls(own | dict(values), coupled)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "ChangingDrag":
-        """Plain drag with the coefficients in `values`."""
+        """Load at its neutral value: plain drag with the coefficients in `values`."""
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def rest(self) -> Float[Array, "6"]:
         return jnp.zeros(6)
 
     def about(self, label: str) -> Parameter:
-        if label.startswith(f"{POWER}."):
+        if label.startswith(f"{POWER_LABEL}."):
             return about_exponent(label)
-        return OF_SHARE[label] if label in OF_SHARE else about(label, {})
+        return SLOW_DRAG_PARAMETERS[label] if label in SLOW_DRAG_PARAMETERS else about(label, {})
 
     def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
-        share = values[f"{SHARE}.low_share"]
+        share = values[f"{SLOW_DRAG_LABEL}.low_share"]
         still, turning = (memory @ hull.motion).reshape(2, -1)
         slow_strip, slow_end = hull.split(still + turning * now.lines.away)
         own = exponents(values)
@@ -73,5 +75,5 @@ class ChangingDrag(AbstractLoad):
         return Action(
             strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled, strips),
             end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False, ends),
-            memory_rate=2 * jnp.pi * values[f"{SHARE}.cutoff"] * (now.velocity - memory),
+            memory_rate=2 * jnp.pi * values[f"{SLOW_DRAG_LABEL}.cutoff"] * (now.velocity - memory),
         )

@@ -1,4 +1,4 @@
-"""First-order wave forces computed by a radiation-diffraction program, in place of those of strips."""
+"""First-order wave forces from a radiation-diffraction program, in place of the strips'."""
 
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -15,15 +15,17 @@ LABEL = "computed_excitation.share"
 
 
 class ComputedExcitation(AbstractLoad):
-    """F_i(t) = s Re sum_k X_i(w_k) A_k exp(i (w_k t - k x)), of the undisturbed first-order waves where the platform is
-    horizontally (`waves_at` of `Model`), along earth axes (`Excitation`; Newman 1977, Marine Hydrodynamics, section 6.15); what
-    accelerations and pressures of the water do to strips and ends counts 1 - s.
+    """First-order wave force from tables, in place of that of the strips.
+
+    F_i(t) = s Re sum_k X_i(w_k) A_k exp(i (w_k t - k x)), of the undisturbed first-order waves where the platform is
+    horizontally (`waves_at` of `Model`), along earth axes (`Excitation`; Newman 1977, Marine Hydrodynamics, section 6.15);
+    what accelerations and pressures of the water do to strips and ends counts 1 - s.
 
     s is a share: 1 for the program's own excitation, with drag alone left to the strips, as OpenFAST HydroDyn has a
     potential-flow body (at the platform's mean position, unless ExctnDisp is 1); 0 for that of the strips. What the program
-    leaves out the strips then leave out with it: wetting, stretching and bound waves act by drag only. Added mass stays that of
-    the members. Of waves that are sent back (`WaveReflection`) the strips alone know. An irregular sea has to be prepared with
-    `Model.excitation`.
+    leaves out the strips then leave out with it: wetting, stretching and bound waves act by drag only. Added mass stays that
+    of the members. Of waves that are sent back (`WaveReflection`) the strips alone know. An irregular sea has to be prepared
+    with `Model.excitation`.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -32,7 +34,7 @@ class ComputedExcitation(AbstractLoad):
 
     @classmethod
     def of(cls, excitation: Excitation, share: float = 1.0) -> "ComputedExcitation":
-        """All of a program's excitation, or a share (-) of it."""
+        """Load from an excitation table; `share` (-) of it."""
         return cls({LABEL: jnp.asarray(float(share))}, excitation)
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""Fluid memory of computed radiation damping, all motions coupled."""
+"""Radiation memory (Cummins) from computed damping, all motions coupled."""
 
 import math
 from typing import Any, ClassVar
@@ -14,7 +14,9 @@ SHARE = Parameter("-", "share of the computed radiation memory, which at 1 is co
 
 
 class ComputedRadiation(AbstractLoad):
-    """F = -s int_0^inf K(u) v(t - u) du along body axes, K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega (Cummins 1962).
+    """Radiation memory force by Cummins' equation, as a state space.
+
+    F = -s int_0^inf K(u) v(t - u) du along body axes, K(t) = 2/pi int_0^inf B(omega) cos(omega t) d omega (Cummins 1962).
 
     v is the velocity of the reference point (m/s) and the angular velocity (rad/s), B the radiation damping of potential
     theory, all 36 entries, about the same point; s the share of it, complete at 1. K is that of a state space
@@ -23,9 +25,9 @@ class ComputedRadiation(AbstractLoad):
         dr/dt = A r + B v,  F = -s C r.
 
     It gives damping B(omega), and added mass A(omega) - A(infinity) = -1/omega int_0^inf K sin(omega t) dt (Ogilvie 1964).
-    Added mass at infinite frequency is not here but stays the strips' own: with this load a `Ca` means that one, and what was
-    tuned to slow motion counts part of it twice. Linear: memory of the mean wetted hull, moving with the body. Before t = 0 the
-    platform was at rest.
+    Added mass at infinite frequency is not here but stays the strips' own: with this load a `Ca` means that one, and what
+    was tuned to slow motion counts part of it twice. Linear: memory of the mean wetted hull, moving with the body. Before t
+    = 0 the platform was at rest.
 
     Its label is `computed_radiation.share`. A, B and C are constants: another hull has others. `highest` (rad/s) is the last
     frequency that the coefficients were computed at.
@@ -42,7 +44,7 @@ class ComputedRadiation(AbstractLoad):
     def of(
         cls, rates: np.ndarray, drive: np.ndarray, output: np.ndarray, share: float = 0.0, highest: float = math.inf
     ) -> "ComputedRadiation":
-        """With a state space, and a share of it: none is the null."""
+        """Load from a state space; `share` (-) of it, 0 being the neutral value."""
         a, b, c = (jnp.asarray(matrix, float) for matrix in (rates, drive, output))
         return cls({"computed_radiation.share": jnp.asarray(share, float)}, a, b, c, highest)
 

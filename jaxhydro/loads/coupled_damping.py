@@ -12,7 +12,9 @@ from jaxhydro.loads.matrix import assemble, place, unit
 
 
 class CoupledDamping(AbstractLoad):
-    """F_i = -B_ij v_j, F_j = -B_ij v_i along body axes: what velocity in one motion takes from another, the same both ways.
+    """Symmetric linear damping between pairs of degrees of freedom.
+
+    F_i = -B_ij v_j, F_j = -B_ij v_i along body axes: what velocity in one motion takes from another, the same both ways.
 
     Symmetry is that of potential damping (Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 3), and of a
     damper at a height z: B15 = z B11. Beyond sqrt(B_ii B_jj) of all damping it gives energy. Labels are
@@ -24,7 +26,7 @@ class CoupledDamping(AbstractLoad):
 
     @classmethod
     def null(cls, labels: Sequence[str] = ("B15",)) -> "CoupledDamping":
-        """No coupling, for some pairs of degrees of freedom."""
+        """Load at its neutral value, for some pairs of degrees of freedom."""
         return cls({f"coupled_damping.{label}": jnp.zeros(()) for label in labels})
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""Ends of pontoons that water does not reach."""
+"""Wave pressure removed from pontoon ends that water does not reach."""
 
 from typing import Any, ClassVar
 
@@ -11,7 +11,9 @@ LABEL = "covered_ends.share"
 
 
 class CoveredEnds(AbstractLoad):
-    """f = c p A on every end of a pontoon, along it: takes the share c of the dynamic pressure there away again.
+    """Removal of the wave pressure on pontoon ends that are covered by a column.
+
+    f = c p A on every end of a pontoon, along it: takes the share c of the dynamic pressure there away again.
 
     A pontoon's end that meets a column is not wet. Pressure on it is still right where the column is loaded as if it were
     whole: the two make up the Froude-Krylov force of the volume that both fill (c = 0, the default, as in OpenFAST HydroDyn
@@ -24,7 +26,7 @@ class CoveredEnds(AbstractLoad):
 
     @classmethod
     def null(cls) -> "CoveredEnds":
-        """Pressure on all ends."""
+        """Load at its neutral value: pressure on all ends."""
         return cls({LABEL: jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:

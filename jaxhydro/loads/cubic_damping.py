@@ -1,4 +1,4 @@
-"""Cubic damping per degree of freedom."""
+"""Cubic damping in each degree of freedom."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -6,13 +6,15 @@ from typing import Any, ClassVar, Self
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
-PARAMETERS = {"coefficient": both("N s3/m3", "N m s3/rad3", "cubic damping in {dof}", 0.0)}
+PARAMETERS = {"coefficient": both_units("N s3/m3", "N m s3/rad3", "cubic damping in {dof}", 0.0)}
 
 
 class CubicDamping(AbstractLoad):
-    """F_i = -c_i v_i^3 along body axes.
+    """Cubic damping in each degree of freedom.
+
+    F_i = -c_i v_i^3 along body axes.
 
     v is the velocity of the reference point (m/s) and the angular velocity (rad/s). An empirical third term after linear and
     quadratic damping, or a smooth one in place of the quadratic: a ship's roll at large angles, viscous damping whose
@@ -27,12 +29,12 @@ class CubicDamping(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str]) -> Self:
-        """No cubic damping, in some degrees of freedom."""
+        """Load at its neutral value, in some degrees of freedom."""
         return cls(nulls("cubic_damping", dofs, PARAMETERS))
 
     def about(self, label: str) -> Parameter:
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        velocity = those(now.velocity, self.values)
-        return Action(body_force=on_six(-entries(self.values, "coefficient") * velocity**3, self.values))
+        velocity = dofs_only(now.velocity, self.values)
+        return Action(body_force=all_dofs(-entries(self.values, "coefficient") * velocity**3, self.values))

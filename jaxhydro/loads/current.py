@@ -1,4 +1,4 @@
-"""A steady current."""
+"""Steady uniform current."""
 
 from typing import ClassVar
 
@@ -7,18 +7,19 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Parameter
 
-FASTEST = 5.0  # m/s
+MAX_SPEED = 5.0  # m/s
 
 
 class Current(AbstractLoad):
-    """u_c = (U, V, 0) everywhere: it adds to the velocity past every strip and end, and so acts through their drag.
+    """Steady current, uniform over depth, that acts through drag.
+
+    u_c = (U, V, 0) everywhere: it adds to the velocity past every strip and end, and so acts through their drag.
 
     Uniform over depth, steady, and there from the start. Parallel and steady flow has no acceleration, hence no
-    Froude-Krylov force; lift, Munk's moment and what a current does to the waves (Doppler shift, steepness) are left out. That
-    a current adds to the waves' velocity inside the
-    drag term is common practice (DNV-RP-C205, section 6; Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter
-    6). A platform without drag loads does not feel it, and one that rests in still water has no slope by it at U = 0: |u| u
-    has none. In a decay and in waves it has.
+    Froude-Krylov force; lift, Munk's moment and what a current does to the waves (Doppler shift, steepness) are left out.
+    That a current adds to the waves' velocity inside the drag term is common practice (DNV-RP-C205, section 6; Faltinsen
+    1990, Sea Loads on Ships and Offshore Structures, chapter 6). A platform without drag loads does not feel it, and one
+    that rests in still water has no slope by it at U = 0: |u| u has none. In a decay and in waves it has.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -26,11 +27,11 @@ class Current(AbstractLoad):
 
     @classmethod
     def null(cls) -> "Current":
-        """No current."""
+        """Load at its neutral value: no current."""
         return cls({"current.x": jnp.zeros(()), "current.y": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
-        return Parameter("m/s", f"velocity of the current along earth's {label[-1]}", -FASTEST, FASTEST)
+        return Parameter("m/s", f"velocity of the current along earth's {label[-1]}", -MAX_SPEED, MAX_SPEED)
 
     def stream(self) -> Float[Array, "3"]:
         return jnp.stack([*(jnp.asarray(self.values[f"current.{axis}"]) for axis in "xy"), jnp.zeros(())])

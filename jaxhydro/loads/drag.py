@@ -1,4 +1,4 @@
-"""What the drag laws share: the quadratic force, and which lines of the hull a law is for. No load by itself.
+"""Functions that the drag laws share: quadratic force, areas and exponents by strip and end.
 
 A line is a strip's direction or an end's axis (see `Hull`): strips' first directions, their second ones, then ends.
 """
@@ -14,17 +14,21 @@ from jaxhydro.loads.base import Instant, Parameter
 from jaxhydro.loads.end_inertia import spread_ends
 from jaxhydro.loads.strip_inertia import spread
 
-REST = 1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere
+MIN_SQUARED_SPEED = (
+    1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere
+)
 COEFFICIENT = Parameter("-", "{way} drag coefficient of {group}, on {area} area", 0.0, 30.0)
 SUCTION = Parameter("-", "share of the drag of the ends of {group} that moves to where the flow leaves them", 0.0, 1.0)
 
-POWER = "amplitude_dependent_drag"  # labels of coefficients that go with a power of the speed
-SPEED = 0.5  # m/s at which Cd is what it says
-SLOW = 0.04  # of that speed, below which the coefficient no longer changes
-SHARE = "sea_state_dependent_drag"  # labels of drag in which slow motion has a coefficient of its own
-OF_SHARE = {
-    f"{SHARE}.low_share": Parameter("-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0),
-    f"{SHARE}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, 0.03),
+POWER_LABEL = "amplitude_dependent_drag"  # labels of coefficients that go with a power of the speed
+REFERENCE_SPEED = 0.5  # m/s at which Cd is what it says
+MIN_SPEED_RATIO = 0.04  # of that speed, below which the coefficient no longer changes
+SLOW_DRAG_LABEL = "sea_state_dependent_drag"  # labels of drag in which slow motion has a coefficient of its own
+SLOW_DRAG_PARAMETERS = {
+    f"{SLOW_DRAG_LABEL}.low_share": Parameter(
+        "-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0
+    ),
+    f"{SLOW_DRAG_LABEL}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, 0.03),
 }
 
 Values = Mapping[str, Float[Array, ""]]
@@ -33,11 +37,18 @@ Values = Mapping[str, Float[Array, ""]]
 def quadratic(
     density: float | Float[Array, ""], area: Float[Array, "... k"], relative: Float[Array, "... k"], coupled: bool = False
 ) -> Float[Array, "... k"]:
-    """1/2 rho Cd A |u| u (N), `area` Cd A (m2), `relative` u (m/s); `coupled`: |u| of the vector that the first axis holds."""
+    """Quadratic drag force 1/2 rho Cd A |u| u (N).
+
+    Args:
+        density: Density of the water (kg/m³).
+        area: Cd A (m²).
+        relative: Relative velocity u of the water (m/s).
+        coupled: Whether |u| is that of the vector along the first axis, or of each component.
+    """
     square = relative**2
     if coupled:
         square = square.sum(axis=0)
-    return 0.5 * density * area * jnp.sqrt(square + REST) * relative
+    return 0.5 * density * area * jnp.sqrt(square + MIN_SQUARED_SPEED) * relative
 
 
 def one_sided(
@@ -47,32 +58,46 @@ def one_sided(
     outward: Float[Array, " m"],
     suction: Float[Array, " m"],
 ) -> Float[Array, " m"]:
-    """1/2 rho Cd A (|w| w + s n w^2) (N) along the axis, `area` Cd A (m2), w `relative` (m/s), n `outward` (1 or -1)."""
+    """One-sided drag force 1/2 rho Cd A (|w| w + s n w²) (N) along the axis of ends.
+
+    Args:
+        density: Density of the water (kg/m³).
+        area: Cd A (m²), (m,).
+        relative: Relative velocity w of the water (m/s), (m,).
+        outward: Outward direction n along the axis, 1 or -1, (m,).
+        suction: Fraction s of the drag on the side where the flow leaves, (m,).
+    """
     return quadratic(density, area, relative) + 0.5 * density * area * suction * outward * relative**2
 
 
 def of_strips(now: Instant, values: Values, symbol: str, missing: float) -> Float[Array, "2 n"]:
-    """Parameters `group.symbol_t`, `group.symbol_z` by direction and strip; `missing` where a group has none."""
+    """Parameters `group.symbol_t` and `group.symbol_z` by direction and strip; `missing` where absent."""
     return now.over_strips(spread(now.hull.elements, values, symbol, missing))
 
 
 def of_ends(now: Instant, values: Values, symbol: str, missing: float) -> Float[Array, " m"]:
-    """Parameters `group.symbol_z` by end; `missing` where a group has none."""
+    """Parameters `group.symbol_z` by end; `missing` where absent."""
     return spread_ends(now.hull.ends, values, symbol, missing)
 
 
 def strip_area(now: Instant, values: Values) -> Float[Array, "2 n"]:
-    """Cd A (m2) of strips by direction, A what the flow along it sees; 0 where `values` has no coefficient."""
+    """Cd A (m²) by direction and strip, A normal to the flow; 0 without a coefficient in `values`."""
     return of_strips(now, values, "Cd", 0.0) * now.strip_shape.facing
 
 
 def end_area(now: Instant, values: Values) -> Float[Array, " m"]:
-    """Cd A (m2) of ends, A the wet area that is free; 0 where `values` has no coefficient."""
+    """Cd A (m²) by end, A the free wet area; 0 without a coefficient in `values`."""
     return of_ends(now, values, "Cd", 0.0) * now.end_shape.facing * now.end_flow.wet
 
 
 def lines_of(hull: Hull, labels: Iterable[str], both: bool = False) -> tuple[int, ...]:
-    """Lines whose drag coefficient is among `labels`, in order; `both`: and the other directions of their strips."""
+    """Lines whose drag coefficient is among `labels`, in order.
+
+    Args:
+        hull: The hull.
+        labels: Labels of drag coefficients.
+        both: Include the other directions of their strips.
+    """
     known, elements = set(labels), hull.elements
     names, of_ends = elements.parameters("Cd"), hull.ends.parameters("Cd")
     strips = np.array([[names[row[e]] in known for e in hull.strips.element] for row in elements.label], bool)
@@ -85,15 +110,27 @@ def lines_of(hull: Hull, labels: Iterable[str], both: bool = False) -> tuple[int
 
 
 def on_all(some: Float[Array, " k"], lines: tuple[int, ...], count: int) -> Float[Array, " l"]:
-    """What some lines have, on all of them: 0 on the others. A gather: scatters are slow on a CPU."""
+    """Values of some lines on all lines, 0 on the others.
+
+    By a gather: scatters are slow on a CPU.
+
+    Args:
+        some: Values of `lines`, (k,).
+        lines: Numbers of these lines.
+        count: Number of all lines.
+    """
     place = np.full(count, len(lines))
     place[list(lines)] = np.arange(len(lines))
     return jnp.concatenate([some, jnp.zeros(1)])[place]
 
 
 def about(label: str, more: Mapping[str, Parameter]) -> Parameter:
-    """What a drag law's parameter means: `group.Cd_t`, `group.Cd_z`, or of the same form one of `more`, whose meanings have
-    {way}, {group} and {area} to be filled in."""
+    """Unit, meaning and bounds of a drag law's parameter.
+
+    Args:
+        label: Label `group.Cd_t` or `group.Cd_z`, or of the same form with a name of `more`.
+        more: Further parameters; {way}, {group} and {area} in their meanings are filled in.
+    """
     group, symbol = label.rsplit(".", 1)
     name, kind = symbol.rsplit("_", 1)
     found = COEFFICIENT if name == "Cd" else more[name]
@@ -101,24 +138,32 @@ def about(label: str, more: Mapping[str, Parameter]) -> Parameter:
     return found._replace(meaning=found.meaning.format(way=way, group=group, area=area))
 
 
-def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float = SPEED) -> Float[Array, "..."]:
-    """((u^2 + e^2)/(U0^2 + e^2))^(n/2) of u^2 (m2/s2), e a share of U0: exactly 1 for n = 0."""
-    slow = (SLOW * speed) ** 2
+def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float = REFERENCE_SPEED) -> Float[Array, "..."]:
+    """Factor ((u² + e²)/(U0² + e²))^(n/2) of the drag; exactly 1 for n = 0.
+
+    Args:
+        square: u² (m²/s²).
+        exponent: n (-).
+        speed: U0 (m/s); e is a small fraction of it.
+    """
+    slow = (MIN_SPEED_RATIO * speed) ** 2
     return jnp.exp(0.5 * exponent * jnp.log((square + slow) / (speed**2 + slow)))
 
 
 def groups_of(values: Iterable[str]) -> tuple[str, ...]:
-    """Groups whose drag coefficients are among labels."""
+    """Groups of members whose drag coefficients are among labels."""
     return tuple(dict.fromkeys(label.rsplit(".", 1)[0] for label in values if ".Cd_" in label))
 
 
 def exponents(values: Values) -> dict[str, Float[Array, ""]]:
-    """Exponents of the speed, by labels as `of_strips` and `of_ends` ask for them."""
-    named = {label.removeprefix(f"{POWER}."): value for label, value in values.items() if label.startswith(f"{POWER}.")}
+    """Exponents of the speed, by the labels that `of_strips` and `of_ends` ask for."""
+    named = {
+        label.removeprefix(f"{POWER_LABEL}."): value for label, value in values.items() if label.startswith(f"{POWER_LABEL}.")
+    }
     return {label + way: value for label, value in named.items() for way in ("_t", "_z")}
 
 
-def about_exponent(label: str, speed: float = SPEED) -> Parameter:
-    """What an exponent of the speed means."""
-    group = label.removeprefix(f"{POWER}.").removesuffix(".exponent")
+def about_exponent(label: str, speed: float = REFERENCE_SPEED) -> Parameter:
+    """Unit, meaning and bounds of an exponent of the speed."""
+    group = label.removeprefix(f"{POWER_LABEL}.").removesuffix(".exponent")
     return Parameter("-", f"exponent of the drag coefficients of {group} in the speed over {speed:g} m/s", -1.0, 1.0)

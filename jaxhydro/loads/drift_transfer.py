@@ -1,4 +1,4 @@
-"""Slow drift by a computed quadratic transfer function."""
+"""Slow drift force from a computed quadratic transfer function."""
 
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -8,18 +8,21 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.waves.irregular_sea import IrregularSea
-from jaxhydro.waves.sea import DRIFTS, AbstractSea, WaveSea
+from jaxhydro.waves.sea import DRIFT_ENTRIES, AbstractSea, WaveSea
 from jaxhydro.waves.transfer import Transfer
 
 
 class DriftTransfer(AbstractLoad):
-    """F_i(t) = s Re sum_kl A_k conj(A_l) exp(i (w_k - w_l) t) T_i(w_k, w_l), of the undisturbed first-order waves at the
+    """Difference-frequency second-order force from a computed transfer function.
+
+    F_i(t) = s Re sum_kl A_k conj(A_l) exp(i (w_k - w_l) t) T_i(w_k, w_l), of the undisturbed first-order waves at the
     origin, along earth axes: the difference-frequency second-order force of a radiation-diffraction program (`Transfer`).
 
-    s is a share, 1 for the program's own, 0 for none. Beside strips: their relative velocities, wetting and second-order waves
-    have second-order forces of their own, which the program's have in part, too (Faltinsen 1990, chapter 5); how much of T a
-    model of strips lacks is a question for its records. The platform is taken to be at the origin, as the program has it; waves
-    that are `moved` along carry the force with their energy. An irregular sea has to be prepared with `Model.transfer`.
+    s is a share, 1 for the program's own, 0 for none. Beside strips: their relative velocities, wetting and second-order
+    waves have second-order forces of their own, which the program's have in part, too (Faltinsen 1990, chapter 5); how much
+    of T a model of strips lacks is a question for its records. The platform is taken to be at the origin, as the program has
+    it; waves that are `moved` along carry the force with their energy. An irregular sea has to be prepared with
+    `Model.transfer`.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -28,7 +31,7 @@ class DriftTransfer(AbstractLoad):
 
     @classmethod
     def of(cls, transfer: Transfer, share: float = 1.0) -> "DriftTransfer":
-        """All of a transfer function, or a share (-) of it."""
+        """Load from a transfer function; `share` (-) of it."""
         return cls({"drift_transfer.share": jnp.asarray(float(share))}, transfer)
 
     def about(self, label: str) -> Parameter:
@@ -47,6 +50,6 @@ class DriftTransfer(AbstractLoad):
     def act(self, now: Instant, memory: Any) -> Action:
         if now.drift is None:
             return Action()
-        if now.drift.shape[0] == DRIFTS:
+        if now.drift.shape[0] == DRIFT_ENTRIES:
             raise ValueError("the sea was made without the platform's transfer function: prepare it with `Model.transfer`")
-        return Action(force=self.values["drift_transfer.share"] * now.drift[DRIFTS:])
+        return Action(force=self.values["drift_transfer.share"] * now.drift[DRIFT_ENTRIES:])

@@ -9,7 +9,9 @@ from jaxhydro.loads.drag import end_area, quadratic
 
 
 class EndDrag(AbstractLoad):
-    """f = 1/2 rho Cd A |w| w, w the water's velocity relative to the end along the member, A the end's area, or that of a ring
+    """Quadratic drag on member ends along the axis.
+
+    f = 1/2 rho Cd A |w| w, w the water's velocity relative to the end along the member, A the end's area, or that of a ring
     where the section changes (`EndShape`).
 
     Robertson et al. 2014 (NREL/TP-5000-60601, the OC4 semisubmersible); OpenFAST's own input is twice this Cd, since it

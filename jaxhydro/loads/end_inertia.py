@@ -1,4 +1,4 @@
-"""Inertia and dynamic pressure at the ends of columns."""
+"""Inertia and dynamic pressure at member ends."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -13,7 +13,11 @@ from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 def spread_ends(
     ends: Ends, values: Mapping[str, Float[Array, ""]], symbol: str, missing: float | None = None
 ) -> Float[Array, " m"]:
-    """Coefficients `group.symbol_z` by end; `missing` where there is none. KeyError if that is None."""
+    """Coefficients `group.symbol_z` by end; `missing` where absent.
+
+    Raises:
+        KeyError: A coefficient is absent and `missing` is None.
+    """
     if not ends.labels:
         return jnp.zeros(len(ends.label))
     labels = ends.parameters(symbol)
@@ -22,7 +26,9 @@ def spread_ends(
 
 
 class EndInertia(AbstractLoad):
-    """f = rho Ca V (a_water - a_end) + p A, along the member, V = 2/3 pi r^3 half a sphere on the end.
+    """Added mass and dynamic pressure on member ends along the axis.
+
+    f = rho Ca V (a_water - a_end) + p A, along the member, V = 2/3 pi r^3 half a sphere on the end.
 
     Added mass of an end as in OpenFAST HydroDyn (Morison module, loads on member ends); p A is the dynamic pressure on the
     end's area, the axial Froude-Krylov force, which the ends of pontoons carry too. Only ends under water are loaded. The

@@ -1,4 +1,4 @@
-"""Masses that follow a point of the platform in some directions only: a carriage on rails, a heave rod."""
+"""Masses that follow a point of the platform in some directions only, such as a carriage."""
 
 from typing import Any, ClassVar, Self
 
@@ -14,13 +14,15 @@ EFFECT = "guided_masses"
 
 
 class GuidedMasses(AbstractLoad):
-    """F = -m (e . a_P) e at the point P of the body, for every earth axis e along which the mass m follows P.
+    """Masses that follow a point of the body along some earth axes only.
+
+    F = -m (e . a_P) e at the point P of the body, for every earth axis e along which the mass m follows P.
 
     A guide keeps the mass from moving in the other directions, and takes what that needs, without friction. The force is
     what d'Alembert's principle has of a particle that is constrained to e: it does the virtual work -m (e . a_P)(e . dP)
     (Goldstein, Poole and Safko 2002, Classical Mechanics, 3rd edition, eq. 1.45). So its inertia about the reference point
-    is m g g^T, g = (e, r x e) in body axes, r the point's place in the body. The centripetal acceleration of P along e is part
-    of a_P: exact for any finite rotation.
+    is m g g^T, g = (e, r x e) in body axes, r the point's place in the body. The centripetal acceleration of P along e is
+    part of a_P: exact for any finite rotation.
 
     A mass of which `weighs` is true also hangs on the platform: its weight -m g along z acts at P. Labels are
     `guided_masses.NAME.mass`.
@@ -48,7 +50,7 @@ class GuidedMasses(AbstractLoad):
         along: tuple[tuple[int, ...], ...],
         weighs: tuple[bool, ...],
     ) -> Self:
-        """Masses (kg) by name; the rest in their order, see the attributes."""
+        """Load from masses (kg) by name; the other arguments are the attributes, in that order."""
         values = {f"{EFFECT}.{name}.mass": jnp.asarray(mass, float) for name, mass in masses.items()}
         return cls(values, tuple(masses), jnp.asarray(points, float).reshape(-1, 3), along, weighs)
 

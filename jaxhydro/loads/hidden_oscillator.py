@@ -1,4 +1,4 @@
-"""Something in the hull that swings."""
+"""Undeclared oscillator in the hull, such as sloshing in a tank."""
 
 import math
 from collections.abc import Sequence
@@ -8,28 +8,30 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "mass": both("kg", "kg m2", "what swings in {dof}, on top of the declared mass", 0.0),
-    "period": both("s", "s", "period of what swings in {dof}, the hull held", 0.5, 500.0, 20.0),
-    "damping_ratio": both("-", "-", "damping ratio of what swings in {dof}, the hull held", 0.0, 1.0, 0.03),
+    "mass": both_units("kg", "kg m2", "what swings in {dof}, on top of the declared mass", 0.0),
+    "period": both_units("s", "s", "period of what swings in {dof}, the hull held", 0.5, 500.0, 20.0),
+    "damping_ratio": both_units("-", "-", "damping ratio of what swings in {dof}, the hull held", 0.0, 1.0, 0.03),
 }
 
 
 class HiddenOscillator(AbstractLoad):
-    """F_i = m (w0^2 e + 2 zeta w0 (w - v)), de/dt = w - v, m dw/dt = -F: a mass on a spring in the hull, along earth axes.
+    """Mass on a damped spring in the hull, in each degree of freedom.
+
+    F_i = m (w0^2 e + 2 zeta w0 (w - v)), de/dt = w - v, m dw/dt = -F: a mass on a spring in the hull, along earth axes.
 
     v is the velocity of the hull's reference point (m/s) and its angular velocity (rad/s), w that of the mass, e its
-    displacement in the hull, from where it rests. A slack tank's first mode, a damper that is not locked, a flexible tower, a
-    hanging load. m is what moves, not all of a tank's water; the declared body is taken WITHOUT it, so slow motion has the mass
-    M + m. A body that was declared with all of it is too heavy by m (`mass_error`). Its weight is not here, nor what a tilted
-    hull does to it (a mass that swings in surge pulls with m g theta, a tank has a free surface): small angles, and it sits at
-    the reference point. A mass that sits elsewhere shows in more than one degree of freedom: give it all of them. It starts at
-    rest.
+    displacement in the hull, from where it rests. A slack tank's first mode, a damper that is not locked, a flexible tower,
+    a hanging load. m is what moves, not all of a tank's water; the declared body is taken WITHOUT it, so slow motion has the
+    mass M + m. A body that was declared with all of it is too heavy by m (`mass_error`). Its weight is not here, nor what a
+    tilted hull does to it (a mass that swings in surge pulls with m g theta, a tank has a free surface): small angles, and
+    it sits at the reference point. A mass that sits elsewhere shows in more than one degree of freedom: give it all of them.
+    It starts at rest.
 
-    Den Hartog 1956, Mechanical Vibrations, chapter 3, the dynamic vibration absorber. Labels are `hidden_oscillator.surge.mass`
-    (kg, kg m2), `.period` (2 pi/w0; s), `.damping_ratio` (zeta).
+    Den Hartog 1956, Mechanical Vibrations, chapter 3, the dynamic vibration absorber. Labels are
+    `hidden_oscillator.surge.mass` (kg, kg m2), `.period` (2 pi/w0; s), `.damping_ratio` (zeta).
     """
 
     values: dict[str, Float[Array, ""]]
@@ -37,7 +39,7 @@ class HiddenOscillator(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str], period: float = 20.0, damping_ratio: float = 0.03) -> Self:
-        """Nothing, in some degrees of freedom; `period` (s) and `damping_ratio` of what would swing."""
+        """Load at its neutral value; `period` (s) and `damping_ratio` (-) are where it starts."""
         return cls(nulls("hidden_oscillator", dofs, PARAMETERS, {"period": period, "damping_ratio": damping_ratio}))
 
     def rest(self) -> Float[Array, "2 k"]:
@@ -50,6 +52,6 @@ class HiddenOscillator(AbstractLoad):
         mass, period, ratio = (entries(self.values, name) for name in PARAMETERS)
         displaced, velocity = memory
         frequency = 2 * math.pi / period
-        apart = velocity - those(now.earth_velocity(), self.values)
+        apart = velocity - dofs_only(now.earth_velocity(), self.values)
         pull = frequency**2 * displaced + 2 * ratio * frequency * apart  # per mass
-        return Action(force=on_six(mass * pull, self.values), memory_rate=jnp.stack([apart, -pull]))
+        return Action(force=all_dofs(mass * pull, self.values), memory_rate=jnp.stack([apart, -pull]))

@@ -1,4 +1,4 @@
-"""Drag in which slow and fast motion have coefficients of their own."""
+"""Drag with separate coefficients for slow and fast flow, by a high-pass filter."""
 
 import math
 from collections.abc import Mapping
@@ -24,30 +24,33 @@ from jaxhydro.loads.drag import (
 )
 
 # A first-order filter faster than this is no filter in waves, and at 0.25 s leaves what Adams-Bashforth can follow (0.19 Hz).
-FASTEST = 0.15  # Hz
-LARGEST_SHARE = 10.0  # of slow motion; HydroDyn takes 0 to 1
+MAX_CUTOFF = 0.15  # Hz
+MAX_SLOW_SHARE = 10.0  # of slow motion; HydroDyn takes 0 to 1
 
 PARAMETERS = {
-    "drag_cutoff": Parameter("Hz", "frequency above which {group} has its whole {way} drag coefficient", 0.0, FASTEST),
+    "drag_cutoff": Parameter("Hz", "frequency above which {group} has its whole {way} drag coefficient", 0.0, MAX_CUTOFF),
     "drag_low_share": Parameter(
-        "-", "share of the {way} drag coefficient of {group} that slow motion feels", 0.0, LARGEST_SHARE, 1.0
+        "-", "share of the {way} drag coefficient of {group} that slow motion feels", 0.0, MAX_SLOW_SHARE, 1.0
     ),
     "drag_suction": SUCTION,
 }
 
 
 class HighPassDrag(AbstractLoad):
-    """f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u - m, dm/dt = 2 pi fc u'.
+    """Drag with one coefficient for high-passed flow and another for the rest.
+
+    f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u - m, dm/dt = 2 pi fc u'.
 
     u is the water's relative velocity, u' the same high-passed at the cut-off fc: gain 1/(1 + (fc/f)^2)^0.5, ahead by
     atan(fc/f). Fast motion has the coefficient Cd, slow motion r Cd. r = 1 is plain Morison drag whatever fc, and so is
     fc = 0 whatever r. The memory m is the low-passed velocity of every strip's direction and end that has this law.
 
-    OpenFAST HydroDyn's velocity filter: AxVnCOff and AxFDLoFSc on ends (Morison.f90, subroutine Morison_CalcOutput), VnCOffA,
-    VnCOffB, FDLoFScA, FDLoFScB on the faces of rectangular members (subroutine GetDistDrag_Rec, pull request 2895). There it
-    goes step by step, u'_k = exp(-2 pi fc dt) (u'_{k-1} + u_k - u_{k-1}) (subroutine Morison_UpdateDiscState): this is the
-    limit dt -> 0. HydroDyn's members take |.| of the component (`coupled=False`); of the filtered vector, and so for circles,
-    it is ours. So is `drag_suction` being a number: 0 and 1 are AxFDMod (see `SuctionSideDrag`; it goes with u' and u alike).
+    OpenFAST HydroDyn's velocity filter: AxVnCOff and AxFDLoFSc on ends (Morison.f90, subroutine Morison_CalcOutput),
+    VnCOffA, VnCOffB, FDLoFScA, FDLoFScB on the faces of rectangular members (subroutine GetDistDrag_Rec, pull request 2895).
+    There it goes step by step, u'_k = exp(-2 pi fc dt) (u'_{k-1} + u_k - u_{k-1}) (subroutine Morison_UpdateDiscState): this
+    is the limit dt -> 0. HydroDyn's members take |.| of the component (`coupled=False`); of the filtered vector, and so for
+    circles, it is ours. So is `drag_suction` being a number: 0 and 1 are AxFDMod (see `SuctionSideDrag`; it goes with u' and
+    u alike).
 
     In a harmonic motion of gain G it takes r + (1 - r) G^3 of the energy that plain drag takes. Where slow and fast motion
     mix it can, for a while, give energy back.
@@ -60,7 +63,7 @@ class HighPassDrag(AbstractLoad):
 
     @classmethod
     def of(cls, hull: Hull, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "HighPassDrag":
-        """The law on the lines of a hull whose drag coefficients are in `values`."""
+        """Load on the lines of a hull whose drag coefficients are in `values`."""
         return cls(dict(values), lines_of(hull, values), coupled)
 
     def rest(self) -> Float[Array, " k"]:

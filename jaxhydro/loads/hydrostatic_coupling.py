@@ -1,4 +1,4 @@
-"""Hydrostatic stiffness between heave, roll and pitch that another program computed."""
+"""Computed hydrostatic stiffness that couples heave, roll and pitch."""
 
 from typing import Any, ClassVar
 
@@ -8,11 +8,13 @@ from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 
 
 class HydrostaticCoupling(AbstractLoad):
-    """F = -C q about the reference position: C34, C35 and C45 beyond those that members have (Newman 1977, Marine
+    """Hydrostatic stiffness that couples heave, roll and pitch.
+
+    F = -C q about the reference position: C34, C35 and C45 beyond those that members have (Newman 1977, Marine
     Hydrodynamics, chapter 6, Hydrostatics).
 
-    q is the displacement of the reference point (m) and roll, pitch, yaw (rad), C in N/m, N and N m/rad. Its own stiffness of
-    each motion is that of `Buoyancy`.
+    q is the displacement of the reference point (m) and roll, pitch, yaw (rad), C in N/m, N and N m/rad. Its own stiffness
+    of each motion is that of `Buoyancy`.
     """
 
     stiffness: Float[Array, "6 6"]

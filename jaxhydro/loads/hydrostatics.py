@@ -1,4 +1,4 @@
-"""Buoyancy of the displaced hull up to still water level, and what the platform file declares beyond its geometry."""
+"""Buoyancy of the hull up to still water level, with declared hydrostatics."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -10,22 +10,24 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.hull.strips import ENTERING, Member
+from jaxhydro.hull.strips import END_WETTING_LENGTH, Member
 from jaxhydro.hull.waterplane import chord, segment
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
 
-ALONG, ACROSS = 16, 4  # slabs and slices of a member that lies at the surface
+SLABS_ALONG, SLICES_ACROSS = 16, 4  # slabs and slices of a member that lies at the surface
 
 
 class Buoyancy(AbstractLoad):
-    """F = rho g V up, at the centroid of the volume V that is under still water.
+    """Buoyancy of the hull up to still water level.
 
-    V and its centroid follow the finite displacement and rotation. They are those of the wetted length along the axis, and for
-    a column those of the wedge of its inclined waterplane. The wedge moves the volume by I tan across and I tan^2/2 along the
-    axis, I the second moment of the section at the waterline (Newman 1977, Marine Hydrodynamics, chapter 6, Hydrostatics,
-    without linearisation). A column is taken as cut through its sides, not its ends.
+    F = rho g V up, at the centroid of the volume V that is under still water.
+
+    V and its centroid follow the finite displacement and rotation. They are those of the wetted length along the axis, and
+    for a column those of the wedge of its inclined waterplane. The wedge moves the volume by I tan across and I tan^2/2
+    along the axis, I the second moment of the section at the waterline (Newman 1977, Marine Hydrodynamics, chapter 6,
+    Hydrostatics, without linearisation). A column is taken as cut through its sides, not its ends.
 
     Sizes vary linearly along a piece. A prismatic column is exact at any lean; a tapered one is exact when upright or wholly
     under water, and to second order in the lean where the waterline cuts it.
@@ -61,16 +63,18 @@ class Buoyancy(AbstractLoad):
         return Action(body_force=self.force(now.position, now.rotation, weight_density))
 
     def geometry(self, heave: Float[Array, ""], vertical: Float[Array, "3"]) -> tuple[Float[Array, " p"], Float[Array, "3 p"]]:
-        """Wetted volume (m3) of every piece and its first moment about the reference point (m4, body axes).
+        """Wetted volume (m³) of every piece and its first moment about the reference point (m⁴, body axes).
 
-        `vertical` is the vertical in body axes, `heave` (m) that of the reference point.
+        Args:
+            heave: Heave of the reference point (m).
+            vertical: Vertical in body axes.
         """
         sides = jnp.concatenate([self.lower, self.axis, self.directions[:, 0], self.directions[:, 1]], axis=1)
         low, slope, *lean = (vertical @ sides).reshape(4, -1)
         rise = jnp.abs(slope) * self.length
         low = heave + low + 0.5 * (slope * self.length - rise) - 0.5 * self.thickness
         height = rise + self.thickness
-        width = ENTERING * self.hull_size
+        width = END_WETTING_LENGTH * self.hull_size
         wet = (entered(-low, width) - entered(-low - height, width)) / height
         # a column fills from its lower end; a pontoon loses volume evenly
         column = self.thickness == 0
@@ -87,7 +91,7 @@ class Buoyancy(AbstractLoad):
         return volume, moment
 
     def _tubes(self, heave: Float[Array, ""], vertical: Float[Array, "3"]) -> tuple[Float[Array, " t"], Float[Array, "3 t"]]:
-        """Wet volume (m3) of slices of cylinders, and its first moment (m4): segments of circles."""
+        """Wet volume (m³) of slices of cylinders, and its first moment (m⁴): segments of circles."""
         depth = -(heave + vertical @ self.tube)
         upward = jnp.einsum("i,idt->dt", vertical, self.tube_across)
         slope = jnp.sqrt((upward**2).sum(axis=0))
@@ -98,7 +102,7 @@ class Buoyancy(AbstractLoad):
         return volume, volume * self.tube - first * towards
 
     def _frustum(self, reach: Float[Array, " p"]) -> tuple[Float[Array, " p"], Float[Array, " p"]]:
-        """Volume (m3) of pieces up to `reach` (m) from their lower ends, and its first moment (m4) about these."""
+        """Volume (m³) of pieces up to `reach` (m) from their lower ends, and its first moment (m⁴)."""
         (a, b), (p, q) = self.size, self.taper
         area = [self.shape * part for part in (a * b, a * q + b * p, p * q)]  # by power of the distance
         parts = [[part * reach ** (i + j) / (i + j) for i, part in enumerate(area)] for j in (1, 2)]
@@ -115,7 +119,13 @@ class Buoyancy(AbstractLoad):
     def force(
         self, position: Float[Array, "6"], matrix: Float[Array, "3 3"], weight_density: Float[Array, ""] | float
     ) -> Float[Array, "6"]:
-        """Buoyancy (N, N m) in body axes at a displacement of the reference point; `weight_density` is rho g (N/m3)."""
+        """Buoyancy (N, N m) in body axes at a displacement of the reference point.
+
+        Args:
+            position: Position (m, rad).
+            matrix: Rotation from body to earth axes.
+            weight_density: rho g (N/m³).
+        """
         vertical = matrix[2]
         volume, moment = self.geometry(position[2], vertical)
         if self.tube_radius.size:
@@ -129,8 +139,15 @@ class Buoyancy(AbstractLoad):
         return jnp.concatenate([up * vertical, cross(total[1:], vertical) + extra])
 
     def upright(self, weight_density: float) -> dict[str, float]:
-        """Displaced volume (m3), its centroid's z (m), C33 (N/m), C44 and C55 (N m/rad, without the weight's share) of the
-        members alone, about the upright platform at its reference position."""
+        """Hydrostatics of the members alone, upright at the reference position.
+
+        Args:
+            weight_density: rho g (N/m³).
+
+        Returns:
+            Displaced volume (m³), z of its centroid (m), C33 (N/m), C44 and C55 (N m/rad) without the contribution of the
+                weight.
+        """
         volume, moment, slope = (np.asarray(x) for x in _upright(self, jnp.asarray(weight_density)))
         total = float(volume.sum())
         return {
@@ -151,9 +168,14 @@ def _upright(load: Buoyancy, weight_density: Float[Array, ""]):
 
 
 def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
-    """The buoyancy of members as they are, nothing declared beyond them. A member is cut where its taper changes.
+    """Buoyancy of members, without declared hydrostatics.
 
-    `size` is that of the platform (`scales.size_of`)."""
+    A member is cut where its taper changes.
+
+    Args:
+        members: Members of the platform.
+        size: Length scale (-) of the platform (`scales.size_of`).
+    """
     rows: list[tuple] = []
     tubes: list[tuple] = []
     for member in members:
@@ -200,15 +222,15 @@ def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
 
 
 def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
-    """A box that lies at the surface as upright slabs: exact while still water cuts their sides."""
+    """Upright slabs of a box that lies at the surface: exact while still water cuts their sides."""
     span, upward = member.b - member.a, directions[:, up] * np.sign(directions[2, up])
     across = directions[:, 1 - up]
     found = []
-    for s in (np.arange(ALONG) + 0.5) / ALONG:
+    for s in (np.arange(SLABS_ALONG) + 0.5) / SLABS_ALONG:
         size = member.size(np.array(s))
         height, width = float(size[up]), float(size[1 - up])
-        extent = np.array([np.linalg.norm(span) / ALONG, width / ACROSS])
-        for u in (np.arange(ACROSS) + 0.5) / ACROSS - 0.5:
+        extent = np.array([np.linalg.norm(span) / SLABS_ALONG, width / SLICES_ACROSS])
+        for u in (np.arange(SLICES_ACROSS) + 0.5) / SLICES_ACROSS - 0.5:
             lower = member.a + span * s + u * width * across - 0.5 * height * upward
             frame = np.stack([member.axis, across], axis=1)
             found.append((lower, upward, height, extent, np.zeros(2), 1.0, 1 / 12, frame, 0.0))
@@ -216,8 +238,8 @@ def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:
 
 
 def _slices(member: Member, directions: np.ndarray) -> list[tuple]:
-    """A cylinder that lies at the surface as slices, at Gauss points of its length."""
-    point, weight = np.polynomial.legendre.leggauss(ALONG)
+    """Slices of a cylinder that lies at the surface, at Gauss points of its length."""
+    point, weight = np.polynomial.legendre.leggauss(SLABS_ALONG)
     span = member.b - member.a
     return [
         (member.a + span * s, directions, 0.5 * float(member.size(np.array(s))[0]), float(np.linalg.norm(span)) * w)

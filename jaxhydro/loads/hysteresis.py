@@ -1,4 +1,4 @@
-"""Rate-independent hysteresis."""
+"""Rate-independent hysteresis (Bouc-Wen) in each degree of freedom."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -7,28 +7,30 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, magnitude, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, magnitude, nulls
 
-RESTING = 1e-12  # m2/s2, rad2/s2 and of z^2 under roots: speeds well below 1e-6 m/s do not count as motion
+MIN_SQUARED_SPEED = 1e-12  # m2/s2, rad2/s2 and of z^2 under roots: speeds well below 1e-6 m/s do not count as motion
 YIELD = "displacement in which the hysteretic force in {dof} comes to its limit"
 PARAMETERS = {
-    "force": both("N", "N m", "largest hysteretic force in {dof}", 0.0),
+    "force": both_units("N", "N m", "largest hysteretic force in {dof}", 0.0),
     "yield_displacement": (Parameter("m", YIELD, 1e-3, 50.0, 0.5), Parameter("rad", YIELD, 1e-5, 1.0, 0.01)),
 }
 
 
 class Hysteresis(AbstractLoad):
-    """F_i = -f_i z_i, dz/dt = (v - (|v| z + v |z|)/2)/Y along earth axes: Bouc and Wen's law with n = 1, beta = gamma = 1/2.
+    """Bouc-Wen hysteresis in each degree of freedom.
 
-    v is the velocity of the reference point (m/s) and the angular velocity (rad/s), which for small angles is the rate of roll,
-    pitch, yaw. z lies within -1 and 1. Moved one way it loads by an exponential, z = 1 - exp(-x/Y) from z = 0; turned round, it
-    unloads with stiffness f/Y. What it does depends on the path and not on how fast it goes: the loss per cycle is the same at
-    every frequency. Small motion feels a stiffness f/Y and loses the third power of its amplitude, a large one feels dry
-    friction f. Chains on the ground, mooring lines that slide, cables, synthetic ropes.
+    F_i = -f_i z_i, dz/dt = (v - (|v| z + v |z|)/2)/Y along earth axes: Bouc and Wen's law with n = 1, beta = gamma = 1/2.
 
-    Over part of a cycle that does not reverse fully the law drifts (it is not a Preisach model): offsets under waves on a slow
-    motion are approximate. Wen 1976, Method for random vibration of hysteretic systems (Journal of the Engineering Mechanics
-    Division 102, 249-263). Labels are `hysteresis.surge.force` (f; N, N m) and `.yield_displacement` (Y; m, rad).
+    v is the velocity of the reference point (m/s) and the angular velocity (rad/s), which for small angles is the rate of
+    roll, pitch, yaw. z lies within -1 and 1. Moved one way it loads by an exponential, z = 1 - exp(-x/Y) from z = 0; turned
+    round, it unloads with stiffness f/Y. What it does depends on the path and not on how fast it goes: the loss per cycle is
+    the same at every frequency. Small motion feels a stiffness f/Y and loses the third power of its amplitude, a large one
+    feels dry friction f. Chains on the ground, mooring lines that slide, cables, synthetic ropes.
+
+    Over part of a cycle that does not reverse fully the law drifts (it is not a Preisach model): offsets under waves on a
+    slow motion are approximate. Wen 1976, Method for random vibration of hysteretic systems (Journal of the Engineering
+    Mechanics Division 102, 249-263). Labels are `hysteresis.surge.force` (f; N, N m) and `.yield_displacement` (Y; m, rad).
     """
 
     values: dict[str, Float[Array, ""]]
@@ -36,14 +38,14 @@ class Hysteresis(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str], yield_displacement: float | None = None) -> Self:
-        """No hysteresis, in some degrees of freedom; `yield_displacement` (m, rad): 0.5 m, 0.01 rad where not given."""
+        """Load at its neutral value; `yield_displacement` is 0.5 m, 0.01 rad where not given."""
         return cls(nulls("hysteresis", dofs, PARAMETERS, {"yield_displacement": yield_displacement}))
 
     def rest(self) -> Float[Array, " k"]:
         return jnp.zeros_like(entries(self.values, "force"))
 
     def settled(self, displacement: Float[Array, "6"]) -> Float[Array, " k"]:
-        part = those(displacement, self.values) / entries(self.values, "yield_displacement")
+        part = dofs_only(displacement, self.values) / entries(self.values, "yield_displacement")
         # sign(x) (1 - exp(-|x|/Y)), in parts whose slopes add up to 1/Y at 0
         return jnp.expm1(jnp.minimum(part, 0.0)) - jnp.expm1(-jnp.maximum(part, 0.0))
 
@@ -51,7 +53,7 @@ class Hysteresis(AbstractLoad):
         return about(label, PARAMETERS)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        v, z = those(now.earth_velocity(), self.values), memory
-        bent = 0.5 * (magnitude(v, RESTING) * z + v * magnitude(z, RESTING))
+        v, z = dofs_only(now.earth_velocity(), self.values), memory
+        bent = 0.5 * (magnitude(v, MIN_SQUARED_SPEED) * z + v * magnitude(z, MIN_SQUARED_SPEED))
         rate = (v - bent) / entries(self.values, "yield_displacement")
-        return Action(force=on_six(-entries(self.values, "force") * z, self.values), memory_rate=rate)
+        return Action(force=all_dofs(-entries(self.values, "force") * z, self.values), memory_rate=rate)

@@ -1,4 +1,4 @@
-"""Drag whose coefficient follows the amplitude of the flow."""
+"""Drag with coefficients that depend on the Keulegan-Carpenter number."""
 
 import math
 from collections.abc import Mapping
@@ -13,15 +13,14 @@ from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import about, end_area, lines_of, of_ends, of_strips, on_all, quadratic, strip_area
 
-SLIGHT = 0.1  # the Keulegan-Carpenter number below which the coefficient no longer changes
-YOUNG = 1 / 30  # share of the window that is open at the start
+MIN_NUMBER = 0.1  # the Keulegan-Carpenter number below which the coefficient no longer changes
+INITIAL_WINDOW_SHARE = 1 / 30  # share of the window that is open at the start
 
 EXPONENT = Parameter("-", "exponent of the {way} drag coefficient of {group} in the Keulegan-Carpenter number", -1.0, 1.0)
 
 
-class Swept(NamedTuple):
-    """The recent past of some lines: how long it is (s), the water's displacement past them from its mean (m), and its
-    variance (m2)."""
+class RecentFlow(NamedTuple):
+    """Recent flow past some lines: duration (s), displacement from its mean (m), variance (m²)."""
 
     elapsed: Float[Array, ""]
     displacement: Float[Array, " k"]
@@ -29,13 +28,15 @@ class Swept(NamedTuple):
 
 
 class KeuleganCarpenterDrag(AbstractLoad):
-    """f = 1/2 rho A Cd ((K^2 + e^2)/(K0^2 + e^2))^(n/2) |u| u on strips and ends, K their Keulegan-Carpenter number.
+    """Drag with coefficients that are a power of the Keulegan-Carpenter number.
 
-    K = U T/D = 2 pi a/D (Keulegan and Carpenter 1958, J. Res. Nat. Bur. Standards 60, 423-440), D the extent across the flow,
-    of an end its diameter. That Cd depends on K is theirs and Sarpkaya and Isaacson's (1981, Mechanics of Wave Forces on
-    Offshore Structures, chapter 3); a power of it is what Graham (1980, J. Fluid Mech. 97, 331-346) derives for vortices shed
-    by edges at low K: n = -1/3 at a plate's, 0 at a right angle's. Cd is the coefficient at K = K0, the `reference`; n = 0 is
-    plain Morison drag. e = 0.1 keeps it bounded at rest.
+    f = 1/2 rho A Cd ((K^2 + e^2)/(K0^2 + e^2))^(n/2) |u| u on strips and ends, K their Keulegan-Carpenter number.
+
+    K = U T/D = 2 pi a/D (Keulegan and Carpenter 1958, J. Res. Nat. Bur. Standards 60, 423-440), D the extent across the
+    flow, of an end its diameter. That Cd depends on K is theirs and Sarpkaya and Isaacson's (1981, Mechanics of Wave Forces
+    on Offshore Structures, chapter 3); a power of it is what Graham (1980, J. Fluid Mech. 97, 331-346) derives for vortices
+    shed by edges at low K: n = -1/3 at a plate's, 0 at a right angle's. Cd is the coefficient at K = K0, the `reference`; n
+    = 0 is plain Morison drag. e = 0.1 keeps it bounded at rest.
 
     How K is known at every instant is ours. The amplitude a is that of the water's displacement past the strip, which needs
     no period, so that one law serves a slow decay and waves: a^2 = 2 s, s the displacement's variance in a window that
@@ -43,9 +44,9 @@ class KeuleganCarpenterDrag(AbstractLoad):
 
         dd/dt = u - d/w,   ds/dt = (d^2 - s)/w,   w = W (1 - (1 - 1/30) exp(-t/W)),
 
-    d the displacement from its mean there, W the `window` (s). w is what there is of it since the start: half a cycle after a
-    release a is about right. A harmonic flow has K = (U T/D)/(1 + (T/(2 pi W))^2)^0.5 in the mean, and s swings about it by
-    1/(1 + (4 pi W/T)^2)^0.5: W about the longest period. A current counts as 2 pi 2^0.5 u W/D. `coupled`: a of both
+    d the displacement from its mean there, W the `window` (s). w is what there is of it since the start: half a cycle after
+    a release a is about right. A harmonic flow has K = (U T/D)/(1 + (T/(2 pi W))^2)^0.5 in the mean, and s swings about it
+    by 1/(1 + (4 pi W/T)^2)^0.5: W about the longest period. A current counts as 2 pi 2^0.5 u W/D. `coupled`: a of both
     directions together.
     """
 
@@ -74,18 +75,18 @@ class KeuleganCarpenterDrag(AbstractLoad):
             constants[:, mine] = [[reference[label]], [window[label]]]
         return cls(dict(values), jnp.asarray(constants[0]), jnp.asarray(constants[1]), lines, coupled)
 
-    def rest(self) -> Swept:
-        return Swept(jnp.zeros(()), *(jnp.zeros(len(self.lines)) for _ in range(2)))
+    def rest(self) -> RecentFlow:
+        return RecentFlow(jnp.zeros(()), *(jnp.zeros(len(self.lines)) for _ in range(2)))
 
     def about(self, label: str) -> Parameter:
         return about(label, {"drag_exponent": EXPONENT})
 
-    def act(self, now: Instant, memory: Swept) -> Action:
+    def act(self, now: Instant, memory: RecentFlow) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
         relative = hull.join(now.strip_flow.relative, now.end_flow.relative)
-        age = self.window * (1 - (1 - YOUNG) * jnp.exp(-memory.elapsed / self.window))
+        age = self.window * (1 - (1 - INITIAL_WINDOW_SHARE) * jnp.exp(-memory.elapsed / self.window))
         swept, own = memory.displacement, jnp.array(self.lines, dtype=int)
-        rate = Swept(jnp.ones(()), relative[own] - swept / age, (swept**2 - memory.variance) / age)
+        rate = RecentFlow(jnp.ones(()), relative[own] - swept / age, (swept**2 - memory.variance) / age)
 
         count = relative.shape[0]
         # never below 0 but for the error of a time step
@@ -102,7 +103,7 @@ class KeuleganCarpenterDrag(AbstractLoad):
 
 
 def extents(now: Instant) -> Float[Array, "2 n"]:
-    """Extent (m) of strips across the flow along either direction."""
+    """Size (m) of strips across the flow along either direction, (2, n)."""
     strips, away = now.hull.strips, now.hull.split(now.lines.away)[0]
     return (strips.size + strips.taper * away)[::-1]
 
@@ -115,4 +116,4 @@ def _power(variance: Array, extent: Array, reference: Array, exponent: Array) ->
 
 def log_ratio(square: Array | float, reference: Array | float) -> Array:
     """ln of what is raised to the exponent: of ((K^2 + e^2)/(K0^2 + e^2))^(1/2), from K^2."""
-    return 0.5 * jnp.log((square + SLIGHT**2) / (reference**2 + SLIGHT**2))
+    return 0.5 * jnp.log((square + MIN_NUMBER**2) / (reference**2 + MIN_NUMBER**2))

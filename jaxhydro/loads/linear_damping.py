@@ -1,4 +1,4 @@
-"""Linear damping."""
+"""Linear damping matrix."""
 
 from typing import Any, ClassVar
 
@@ -9,7 +9,9 @@ from jaxhydro.loads.matrix import assemble, meaning, place, unit
 
 
 class LinearDamping(AbstractLoad):
-    """F = -B v, v the velocity of the reference point and the angular velocity, along body axes as in OpenFAST.
+    """Linear damping matrix along body axes.
+
+    F = -B v, v the velocity of the reference point and the angular velocity, along body axes as in OpenFAST.
 
     Labels are `linear_damping.B11` and so on. Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 3.
     """

@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia that were stated wrongly."""
+"""Error of the declared mass, centre of mass and inertia."""
 
 from typing import Any, ClassVar, Self
 
@@ -20,15 +20,17 @@ PARAMETERS = {
 
 
 class MassError(AbstractLoad):
-    """F = -(M' - M) a - (what turns) + (W' - W): the body with M + m, c + d, I + dI less the body M, c, I that is declared.
+    """Difference between the true and the declared rigid body.
 
-    m is mass at the centre of mass, d = (dx, 0, dz) how much the centre of all the mass is off, dI inertia about the centre of
-    mass. The difference of inertia, of gyroscopic and centripetal force, and of weight: exact for any motion. `total` (kg) and
-    `centre` (m, body axes) are what the model's body has.
+    F = -(M' - M) a - (what turns) + (W' - W): the body with M + m, c + d, I + dI less the body M, c, I that is declared.
 
-    Mass that is added weighs: the platform sinks by m/(rho Aw). Where the draught was ballasted to what it should be, it is the
-    volume that is also wrong, and `added_mass` in surge, sway and heave is the better name for what is left. In one free decay
-    it cannot be told from stiffness, nor dz from the metacentre. Mass and inertia that come out negative are nonsense.
+    m is mass at the centre of mass, d = (dx, 0, dz) how much the centre of all the mass is off, dI inertia about the centre
+    of mass. The difference of inertia, of gyroscopic and centripetal force, and of weight: exact for any motion. `total`
+    (kg) and `centre` (m, body axes) are what the model's body has.
+
+    Mass that is added weighs: the platform sinks by m/(rho Aw). Where the draught was ballasted to what it should be, it is
+    the volume that is also wrong, and `added_mass` in surge, sway and heave is the better name for what is left. In one free
+    decay it cannot be told from stiffness, nor dz from the metacentre. Mass and inertia that come out negative are nonsense.
 
     Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3. Labels are `mass_properties.mass`,
     `.centre_x`, `.centre_z`, `.inertia_roll`, `.inertia_pitch`, `.inertia_yaw`.
@@ -41,7 +43,7 @@ class MassError(AbstractLoad):
 
     @classmethod
     def null(cls, total: Float[Array, ""] | float, centre: Float[Array, "3"]) -> Self:
-        """All as declared: a body of mass `total` (kg) and centre of mass `centre` (m, body axes)."""
+        """Load at its neutral value, for a declared mass `total` (kg) and `centre` (m, body axes)."""
         values = {f"mass_properties.{name}": jnp.asarray(about.null, float) for name, about in PARAMETERS.items()}
         return cls(total=jnp.asarray(total, float), centre=jnp.asarray(centre, float), values=values)
 

@@ -1,4 +1,4 @@
-"""Lumped terms per degree of freedom: a number at a place in a 6 x 6 matrix, by its label such as B11 or C35."""
+"""Entries of 6 x 6 matrices by labels such as B11 or C35."""
 
 from collections.abc import Mapping
 
@@ -45,7 +45,7 @@ def meaning(quantity: str, cause: str, label: str) -> str:
 
 
 def assemble(values: Mapping[str, Float[Array, ""]]) -> Float[Array, "6 6"]:
-    """The matrix that labelled values stand for; what is not named is zero."""
+    """Matrix (6, 6) of labelled entries; the others are 0."""
     if not values:
         return jnp.zeros((6, 6))
     basis = np.zeros((len(values), 36))

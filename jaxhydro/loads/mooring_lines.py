@@ -1,4 +1,4 @@
-"""Straight spring mooring lines."""
+"""Mooring lines as straight springs that may go slack."""
 
 from typing import Any, ClassVar
 
@@ -10,7 +10,9 @@ from jaxhydro.rotations import cross
 
 
 class MooringLines(AbstractLoad):
-    """T = k max(0, l - l0) along the straight line from the displaced fairlead to the anchor.
+    """Massless elastic mooring lines from fairlead to anchor.
+
+    T = k max(0, l - l0) along the straight line from the displaced fairlead to the anchor.
 
     The geometric law of a massless elastic line (Faltinsen 1990, Sea Loads, chapter 8), so that pretension stiffness,
     large offsets and slack come out by themselves. Labels are `mooring.line1.stiffness` (N/m) and
@@ -31,7 +33,7 @@ class MooringLines(AbstractLoad):
     def tension(
         self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
     ) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
-        """Tension (N) of the lines at a displacement of the platform, and unit vectors to the anchors in body axes."""
+        """Tension (N), (l,), and unit vectors to the anchors in body axes, (3, l)."""
         lines = [f"mooring.line{i + 1}." for i in range(self.anchor.shape[1])]
         stiffness = jnp.stack([jnp.asarray(self.values[line + "stiffness"]) for line in lines])
         unstretched = jnp.stack([jnp.asarray(self.values[line + "unstretched_length"]) for line in lines])

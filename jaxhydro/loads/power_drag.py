@@ -1,4 +1,4 @@
-"""Drag that goes with another power of the speed than the second."""
+"""Drag with another power of the speed than the second."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -9,8 +9,8 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.loads.drag import (
-    POWER,
-    SPEED,
+    POWER_LABEL,
+    REFERENCE_SPEED,
     about,
     about_exponent,
     end_area,
@@ -25,7 +25,9 @@ from jaxhydro.loads.drag import (
 
 
 class PowerDrag(AbstractLoad):
-    """f = 1/2 rho A Cd ((u^2 + e^2)/(U0^2 + e^2))^(n/2) |u| u on strips and ends, u the water's relative velocity.
+    """Drag with coefficients that are a power of the speed.
+
+    f = 1/2 rho A Cd ((u^2 + e^2)/(U0^2 + e^2))^(n/2) |u| u on strips and ends, u the water's relative velocity.
 
     In place of `StripDrag` and `EndDrag`, whose coefficients it has; one exponent n for each group, n = 0 is plain drag
     exactly. Cd is that at the `speed` U0; e = 0.02 m/s keeps it bounded at rest. |u| is that of the vector, or with
@@ -41,21 +43,23 @@ class PowerDrag(AbstractLoad):
 
     values: dict[str, Float[Array, ""]]
     coupled: bool = eqx.field(static=True, default=True)
-    speed: float = eqx.field(static=True, default=SPEED)
+    speed: float = eqx.field(static=True, default=REFERENCE_SPEED)
     source: ClassVar[str] = "Keulegan and Carpenter 1958; Graham 1980 (the power); that of the instant's speed is ours"
 
     @classmethod
-    def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True, speed: float = SPEED) -> "PowerDrag":
-        """The law on the lines whose drag coefficients are in `values`; exponents that are not there are 0."""
-        return cls({f"{POWER}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)} | dict(values), coupled, speed)
+    def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True, speed: float = REFERENCE_SPEED) -> "PowerDrag":
+        """Load on the lines whose drag coefficients are in `values`; missing exponents are 0."""
+        return cls(
+            {f"{POWER_LABEL}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)} | dict(values), coupled, speed
+        )
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "PowerDrag":
-        """Plain drag with the coefficients in `values`."""
+        """Load at its neutral value: plain drag with the coefficients in `values`."""
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def about(self, label: str) -> Parameter:
-        return about_exponent(label, self.speed) if label.startswith(f"{POWER}.") else about(label, {})
+        return about_exponent(label, self.speed) if label.startswith(f"{POWER_LABEL}.") else about(label, {})
 
     def act(self, now: Instant, memory: Any) -> Action:
         values, density = self.values, now.environment.density

@@ -1,4 +1,4 @@
-"""Quadratic damping per degree of freedom."""
+"""Quadratic damping in each degree of freedom."""
 
 from typing import Any, ClassVar
 
@@ -6,12 +6,14 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.drag import REST
+from jaxhydro.loads.drag import MIN_SQUARED_SPEED
 from jaxhydro.loads.matrix import assemble, meaning, unit
 
 
 class QuadraticDamping(AbstractLoad):
-    """F_i = -Q_ii |v_i| v_i along body axes: a body's drag without members, or what its members do not give.
+    """Quadratic damping in each degree of freedom.
+
+    F_i = -Q_ii |v_i| v_i along body axes: a body's drag without members, or what its members do not give.
 
     Labels are `quadratic_damping.B44` and so on, as in the platform file. Himeno 1981, Prediction of Ship Roll Damping
     (University of Michigan, report 239).
@@ -25,4 +27,4 @@ class QuadraticDamping(AbstractLoad):
 
     def act(self, now: Instant, memory: Any) -> Action:
         velocity = now.velocity
-        return Action(body_force=-jnp.diagonal(assemble(self.values)) * jnp.sqrt(velocity**2 + REST) * velocity)
+        return Action(body_force=-jnp.diagonal(assemble(self.values)) * jnp.sqrt(velocity**2 + MIN_SQUARED_SPEED) * velocity)

@@ -1,4 +1,4 @@
-"""Fluid memory of the lowest order."""
+"""Radiation memory with two states in each degree of freedom."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -7,27 +7,30 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "strength": both("N s/m", "N m s/rad", "largest radiation damping in {dof}", 0.0),
-    "frequency": both("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 30.0, 0.6),
-    "damping_ratio": both("-", "-", "width of the radiation damping in {dof}, against its frequency", 0.05, 2.0, 0.4),
+    "strength": both_units("N s/m", "N m s/rad", "largest radiation damping in {dof}", 0.0),
+    "frequency": both_units("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 30.0, 0.6),
+    "damping_ratio": both_units("-", "-", "width of the radiation damping in {dof}, against its frequency", 0.05, 2.0, 0.4),
 }
 
 
 class RadiationMemory(AbstractLoad):
-    """F_i = -int_0^inf K_i(s) v_i(t - s) ds along body axes, of transfer b 2 zeta w0 s/(s^2 + 2 zeta w0 s + w0^2).
+    """Radiation memory of second order in each degree of freedom.
+
+    F_i = -int_0^inf K_i(s) v_i(t - s) ds along body axes, of transfer b 2 zeta w0 s/(s^2 + 2 zeta w0 s + w0^2).
 
     v is the velocity of the reference point (m/s) and the angular velocity (rad/s). The one kernel with two states that has
     what potential theory asks of a retardation function (Perez and Fossen 2008, Modeling, Identification and Control 29, 1-19):
-    K(0) = 2 zeta w0 b finite, no damping at frequencies 0 and infinity, no force on what rests, passive. Radiation damping is
+    K(0) = 2 zeta w0 b finite, no damping at frequencies 0 and infinity, no force on what rests, passive. Radiation damping
+    is
 
         B(w) = b (2 zeta w0 w)^2/((w0^2 - w^2)^2 + (2 zeta w0 w)^2), at most b, at w0,
 
     and added mass A(w) = 2 zeta w0 b (w0^2 - w^2)/(same): that of the model is then the one at infinite frequency, to which
-    A(0) = 2 zeta b/w0 comes in slow motion. A real platform's B(w) has more humps and no coupling between degrees of freedom is
-    here: an effect to be found, not a replacement for a computed kernel. Before t = 0 the platform was at rest.
+    A(0) = 2 zeta b/w0 comes in slow motion. A real platform's B(w) has more humps and no coupling between degrees of freedom
+    is here: an effect to be found, not a replacement for a computed kernel. Before t = 0 the platform was at rest.
 
     Labels are `radiation_memory.heave.strength` (b; N s/m, N m s/rad), `.frequency` (w0; rad/s), `.damping_ratio` (zeta).
     """
@@ -37,7 +40,7 @@ class RadiationMemory(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str], frequency: float = 0.6, damping_ratio: float = 0.4) -> Self:
-        """No radiation, in some degrees of freedom; `frequency` (rad/s) and `damping_ratio` where it would be."""
+        """Load at its neutral value; `frequency` (rad/s) and `damping_ratio` (-) are where it starts."""
         shape = {"frequency": frequency, "damping_ratio": damping_ratio}
         return cls(nulls("radiation_memory", dofs, PARAMETERS, shape))
 
@@ -50,5 +53,5 @@ class RadiationMemory(AbstractLoad):
     def act(self, now: Instant, memory: Any) -> Action:
         strength, frequency, ratio = (entries(self.values, name) for name in PARAMETERS)
         passed, displaced = memory  # the band-passed velocity and its integral
-        rate = 2 * ratio * frequency * (those(now.velocity, self.values) - passed) - frequency**2 * displaced
-        return Action(body_force=on_six(-strength * passed, self.values), memory_rate=jnp.stack([rate, passed]))
+        rate = 2 * ratio * frequency * (dofs_only(now.velocity, self.values) - passed) - frequency**2 * displaced
+        return Action(body_force=all_dofs(-strength * passed, self.values), memory_rate=jnp.stack([rate, passed]))

@@ -1,4 +1,4 @@
-"""Coefficients that depend on the sea state."""
+"""Coefficients that depend on the sea state by power laws."""
 
 import math
 from collections.abc import Mapping
@@ -12,17 +12,19 @@ from jaxhydro.choices import check, unknown
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 from jaxhydro.waves.sea_state import SeaState
 
-OVER = {"significant_height": "Hs", "peak_period": "Tp"}
-LARGEST = 3.0  # of an exponent, either way
+EXPONENT_BASES = {"significant_height": "Hs", "peak_period": "Tp"}
+MAX_EXPONENT = 3.0  # of an exponent, either way
 
 
 class SeaStateLaw(AbstractLoad):
-    """c = c0 (Hs/Hs0)^a (Tp/Tp0)^b in place of coefficients c0 of a load, in the sea state that it is in.
+    """A load whose coefficients are power laws of the sea state.
+
+    c = c0 (Hs/Hs0)^a (Tp/Tp0)^b in place of coefficients c0 of a load, in the sea state that it is in.
 
     A power of the sea state's scale is how drag coefficients are commonly laid out against the Keulegan-Carpenter number,
     itself proportional to Hs in a given basin (Sarpkaya and Isaacson 1981, Mechanics of Wave Forces on Offshore Structures,
-    chapter 3); the exponents are empirical. In still water, and in a sea that is not known, c = c0: that is what it is in the
-    `reference` sea state. All exponents 0 give the load itself.
+    chapter 3); the exponents are empirical. In still water, and in a sea that is not known, c = c0: that is what it is in
+    the `reference` sea state. All exponents 0 give the load itself.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -33,9 +35,9 @@ class SeaStateLaw(AbstractLoad):
 
     @classmethod
     def of(cls, load: AbstractLoad, exponents: Mapping[str, Any], reference: SeaState) -> "SeaStateLaw":
-        """A load with exponents, label (see `exponent_label`) -> value, for some of its coefficients."""
+        """Load with exponents for some of its coefficients, by label (`exponent_label`)."""
         added = {label: jnp.asarray(value, float) for label, value in exponents.items()}
-        return cls({**load.values, **added}, load, reference, {symbol: jnp.zeros(()) for symbol in OVER.values()})
+        return cls({**load.values, **added}, load, reference, {symbol: jnp.zeros(()) for symbol in EXPONENT_BASES.values()})
 
     def rest(self) -> Any:
         return self.load.rest()
@@ -49,14 +51,14 @@ class SeaStateLaw(AbstractLoad):
         base, symbol = split(label)
         height, period = self.reference
         scale = f"{height:.3g} m" if symbol == "Hs" else f"{period:.3g} s"
-        return Parameter("-", f"exponent of {base} in {symbol}/{scale}", -LARGEST, LARGEST)
+        return Parameter("-", f"exponent of {base} in {symbol}/{scale}", -MAX_EXPONENT, MAX_EXPONENT)
 
     def in_sea(self, state: SeaState) -> "SeaStateLaw":
         logs = [jnp.log(now / then) for now, then in zip(state, self.reference, strict=True)]
-        return eqx.tree_at(lambda law: law.logs, self, dict(zip(OVER.values(), logs, strict=True)))
+        return eqx.tree_at(lambda law: law.logs, self, dict(zip(EXPONENT_BASES.values(), logs, strict=True)))
 
     def present(self) -> dict[str, Float[Array, ""]]:
-        """The load's coefficients in the present sea state."""
+        """Coefficients of the load in the present sea state."""
         found = {label: self.values[label] for label in self.load.values}
         for label in self.values.keys() - found.keys():
             base, symbol = split(label)
@@ -68,39 +70,48 @@ class SeaStateLaw(AbstractLoad):
 
 
 def exponent_label(label: str, over: str) -> str:
-    """The exponent's label of a coefficient over "significant_height" or "peak_period"."""
-    check(over=(over, OVER))
-    return f"{label}.{OVER[over]}_exponent"
+    """Label of a coefficient's exponent over "significant_height" or "peak_period"."""
+    check(over=(over, EXPONENT_BASES))
+    return f"{label}.{EXPONENT_BASES[over]}_exponent"
 
 
 def split(label: str) -> tuple[str, str]:
-    """The coefficient, and Hs or Tp, of an exponent's label."""
+    """Coefficient, and Hs or Tp, of an exponent's label."""
     base, _, last = label.rpartition(".")
     return base, last.removesuffix("_exponent")
 
 
 def is_exponent(label: str) -> bool:
-    """Whether a parameter's label is that of an exponent."""
-    return label.endswith(tuple(f".{symbol}_exponent" for symbol in OVER.values()))
+    """Whether a label is that of an exponent."""
+    return label.endswith(tuple(f".{symbol}_exponent" for symbol in EXPONENT_BASES.values()))
 
 
 def coefficients(loads: tuple[AbstractLoad, ...]) -> dict[str, Float[Array, ""]]:
-    """The parameters of loads by label, those of laws as they are in the present sea state."""
+    """Parameters of loads by label, in the present sea state."""
     return {k: v for load in loads for k, v in (load.present() if isinstance(load, SeaStateLaw) else load.values).items()}
 
 
 def reference_of(loads: tuple[AbstractLoad, ...]) -> SeaState | None:
-    """The reference of the laws among loads; None where there are none."""
+    """Reference sea state of the laws among loads, or None."""
     return next((load.reference for load in loads if isinstance(load, SeaStateLaw)), None)
 
 
 def with_exponents(
     loads: tuple[AbstractLoad, ...], exponents: Mapping[str, Any], reference: SeaState
 ) -> tuple[AbstractLoad, ...]:
-    """Loads, those with coefficients that have exponents replaced by their laws; a law's own are kept, as long as its
-    reference is the same. Several loads may have one coefficient.
+    """Loads with sea-state laws for the coefficients that have exponents.
 
-    Raises KeyError for an exponent of no load's coefficient, ValueError for another reference."""
+    A law's own exponents are kept while its reference is the same. Several loads may share a coefficient.
+
+    Args:
+        loads: Loads of a model.
+        exponents: Exponents by label (`exponent_label`).
+        reference: Sea state in which coefficients are as declared.
+
+    Raises:
+        UnknownName: No load has the coefficient of an exponent (a KeyError).
+        ValueError: A law has another reference, or the reference is not above 0.
+    """
     left, found = set(exponents), []
     if not all(math.isfinite(x) and x > 0 for x in reference):
         raise ValueError(f"reference: expected a significant height and a peak period above 0, found {reference}")

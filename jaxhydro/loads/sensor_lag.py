@@ -1,4 +1,4 @@
-"""The motions were recorded on another clock than the waves."""
+"""Clock lag between recorded motions and waves."""
 
 from typing import ClassVar
 
@@ -7,11 +7,13 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Parameter
 
-LONGEST = 60.0  # s
+MAX_LAG = 60.0  # s
 
 
 class SensorLag(AbstractLoad):
-    """y_rec(t) = y(t - delay): what is recorded at t is the motion a delay earlier; all channels alike, the waves on time.
+    """Lag of the recorded motions behind the waves.
+
+    y_rec(t) = y(t - delay): what is recorded at t is the motion a delay earlier; all channels alike, the waves on time.
 
     A delay above 0 means that the motions were recorded late, below 0 early: a filter's group delay, or two loggers started
     one after the other. Its sign is a phase that is linear in frequency and the same in all motions, exp(-i omega delay)
@@ -24,11 +26,11 @@ class SensorLag(AbstractLoad):
 
     @classmethod
     def null(cls) -> "SensorLag":
-        """One clock."""
+        """Load at its neutral value: no lag."""
         return cls({"sensor_lag.delay": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
-        return Parameter("s", "delay of the recorded motions behind the waves: y_rec(t) = y(t - delay)", -LONGEST, LONGEST)
+        return Parameter("s", "delay of the recorded motions behind the waves: y_rec(t) = y(t - delay)", -MAX_LAG, MAX_LAG)
 
     def clock_lag(self) -> Float[Array, ""]:
         return jnp.asarray(self.values["sensor_lag.delay"])

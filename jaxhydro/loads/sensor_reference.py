@@ -1,4 +1,4 @@
-"""The point that was tracked is not the reference point."""
+"""Tracked point that is not the reference point."""
 
 from typing import ClassVar
 
@@ -8,15 +8,18 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Parameter
 from jaxhydro.rotations import rotation
 
-FARTHEST = 200.0  # m
+MAX_OFFSET = 200.0  # m
 
 
 class SensorReference(AbstractLoad):
-    """y = p + R o - o: the surge, sway and heave that are recorded are those of a point at o = (x, 0, z) in body axes.
+    """Motion sensors that track another point than the reference point.
 
-    R is the exact rotation (Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 2.2). The point's
-    own place is taken off, so that at zero attitude it reads as the reference point does. To first order surge gets + z theta,
-    heave - x theta of the pitch theta, sway - z phi + x psi. Angles are those of any point. No force: the motion is the same.
+    y = p + R o - o: the surge, sway and heave that are recorded are those of a point at o = (x, 0, z) in body axes.
+
+    R is the exact rotation (Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 2.2). The
+    point's own place is taken off, so that at zero attitude it reads as the reference point does. To first order surge gets
+    + z theta, heave - x theta of the pitch theta, sway - z phi + x psi. Angles are those of any point. No force: the motion
+    is the same.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -24,11 +27,11 @@ class SensorReference(AbstractLoad):
 
     @classmethod
     def null(cls) -> "SensorReference":
-        """The reference point itself."""
+        """Load at its neutral value: the reference point itself."""
         return cls({"sensor_reference.x": jnp.zeros(()), "sensor_reference.z": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
-        return Parameter("m", f"{label[-1]} of the tracked point from the reference point, body axes", -FARTHEST, FARTHEST)
+        return Parameter("m", f"{label[-1]} of the tracked point from the reference point, body axes", -MAX_OFFSET, MAX_OFFSET)
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
         x, z = (jnp.asarray(self.values[f"sensor_reference.{axis}"]) for axis in "xz")

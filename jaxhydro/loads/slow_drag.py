@@ -1,4 +1,4 @@
-"""Drag in which the platform's slow motion has a coefficient of its own, by six states."""
+"""Drag with another coefficient for the platform's slow motion (six states)."""
 
 import math
 from collections.abc import Mapping
@@ -9,11 +9,13 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.drag import OF_SHARE, SHARE, about, end_area, quadratic, strip_area
+from jaxhydro.loads.drag import SLOW_DRAG_LABEL, SLOW_DRAG_PARAMETERS, about, end_area, quadratic, strip_area
 
 
 class SlowDrag(AbstractLoad):
-    """f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u + w, w that of the low-passed motion.
+    """Drag with one coefficient for the platform's low-passed motion and another for the rest.
+
+    f = 1/2 rho A Cd ((1 - r) |u'| u' + r |u| u), on strips and on ends; u' = u + w, w that of the low-passed motion.
 
     u is the water's relative velocity, w a strip's own velocity by the platform's low-passed one: dm/dt = 2 pi fc (v - m), m
     and v of six components in body axes. So u' is u without the platform's slow motion, and that motion feels r Cd where
@@ -34,23 +36,23 @@ class SlowDrag(AbstractLoad):
 
     @classmethod
     def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
-        """The law on the lines whose drag coefficients are in `values`; its own parameters are null where they are not."""
-        return cls({label: jnp.asarray(about.null) for label, about in OF_SHARE.items()} | dict(values), coupled)
+        """Load on the lines whose drag coefficients are in `values`; missing parameters are neutral."""
+        return cls({label: jnp.asarray(about.null) for label, about in SLOW_DRAG_PARAMETERS.items()} | dict(values), coupled)
 
     @classmethod
     def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
-        """Plain drag with the coefficients in `values`."""
+        """Load at its neutral value: plain drag with the coefficients in `values`."""
         return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def rest(self) -> Float[Array, "6"]:
         return jnp.zeros(6)
 
     def about(self, label: str) -> Parameter:
-        return OF_SHARE[label] if label in OF_SHARE else about(label, {})
+        return SLOW_DRAG_PARAMETERS[label] if label in SLOW_DRAG_PARAMETERS else about(label, {})
 
     def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
         values, hull, density = self.values, now.hull, now.environment.density
-        share = values[f"{SHARE}.low_share"]
+        share = values[f"{SLOW_DRAG_LABEL}.low_share"]
         still, turning = (memory @ hull.motion).reshape(2, -1)
         slow_strip, slow_end = hull.split(still + turning * now.lines.away)
 
@@ -61,5 +63,5 @@ class SlowDrag(AbstractLoad):
         return Action(
             strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled),
             end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False),
-            memory_rate=2 * math.pi * values[f"{SHARE}.cutoff"] * (now.velocity - memory),
+            memory_rate=2 * math.pi * values[f"{SLOW_DRAG_LABEL}.cutoff"] * (now.velocity - memory),
         )

@@ -1,4 +1,4 @@
-"""A stiffness matrix about the reference position: a linearised mooring, or a lumped spring."""
+"""Stiffness matrix about the reference position, with a preload."""
 
 from typing import Any, ClassVar
 
@@ -10,7 +10,9 @@ from jaxhydro.loads.matrix import assemble, meaning, unit
 
 
 class Stiffness(AbstractLoad):
-    """F = F0 - C q, q the displacement of the reference point in earth axes and roll, pitch, yaw; F0 the preload (N, N m).
+    """Linear stiffness about the reference position, with a preload.
+
+    F = F0 - C q, q the displacement of the reference point in earth axes and roll, pitch, yaw; F0 the preload (N, N m).
 
     Labels are `mooring.C11` or `stiffness.C11` and so on.
     Jonkman 2007, NREL/TP-500-41958: the linearised mooring system.

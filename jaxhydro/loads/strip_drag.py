@@ -1,4 +1,4 @@
-"""Quadratic drag across strips."""
+"""Quadratic drag across strips (Morison)."""
 
 from typing import Any, ClassVar
 
@@ -10,7 +10,9 @@ from jaxhydro.loads.drag import quadratic, strip_area
 
 
 class StripDrag(AbstractLoad):
-    """f = 1/2 rho Cd A |u| u, u the water's velocity relative to the strip across the member, on its wetted part.
+    """Quadratic drag across members, on their wetted strips.
+
+    f = 1/2 rho Cd A |u| u, u the water's velocity relative to the strip across the member, on its wetted part.
 
     The drag term of the relative Morison equation (Morison et al. 1950; Chakrabarti 1987, Hydrodynamics of Offshore
     Structures, chapter 6). A is the area that faces the direction: diameter or side height times length for t, plan width

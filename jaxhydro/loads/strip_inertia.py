@@ -1,4 +1,4 @@
-"""Inertia of the water around strips: added mass and the Froude-Krylov force."""
+"""Added mass and Froude-Krylov force of strips (Morison)."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -13,8 +13,13 @@ from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
 def spread(
     elements: Elements, values: Mapping[str, Float[Array, ""]], symbol: str, missing: float | None = None
 ) -> Float[Array, "2 e"]:
-    """Coefficients `group.symbol_t`, `group.symbol_z` by direction and element; `missing` where there is none. KeyError if
-    that is None."""
+    """Coefficients `group.symbol_t` and `group.symbol_z` by direction and load element.
+
+    Absent ones are `missing`.
+
+    Raises:
+        KeyError: A coefficient is absent and `missing` is None.
+    """
     if not elements.labels:
         return jnp.zeros((2, 0))
     labels = elements.parameters(symbol)
@@ -23,7 +28,9 @@ def spread(
 
 
 class StripInertia(AbstractLoad):
-    """f = rho V (1 + Ca) a_water - rho V Ca a_strip, across the member, on the wetted part of each strip.
+    """Inertial load across members, on their wetted strips.
+
+    f = rho V (1 + Ca) a_water - rho V Ca a_strip, across the member, on the wetted part of each strip.
 
     The transverse inertia term of the relative Morison equation: Morison et al. 1950 (Petroleum Transactions 189, 149-154)
     in the relative form of Chakrabarti 1987, Hydrodynamics of Offshore Structures, chapter 6. The 1 is the Froude-Krylov

@@ -1,4 +1,4 @@
-"""Drag on the ends of columns where the water leaves them."""
+"""Drag on column ends where the flow leaves them."""
 
 from typing import Any, ClassVar
 
@@ -9,12 +9,15 @@ from jaxhydro.loads.drag import SUCTION, about, end_area, of_ends, one_sided
 
 
 class SuctionSideDrag(AbstractLoad):
-    """f = 1/2 rho Cd A (|w| w + s n w^2) on an end, w the water's velocity relative to it and n its outward side, on the axis.
+    """Drag on member ends that moves to the side where the flow leaves.
+
+    f = 1/2 rho Cd A (|w| w + s n w^2) on an end, w the water's velocity relative to it and n its outward side, on the axis.
 
     s = 0 is `EndDrag`; s = 1 is nothing where the flow meets the end and twice that drag where it leaves it, where flow
-    separates: OpenFAST HydroDyn's AxFDMod = 1 (Morison.f90, subroutine Morison_CalcOutput, external hydrodynamic joint loads;
-    user documentation, HydroDyn input files, axial coefficients; its AxCd is twice this Cd). The half-way house is ours: it
-    makes the choice a parameter. The force has a mean in a motion that has none, outward, and takes energy out at any s.
+    separates: OpenFAST HydroDyn's AxFDMod = 1 (Morison.f90, subroutine Morison_CalcOutput, external hydrodynamic joint
+    loads; user documentation, HydroDyn input files, axial coefficients; its AxCd is twice this Cd). The half-way house is
+    ours: it makes the choice a parameter. The force has a mean in a motion that has none, outward, and takes energy out at
+    any s.
 
     Members have the same law in HydroDyn (FDMod = 2, OpenFAST pull request 2895), with the flow at the middle of their four
     faces. With that of the axis, which strips have here, one of two opposite faces always carries the whole drag: that is

@@ -1,4 +1,4 @@
-"""The cable that leaves the platform."""
+"""Umbilical cable: spring, pull and hanging mass at a point."""
 
 from typing import Any, ClassVar, Self
 
@@ -17,15 +17,18 @@ PARAMETERS = {
 
 
 class Umbilical(AbstractLoad):
-    """F = (p - k x, -k y, -m g) at the point (0, 0, h) of the body, x and y its displacement along earth axes; and its mass m.
+    """Umbilical cable that acts at a point of the body.
 
-    k (N/m) is the horizontal spring of a slack cable, alike along x and y, p (N) its mean pull along x, m (kg) the part of it
-    that hangs on the platform: weight and inertia of a point that moves with the hull. As all this acts at the displaced point,
+    F = (p - k x, -k y, -m g) at the point (0, 0, h) of the body, x and y its displacement along earth axes; and its mass m.
+
+    k (N/m) is the horizontal spring of a slack cable, alike along x and y, p (N) its mean pull along x, m (kg) the part of
+    it that hangs on the platform: weight and inertia of a point that moves with the hull. As all this acts at the displaced
+    point,
     surge couples with pitch, and sway with roll, by the lever h. No drag, no damping, no vertical spring, no lever in yaw:
     where the cable leaves off the axis, `static_force` in yaw is what is left.
 
-    Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3, for the point's mass; spring and pull
-    are the cable's statics, linearised, and ours. Labels are `umbilical.stiffness`, `.pull`, `.mass`, `.height` (h; m).
+    Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3, for the point's mass; spring and
+    pull are the cable's statics, linearised, and ours. Labels are `umbilical.stiffness`, `.pull`, `.mass`, `.height` (h; m).
     """
 
     values: dict[str, Float[Array, ""]]
@@ -33,7 +36,7 @@ class Umbilical(AbstractLoad):
 
     @classmethod
     def null(cls, height: float = 12.0) -> Self:
-        """No cable, at a height (m) over the reference point."""
+        """Load at its neutral value; `height` (m) is above the reference point."""
         every = {name: parameter.null for name, parameter in PARAMETERS.items()} | {"height": height}
         return cls({f"umbilical.{name}": jnp.asarray(value, float) for name, value in every.items()})
 

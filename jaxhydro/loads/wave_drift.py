@@ -1,4 +1,4 @@
-"""Slow drift by the waves' squared envelope."""
+"""Slow drift force from the squared envelope of the waves."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar
@@ -9,18 +9,20 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.waves.sea import MIDDLE
+from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY
 
 WAYS = {
     "envelope": "in phase with the squared envelope |a|^2",
     "quadrature": "a quarter of a beat behind the squared envelope",
-    "frequency_weighted": f"in phase with the squared envelope weighted by (omega/{MIDDLE:g})^2",
+    "frequency_weighted": f"in phase with the squared envelope weighted by (omega/{DRIFT_REFERENCE_FREQUENCY:g})^2",
 }
 """By what stands last in a label, in the order of `AbstractSea.drift`."""
 
 
 class WaveDrift(AbstractLoad):
-    """F_i(t) = sum_j D_ij s_j(t), of the undisturbed first-order waves at the origin, along earth axes.
+    """Slow drift force, linear in three squared envelopes of the waves.
+
+    F_i(t) = sum_j D_ij s_j(t), of the undisturbed first-order waves at the origin, along earth axes.
 
     s_0 = |a|^2 with a the complex elevation, eta = Re a; s_1 its Hilbert transform, out of phase and of no mean; s_2 =
     Re(a_w conj(a)), the components of a_w weighted by (omega/omega_0)^2, omega_0 = 0.6 rad/s. A law of three real numbers
@@ -42,7 +44,7 @@ class WaveDrift(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str] = ("surge", "heave", "pitch")) -> "WaveDrift":
-        """No drift, in some degrees of freedom."""
+        """Load at its neutral value, in some degrees of freedom."""
         return cls({f"wave_drift.{dof}.{way}": jnp.zeros(()) for dof in dofs for way in WAYS})
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""Damping of slow motion that goes with the square of the waves' height."""
+"""Wave-drift damping, proportional to the squared wave height."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar
@@ -6,16 +6,20 @@ from typing import Any, ClassVar
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.loads.per_dof import about, both, entries, nulls, on_six, those
+from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
 
 PARAMETERS = {
-    "coefficient": both("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0),
-    "steady": both("-", "-", "share of it in {dof} that goes with the waves' mean square, not their envelope", 0.0, 1.0, 1.0),
+    "coefficient": both_units("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0),
+    "steady": both_units(
+        "-", "-", "share of it in {dof} that goes with the waves' mean square, not their envelope", 0.0, 1.0, 1.0
+    ),
 }
 
 
 class WaveDriftDamping(AbstractLoad):
-    """F_i = -alpha_i (s_i Hs^2/8 + (1 - s_i) |a|^2) v_i along body axes, a the complex elevation of the undisturbed waves at
+    """Damping of slow motion proportional to the squared wave height.
+
+    F_i = -alpha_i (s_i Hs^2/8 + (1 - s_i) |a|^2) v_i along body axes, a the complex elevation of the undisturbed waves at
     the origin, eta = Re a, and Hs^2/8 the mean of |a|^2.
 
     A slow velocity changes the mean second-order force, to first order in it a damping that goes with the square of the
@@ -23,8 +27,8 @@ class WaveDriftDamping(AbstractLoad):
     1990, Sea Loads on Ships and Offshore Structures, chapter 5, section on viscous and wave-drift damping). Here one number
     per degree of freedom, whatever the frequency of the waves, and on the whole velocity where theory has the slow one: what
     it takes from wave-frequency motion is counted in alpha. `steady` (s) is 1 where the damping is that of the sea state, as
-    it is used in practice, and 0 where it comes and goes with groups of waves, as Newman's argument for slow drift would have
-    it. |a|^2 holds differences of frequencies only. Passive.
+    it is used in practice, and 0 where it comes and goes with groups of waves, as Newman's argument for slow drift would
+    have it. |a|^2 holds differences of frequencies only. Passive.
 
     Labels are `wave_drift_damping.surge.coefficient` (alpha; N s/m3, N s/(m rad)) and `.steady` (s; -).
     """
@@ -34,7 +38,7 @@ class WaveDriftDamping(AbstractLoad):
 
     @classmethod
     def null(cls, dofs: Sequence[str] = ("surge", "heave", "pitch")) -> "WaveDriftDamping":
-        """No such damping, in some degrees of freedom."""
+        """Load at its neutral value, in some degrees of freedom."""
         return cls(nulls("wave_drift_damping", dofs, PARAMETERS))
 
     def about(self, label: str) -> Parameter:
@@ -45,4 +49,4 @@ class WaveDriftDamping(AbstractLoad):
             return Action()
         coefficient, steady = entries(self.values, "coefficient"), entries(self.values, "steady", 1.0)
         square = steady * now.drift[3] + (1 - steady) * now.drift[0]
-        return Action(body_force=on_six(-coefficient * square * those(now.velocity, self.values), self.values))
+        return Action(body_force=all_dofs(-coefficient * square * dofs_only(now.velocity, self.values), self.values))

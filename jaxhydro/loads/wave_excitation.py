@@ -1,4 +1,4 @@
-"""Pressure of the waves on members, apart from what added mass says of it."""
+"""Wave pressure on members with a coefficient of its own, apart from added mass."""
 
 from collections.abc import Iterable
 from typing import Any, ClassVar
@@ -14,13 +14,15 @@ PREFIX = "wave_excitation."
 
 
 class WaveExcitation(AbstractLoad):
-    """f = (Cp - 1) rho V a_water on strips, across the member, and (Cp - 1) p A on the ends of columns, along it.
+    """Wave pressure on members, with coefficients other than 1.
+
+    f = (Cp - 1) rho V a_water on strips, across the member, and (Cp - 1) p A on the ends of columns, along it.
 
     Strips are excited by rho V (Ca + 1) a_water: the 1 is the Froude-Krylov force, and Cp where that is not what the waves'
-    pressure does, as near columns and pontoons that shade each other, or in waves that are not long. Without it one
-    Ca has to be right for the mass and for the excitation. OpenFAST HydroDyn has it by member (MemberCp, AxCp). On members that
-    diffract the waves it is (Cp - 1) / 2 of the force of MacCamy and Fuchs, half of which is pressure in long waves. The ends
-    of pontoons are left as they are (`CoveredEnds`).
+    pressure does, as near columns and pontoons that shade each other, or in waves that are not long. Without it one Ca has
+    to be right for the mass and for the excitation. OpenFAST HydroDyn has it by member (MemberCp, AxCp). On members that
+    diffract the waves it is (Cp - 1) / 2 of the force of MacCamy and Fuchs, half of which is pressure in long waves. The
+    ends of pontoons are left as they are (`CoveredEnds`).
 
     Labels are `wave_excitation.GROUP.Cp_t` across the members of a group, `.Cp_z` upwards on pontoons and on columns' ends.
     """
@@ -30,7 +32,7 @@ class WaveExcitation(AbstractLoad):
 
     @classmethod
     def null(cls, coefficients: Iterable[str] = ("column.Cp_t",)) -> "WaveExcitation":
-        """Pressure as in undisturbed waves, of coefficients "GROUP.Cp_t" or "GROUP.Cp_z"."""
+        """Load at its neutral value, for coefficients "GROUP.Cp_t" or "GROUP.Cp_z"."""
         return cls({f"{PREFIX}{one}": jnp.ones(()) for one in coefficients})
 
     def about(self, label: str) -> Parameter:

@@ -1,4 +1,4 @@
-"""The wave gauge stood elsewhere than was said."""
+"""Error of the stated wave gauge position along the waves."""
 
 from typing import ClassVar
 
@@ -8,17 +8,19 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Parameter
 from jaxhydro.waves.sea import AbstractSea
 
-FARTHEST = 50.0  # m
+MAX_OFFSET = 50.0  # m
 
 
 class WaveGaugePosition(AbstractLoad):
-    """eta(x, t) = eta_said(x - d, t): the gauge stood d further along the waves (to where they travel) than was said.
+    """Shift of the sea along the waves by an error of the gauge position.
+
+    eta(x, t) = eta_said(x - d, t): the gauge stood d further along the waves (to where they travel) than was said.
 
     What it recorded belongs d further down, so the whole sea of the record is moved by d along its direction: every phase
     grows by k d, bound waves' by their own wavenumber (linear and second-order waves of constant form, Sharma and Dean 1981,
     SPE Journal 21, 604-612). Exact in any sea, but for `AbstractSea.drift` of a prepared one, which moves with the energy's
-    group velocity. A prepared sea is good in a box about the hull, of which d takes its share. The waves of second order that
-    were taken off the record do not depend on d.
+    group velocity. A prepared sea is good in a box about the hull, of which d takes its share. The waves of second order
+    that were taken off the record do not depend on d.
     """
 
     values: dict[str, Float[Array, ""]]
@@ -27,12 +29,12 @@ class WaveGaugePosition(AbstractLoad):
 
     @classmethod
     def null(cls) -> "WaveGaugePosition":
-        """The gauge where it was said to be."""
+        """Load at its neutral value: the gauge where it was stated."""
         return cls({"wave_gauge_position.distance": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
         words = "how much further along the waves the gauge stood than was said"
-        return Parameter("m", words, -FARTHEST, FARTHEST, of_hull=False)
+        return Parameter("m", words, -MAX_OFFSET, MAX_OFFSET, of_hull=False)
 
     def through(self, sea: AbstractSea) -> AbstractSea:
         return sea.moved(jnp.asarray(self.values["wave_gauge_position.distance"]))

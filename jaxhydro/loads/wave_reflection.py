@@ -1,4 +1,4 @@
-"""Waves that a beach or a wall sends back."""
+"""Waves reflected by a beach or wall."""
 
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -9,15 +9,18 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Parameter
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, StillWater
-from jaxhydro.waves.support_sea import Returned, SupportSea
+from jaxhydro.waves.support_sea import Reflection, SupportSea
 
 COEFFICIENT, DELAY, SEEN = "wave_reflection.coefficient", "wave_reflection.delay", "wave_reflection.seen"
-LATER, LATEST = 60.0, 600.0  # s
+DEFAULT_DELAY, MAX_DELAY = 60.0, 600.0  # s
 
 
 class ReflectedSea(AbstractSea):
-    """A sea and, `coefficient` (-) times, its mirror image about the origin, `delay` (s) later; less, `seen` (-) times that,
-    the sea itself so much later."""
+    """A sea with its reflection by a beach.
+
+    The reflection is the mirror image about the origin, `coefficient` (-) times, `delay` (s) later. From it, `seen` (-)
+    times the sea itself so much later is subtracted.
+    """
 
     sea: Any  # AbstractSea
     along: Float[Array, "2"]
@@ -72,18 +75,20 @@ class ReflectedSea(AbstractSea):
 
 
 class WaveReflection(AbstractLoad):
-    """eta(x, t) = eta_g(x, t) + r (eta_g(-x, t - T) - s eta_g(x, t - T)): the sea of the wave record, r times its mirror image
+    """Reflection of the waves by a beach.
+
+    eta(x, t) = eta_g(x, t) + r (eta_g(-x, t - T) - s eta_g(x, t - T)): the sea of the wave record, r times its mirror image
     about the origin, T later, and less what of that the record has already.
 
-    x is along the waves, T from the platform to the beach and back. s is 0 where the record is of incident waves alone, as
-    a row of gauges separates them, and 1 where it is of one gauge at the origin, which saw what came back, too: then the
-    elevation there is as measured, and the flow is not; of r^2 is neglected. One real r for all frequencies: beaches
-    reflect long waves more, and their r is measured by component (Goda and Suzuki 1976, Estimation of incident and
-    reflected waves in random wave experiments, Coastal Engineering Proceedings 15). With dispersion the delay is the group
-    velocity's at one period and the phase is not the beach's: r of either sign and a search over T stand for that. Bound
-    waves are sent back as they are, where a beach sets them free: of order r times second order. In a prepared sea T is
-    between the steps of its clock by interpolation, nothing comes back before T, and what comes back costs little. The squared
-    envelope stays that of the incident waves, and so does a computed excitation.
+    x is along the waves, T from the platform to the beach and back. s is 0 where the record is of incident waves alone, as a
+    row of gauges separates them, and 1 where it is of one gauge at the origin, which saw what came back, too: then the
+    elevation there is as measured, and the flow is not; of r^2 is neglected. One real r for all frequencies: beaches reflect
+    long waves more, and their r is measured by component (Goda and Suzuki 1976, Estimation of incident and reflected waves
+    in random wave experiments, Coastal Engineering Proceedings 15). With dispersion the delay is the group velocity's at one
+    period and the phase is not the beach's: r of either sign and a search over T stand for that. Bound waves are sent back
+    as they are, where a beach sets them free: of order r times second order. In a prepared sea T is between the steps of its
+    clock by interpolation, nothing comes back before T, and what comes back costs little. The squared envelope stays that of
+    the incident waves, and so does a computed excitation.
 
     Labels are `wave_reflection.coefficient` (r; -), `wave_reflection.delay` (T; s) and `wave_reflection.seen` (s; -).
     """
@@ -92,13 +97,13 @@ class WaveReflection(AbstractLoad):
     source: ClassVar[str] = "Goda and Suzuki 1976 (incident and reflected waves); one r, a delay and what a gauge saw are ours"
 
     @classmethod
-    def null(cls, delay: float = LATER) -> "WaveReflection":
-        """Nothing comes back, `delay` (s) after it has passed."""
+    def null(cls, delay: float = DEFAULT_DELAY) -> "WaveReflection":
+        """Load at its neutral value: no reflection; `delay` (s) is where it starts."""
         return cls({COEFFICIENT: jnp.zeros(()), DELAY: jnp.asarray(float(delay)), SEEN: jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
         if label == DELAY:
-            return Parameter("s", "from the platform to the beach and back", 0.0, LATEST, LATER)
+            return Parameter("s", "from the platform to the beach and back", 0.0, MAX_DELAY, DEFAULT_DELAY)
         if label == SEEN:
             return Parameter("-", "share of what comes back that the wave record has", 0.0, 1.0)
         return Parameter("-", "share of the waves' height that comes back", -0.3, 0.3)
@@ -108,5 +113,5 @@ class WaveReflection(AbstractLoad):
         if isinstance(sea, StillWater):
             return sea
         if isinstance(sea, SupportSea):  # which knows times of its clock only
-            return replace(sea, back=Returned(share, delay, seen, sea.middle))
+            return replace(sea, back=Reflection(share, delay, seen, sea.middle))
         return ReflectedSea(sea, sea.direction(), share, delay, seen, jnp.zeros(()))

@@ -1,4 +1,4 @@
-"""Weight."""
+"""Weight of the platform."""
 
 from typing import Any, ClassVar
 
@@ -10,7 +10,9 @@ from jaxhydro.rotations import cross
 
 
 class Weight(AbstractLoad):
-    """F = -m g along z at the displaced centre of mass.
+    """Weight at the displaced centre of mass.
+
+    F = -m g along z at the displaced centre of mass.
 
     `mass` (kg) and `centre` (m, body axes) are those of everything that moves with the hull. Newman 1977, Marine
     Hydrodynamics, chapter 6, Hydrostatics.

@@ -1,4 +1,4 @@
-"""The body in a platform file: its mass and its members, checked, and as plain values. SI; headings in degrees."""
+"""Schema of the body in a platform file: mass and members, in SI, headings in degrees."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
@@ -8,16 +8,18 @@ from jaxtyping import Float
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from jaxhydro.errors import Consistent, Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
-from jaxhydro.loads.high_pass_drag import FASTEST, LARGEST_SHARE
+from jaxhydro.loads.high_pass_drag import MAX_CUTOFF, MAX_SLOW_SHARE
 
-STEP = 1e-6  # of a member's length, over which a step in its size is made
+STEP_LENGTH = 1e-6  # of a member's length, over which a step in its size is made
 Matrix3 = Float[np.ndarray, "3 3"]
 
 
 class Inertia(Schema):
-    """Inertia about the centre of mass, kg m2. Ixy, Ixz and Iyz are the entries of the matrix as they stand in it,
-    [[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]], so Ixy = -integral of x y dm, as mass matrices are printed
-    by OpenFAST and WAMIT: no sign is changed in reading."""
+    """Inertia about the centre of mass (kg m²).
+
+    Ixy, Ixz and Iyz are entries of the matrix [[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]], so Ixy = -integral of x y
+    dm, as OpenFAST and WAMIT print mass matrices. No sign is changed in reading.
+    """
 
     Ixx: NonNegative
     Iyy: NonNegative
@@ -27,13 +29,16 @@ class Inertia(Schema):
     Iyz: Number = 0.0
 
     def matrix(self) -> Matrix3:
-        """The symmetric 3 by 3 matrix, kg m2."""
+        """Symmetric inertia matrix (kg m²), (3, 3)."""
         rows = [[self.Ixx, self.Ixy, self.Ixz], [self.Ixy, self.Iyy, self.Iyz], [self.Ixz, self.Iyz, self.Izz]]
         return np.array(rows, dtype=float)
 
 
 class Part(Schema):
-    """A rigid part: mass, kg; centre of mass, m, from the reference point; inertia about it (left out: a point)."""
+    """Rigid part: mass (kg), centre of mass (m) and inertia about it.
+
+    The centre is from the reference point. Without inertia the part is a point.
+    """
 
     name: Text
     mass: Positive
@@ -42,7 +47,7 @@ class Part(Schema):
 
 
 class RigidBody(Schema):
-    """Everything that moves with the hull: mass, centre of mass and inertia, or the parts that make it up."""
+    """Mass, centre of mass and inertia of everything that moves with the hull, or of its parts."""
 
     mass: Positive | None = None
     centre_of_mass: Vector | None = None
@@ -50,7 +55,7 @@ class RigidBody(Schema):
     parts: Annotated[tuple[Part, ...], Field(min_length=1)] | None = None
 
     def combined(self) -> tuple[float, Float[np.ndarray, "3"], Matrix3]:
-        """Mass, kg, centre of mass, m, and inertia about it, kg m2: the parts put together by Steiner's theorem."""
+        """Mass (kg), centre of mass (m) and inertia about it (kg m²) of all parts, by Steiner's theorem."""
         if self.parts is None:
             assert self.mass is not None and self.centre_of_mass is not None and self.inertia is not None
             return self.mass, np.array(self.centre_of_mass), self.inertia.matrix()
@@ -110,11 +115,12 @@ Shape = Annotated[
 
 
 class Member(Consistent):
-    """A cylinder or box from rA to rB, m, in RAFT's words.
+    """Cylinder or box from rA to rB (m), with RAFT's names.
 
-    d is its diameter or [width, height], m, or one of these at each of `stations`; a station named twice is a step in size.
-    heading, deg, turns copies about z; gamma, deg, twists a box about its axis. There are `elements` load elements of `points`
-    Gauss points each. maccamy_fuchs None: as the member's position says."""
+    d is its diameter or [width, height] (m), or one of these at each of `stations`; a station named twice is a step in size.
+    heading (deg) turns copies about z; gamma (deg) twists a box about its axis. There are `elements` load elements of
+    `points` Gauss points each. maccamy_fuchs None: by the member's position.
+    """
 
     name: Text
     group: Text = ""
@@ -171,8 +177,8 @@ class Member(Consistent):
         stations = np.array(self.stations)
         at = (stations - stations[0]) / (stations[-1] - stations[0])
         steps = np.flatnonzero(np.diff(stations) == 0)
-        at[steps] -= 0.5 * STEP
-        at[steps + 1] += 0.5 * STEP
+        at[steps] -= 0.5 * STEP_LENGTH
+        at[steps + 1] += 0.5 * STEP_LENGTH
         return at, sizes
 
 
@@ -184,29 +190,33 @@ Coefficient = Annotated[
 
 
 class ConstantDrag(Schema):
-    """The same coefficient for all motion (`jaxhydro.loads.StripDrag`, `EndDrag`)."""
+    """Drag with the same coefficient for all motion (`jaxhydro.loads.StripDrag`, `EndDrag`)."""
 
     law: Literal["constant"] = "constant"
 
 
 class HighPass(Schema):
-    """Slow motion feels another coefficient, `low_share` times that of fast motion: cut-off in Hz, 0: none
-    (`jaxhydro.loads.HighPassDrag`)."""
+    """Drag with `low_share` times the coefficient for slow motion (`jaxhydro.loads.HighPassDrag`).
+
+    The cut-off frequency is in Hz; 0: none.
+    """
 
     law: Literal["high_pass"]
-    cutoff: Annotated[float, Field(strict=True, ge=0, le=FASTEST)]
-    low_share: Annotated[float, Field(strict=True, ge=0, le=LARGEST_SHARE)]
+    cutoff: Annotated[float, Field(strict=True, ge=0, le=MAX_CUTOFF)]
+    low_share: Annotated[float, Field(strict=True, ge=0, le=MAX_SLOW_SHARE)]
 
 
 class HighPassAtEnds(HighPass):
-    """The same for pontoons' vertical direction and columns' ends, there with a share of `SuctionSide`."""
+    """`HighPass` for pontoons' vertical direction and columns' ends, there with a share of `SuctionSide`."""
 
     suction: Share | None = None
 
 
 class KeuleganCarpenter(Schema):
-    """A power of the Keulegan-Carpenter number over `reference`, where the coefficient is as declared; `window`, s, of the
-    past that the amplitude is taken from (`jaxhydro.loads.KeuleganCarpenterDrag`)."""
+    """Drag by a power of the Keulegan-Carpenter number (`jaxhydro.loads.KeuleganCarpenterDrag`).
+
+    The coefficient is as declared at the number `reference`. `window` (s) is the time over which the amplitude is taken.
+    """
 
     law: Literal["keulegan_carpenter"]
     exponent: Annotated[float, Field(strict=True, ge=-1, le=1)]
@@ -215,7 +225,7 @@ class KeuleganCarpenter(Schema):
 
 
 class SuctionSide(Schema):
-    """At columns' ends where the flow leaves them, wholly or in part (`jaxhydro.loads.SuctionSideDrag`)."""
+    """Drag at columns' ends where the flow leaves them (`jaxhydro.loads.SuctionSideDrag`)."""
 
     law: Literal["suction_side"]
     suction: Share = 1.0

@@ -1,4 +1,4 @@
-"""A platform file made into a model."""
+"""Model of a platform file."""
 
 import math
 import warnings
@@ -44,9 +44,18 @@ from jaxhydro.waves.sea_state import SeaState
 
 
 def load_model(path_or_name: str | PathLike[str]) -> Model:
-    """The model of a platform file, or of a built-in platform by its name.
+    """Model of a platform file, or of a built-in platform.
 
-    Warnings among the model's `remarks` are given as Python warnings, too. Raises InputError with all that is wrong in it.
+    Warnings among the model's `remarks` are also given as Python warnings.
+
+    Args:
+        path_or_name: Path of a YAML file, or name of a built-in platform.
+
+    Returns:
+        The model.
+
+    Raises:
+        InputError: The file has mistakes; all of them are listed.
     """
     model = build(schema.load_platform(path_or_name))
     for remark in model.remarks:
@@ -56,9 +65,17 @@ def load_model(path_or_name: str | PathLike[str]) -> Model:
 
 
 def build(platform: schema.Platform) -> Model:
-    """The model that a platform declares, with what is to be known of it as `remarks`.
+    """Model of a platform description.
 
-    Raises Float64Error, a RuntimeError, unless JAX computes in float64.
+    Args:
+        platform: Checked contents of a platform file.
+
+    Returns:
+        The model, with remarks on the files that the platform names.
+
+    Raises:
+        Float64Error: JAX does not compute in float64 (a RuntimeError).
+        InputError: The members or coefficients do not fit together.
     """
     need_float64()
     water = platform.water
@@ -113,7 +130,13 @@ def build(platform: schema.Platform) -> Model:
 
 
 def model_of(platform: schema.Platform, diffraction: str | None = None, elements: int | None = None) -> Model:
-    """The model of a platform; `diffraction` and the load `elements` of every pontoon in place of those declared."""
+    """Model of a platform description, with another diffraction or other load elements.
+
+    Args:
+        platform: Checked contents of a platform file.
+        diffraction: Diffraction in place of that in the file.
+        elements: Number of load elements of every pontoon in place of those in the file.
+    """
     if elements is not None:
         members = []
         for member in platform.members:
@@ -126,8 +149,10 @@ def model_of(platform: schema.Platform, diffraction: str | None = None, elements
 
 
 def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
-    """Raises InputError for pontoons that still water cuts, but for those whose waterplane is modelled: level
-    ones, and inclined ones that are cut through their sides (`waterplane`)."""
+    """Raise InputError for pontoons that still water cuts and whose waterplane is not modelled.
+
+    Modelled are level members, and inclined ones that are cut through their sides (`waterplane`).
+    """
     names = [member.name for member in platform.members for _ in member.heading]
     where = {name: i for i, name in reversed(list(enumerate(member.name for member in platform.members)))}
     problems = [
@@ -145,7 +170,7 @@ def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
 
 
 def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:
-    """Loads with the laws that the platform declares for their coefficients."""
+    """Loads with the sea-state laws of the platform file for their coefficients."""
     declared = platform.sea_state_laws
     if declared is None:
         return loads
@@ -165,7 +190,7 @@ def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tupl
 
 
 def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
-    """The laws that the platform declares for drag coefficients that its hull has, by label."""
+    """Drag laws of the platform file for the drag coefficients of its hull, by label."""
     problems = [
         Problem(f"coefficients.{group}.drag_z", "no suction side, which the ends of columns have", "a group of pontoons")
         for group, row in platform.coefficients.items()
@@ -179,7 +204,7 @@ def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
 
 
 def members_of(platform: schema.Platform) -> list[Member]:
-    """The platform's members, each copied to its headings."""
+    """Members of the platform, each copied to its headings."""
     members = []
     for member in platform.members:
         stations, sizes = member.profile()
@@ -218,7 +243,7 @@ def _guided(platform: schema.Platform) -> list[AbstractLoad]:
 
 
 def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
-    """A warning of mooring lines that are slack."""
+    """Warning of mooring lines that are slack at rest, if any."""
     slack = platform.mooring.slackness() if isinstance(platform.mooring, schema.LinearSprings) else ""
     return as_warnings([slack] if slack else [])
 
@@ -240,9 +265,9 @@ def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
 
 
 def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:
-    """Buoyancy with what the platform file declares in place of what the members give.
+    """Buoyancy with the values of the platform file in place of those of the members' geometry.
 
-    Without members the volume is that which balances the weight and the mooring's pull at the reference position.
+    Without members, the volume balances the weight and the mooring's pull at the reference position.
     """
     declared, water = platform.hydrostatics, platform.water
     weight_density = water.density * water.gravity

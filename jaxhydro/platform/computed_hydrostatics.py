@@ -1,4 +1,4 @@
-"""Hydrostatics of other programs, read from the file that a platform file names."""
+"""Hydrostatics of other programs, from the file that a platform file names."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -18,22 +18,29 @@ from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.rotations import rotation
 
 COUPLED = ("C34", "C35", "C45")
-CLEARLY = 5.0  # times nearer, for a doubt about the weight
-ASIDE = 1e-3  # of C44 and C55, from which C46 and C56 are worth a note
+CLEAR_RATIO = 5.0  # times nearer, for a doubt about the weight
+MIN_NOTED_STIFFNESS = 1e-3  # of C44 and C55, from which C46 and C56 are worth a note
 
 
-class StaticsOfFile(NamedTuple):
-    """Hydrostatics with what their file says, its stiffness (N/m, N, N m/rad; None: no file), and what is to be known."""
+class FileStatics(NamedTuple):
+    """Hydrostatics with the values of their file, its stiffness (N/m, N, N m/rad), and remarks.
+
+    The stiffness is None without a file.
+    """
 
     declared: schema.Hydrostatics
     stiffness: np.ndarray | None
     remarks: tuple[Remark, ...]
 
 
-def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> StaticsOfFile:
-    """Fill hydrostatics with what their file has and the platform file does not say itself. Raises InputError."""
+def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> FileStatics:
+    """Hydrostatics completed by the values of their file.
+
+    Raises:
+        InputError: The file is wrong.
+    """
     if not declared.file:
-        return StaticsOfFile(declared, None, ())
+        return FileStatics(declared, None, ())
     notes: list[str] = []
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
@@ -50,10 +57,10 @@ def hydrostatics_of(declared: schema.Hydrostatics, water: schema.Water) -> Stati
         raise InputError(declared.file, [Problem("C33", "a stiffness >= 0", f"{values['C33']:.4g} N/m")])
     given = {key: value for key, value in values.items() if getattr(declared, key) is None}
     off = np.abs(found.stiffness[[3, 4], 5]).max()
-    if off > ASIDE * np.abs(np.diag(found.stiffness)).max():
+    if off > MIN_NOTED_STIFFNESS * np.abs(np.diag(found.stiffness)).max():
         notes.append(f"{declared.file}: C46 and C56 are left out: they follow from mass and buoyancy off the centreline")
     told = tuple(map(Remark, [*notes, *said]))
-    return StaticsOfFile(declared.model_copy(update=given), found.stiffness, told)
+    return FileStatics(declared.model_copy(update=given), found.stiffness, told)
 
 
 def _values(declared: schema.Hydrostatics, found: FileHydrostatics, water: schema.Water) -> tuple[dict[str, float], list[str]]:
@@ -99,7 +106,7 @@ def with_hydrostatics(
 
 
 def hydrostatic_stiffness(load: Buoyancy, weight_density: float) -> np.ndarray:
-    """Stiffness (N/m, N, N m/rad) of buoyancy about the upright platform, without the weight's share."""
+    """Buoyancy stiffness (N/m, N, N m/rad) about the upright platform, without the weight's part."""
     return -np.asarray(_slope(load, jnp.asarray(weight_density)))
 
 
@@ -122,7 +129,7 @@ def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.n
     missed = {"included": abs(stiffness[3, 3] + weight - own[3, 3]), "excluded": abs(stiffness[3, 3] - own[3, 3])}
     taken = declared.weight or "included"
     other = "excluded" if taken == "included" else "included"
-    if missed[taken] < CLEARLY * missed[other] or missed[taken] < 0.05 * abs(own[3, 3]):
+    if missed[taken] < CLEAR_RATIO * missed[other] or missed[taken] < 0.05 * abs(own[3, 3]):
         return []
     return [
         f"{declared.file}: C44 {stiffness[3, 3]:.4g} N m/rad fits the members with the weight {other}, not {taken}: see "
@@ -131,7 +138,7 @@ def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.n
 
 
 def coupling_of(stiffness: np.ndarray, own: np.ndarray) -> tuple[HydrostaticCoupling, ...]:
-    """The couplings of a file's stiffness beyond those that members have (`own`); none where there are none."""
+    """Load of a file's stiffness couplings beyond those of the members (`own`), if any."""
     matrix = np.zeros((6, 6))
     for name in COUPLED:
         i, j = int(name[1]) - 1, int(name[2]) - 1

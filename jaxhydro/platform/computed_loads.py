@@ -1,4 +1,4 @@
-"""Radiation, excitation and drift of other programs, read from the files that a platform file names and made into loads."""
+"""Radiation, excitation and drift loads from other programs' files."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -28,22 +28,22 @@ from jaxhydro.platform.table_checks import (
 )
 from jaxhydro.remarks import Remark, as_warnings
 
-POOR = 0.25  # misfit from which on a state space is none of the coefficients
+MAX_MISFIT = 0.25  # misfit from which on a state space is none of the coefficients
 
 
-class Realised(NamedTuple):
-    """A file's radiation: its coefficients, a state space for them, and what is to be known of it."""
+class RealisedRadiation(NamedTuple):
+    """Radiation of a file: its coefficients, a state space for them, and remarks."""
 
     coefficients: RadiationCoefficients
     space: Realisation
     remarks: tuple[Remark, ...]
 
 
-def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRadiation, Realised]:
-    """The radiation that a platform file declares, and what it was made from.
+def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRadiation, RealisedRadiation]:
+    """Radiation load that a platform file declares, and what it was made from.
 
     Raises:
-        InputError: Where the file is wrong, or no state space of the declared order comes near its coefficients.
+        InputError: The file is wrong, or no state space of the declared order comes near its coefficients.
     """
     file = Path(declared.file)
     stamp = file.stat().st_mtime_ns if file.is_file() else 0
@@ -54,7 +54,7 @@ def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRa
 
 
 @lru_cache(maxsize=8)
-def _realised(declared: schema.Radiation, stamp: int, density: float) -> Realised:
+def _realised(declared: schema.Radiation, stamp: int, density: float) -> RealisedRadiation:
     source, notes = declared.file, list[str]()
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
@@ -68,12 +68,12 @@ def _realised(declared: schema.Radiation, stamp: int, density: float) -> Realise
         expected = "radiation damping that takes energy, and that a state space can follow"
         raise InputError(source, [Problem("", expected, str(error), _column(declared))]) from None
     doubts = radiation_column(found, space, declared.by if declared.kind == "wamit" else None, source)
-    if space.misfit > POOR:
+    if space.misfit > MAX_MISFIT:
         wrong = f"a misfit of {100 * space.misfit:.0f} % with {space.order}"
         hint = doubts[0].removeprefix(f"{source}: ") if doubts else _column(declared)
         raise InputError(source, [Problem("radiation.order", "enough states to follow the coefficients", wrong, hint)])
     doubts += asymmetry(found, source)
-    return Realised(found, space, (*as_warnings(doubts), *map(Remark, notes)))
+    return RealisedRadiation(found, space, (*as_warnings(doubts), *map(Remark, notes)))
 
 
 def _column(declared: schema.Radiation) -> str:
@@ -82,7 +82,11 @@ def _column(declared: schema.Radiation) -> str:
 
 
 def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[ComputedExcitation, tuple[Remark, ...]]:
-    """The excitation that a platform file declares, and what is to be known of it. Raises InputError."""
+    """Excitation load that a platform file declares, and remarks.
+
+    Raises:
+        InputError: The file is wrong.
+    """
     notes, doubts = list[str](), list[str]()
     if declared.kind == "wamit":
         assert not isinstance(declared.body, str)
@@ -114,7 +118,11 @@ def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[Com
 
 
 def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer, tuple[Remark, ...]]:
-    """The slow drift that a platform file declares, and what is to be known of it. Raises InputError."""
+    """Drift load that a platform file declares, and remarks.
+
+    Raises:
+        InputError: The file is wrong.
+    """
     doubts: list[str] = []
     transfer = read_transfer(
         declared.file,

@@ -1,4 +1,4 @@
-"""How far motions change with the number of load elements: one simulation for each number, in the same sea."""
+"""Convergence of motions with the number of load elements."""
 
 from collections.abc import Sequence
 from os import PathLike
@@ -17,10 +17,13 @@ from jaxhydro.waves.sea import AbstractSea
 
 
 class Convergence(NamedTuple):
-    """By number of elements, in the order asked for; by motion, and band of `analysis.bands`.
+    """Motions by number of load elements.
 
-    `integral` of the spectrum over a band (m2 or rad2), `difference` of the motion from that with most elements (root mean
-    square over standard deviation), undamped natural `period` (s).
+    Attributes:
+        elements: Numbers of load elements, in the order asked for, (n,).
+        integral: Band integral of the spectrum (m² or rad²) by degree of freedom and band of `analysis.bands`, (n,).
+        difference: Root mean square difference from the finest, over the standard deviation (-), by degree of freedom, (n,).
+        period: Undamped natural period (s) by degree of freedom, (n,).
     """
 
     elements: tuple[int, ...]
@@ -29,15 +32,22 @@ class Convergence(NamedTuple):
     period: dict[str, Float[np.ndarray, " n"]]
 
     def change(self, dof: str, band: str) -> Float[np.ndarray, " n"]:
-        """Band integral over that with most elements, less 1."""
+        """Relative difference (-) of a band integral from that with most elements, (n,)."""
         values = self.integral[dof][band]
         return values / values[int(np.argmax(self.elements))] - 1
 
 
 def with_elements(platform: Platform, group: str, elements: int, points: int = 2) -> Platform:
-    """The platform with the members of a group cut into so many load elements of `points` Gauss points each.
+    """Platform description with other load elements for one group of members.
 
-    Raises ValueError for a group that has no members.
+    Args:
+        platform: Checked contents of a platform file.
+        group: Group of members.
+        elements: Load elements per member.
+        points: Gauss points per load element.
+
+    Raises:
+        UnknownName: No member is in the group.
     """
     groups = {member.group for member in platform.members}
     if group not in groups:
@@ -60,10 +70,25 @@ def convergence(
     dofs: Sequence[str] = ("surge", "heave", "pitch"),
     **options: Any,
 ) -> Convergence:
-    """Motions in a sea with members of `group` in 1, 2, 3 ... load elements of `points` Gauss points.
+    """Simulate a sea with several numbers of load elements, and compare the motions.
 
-    `platform` is one, a file, or a built-in's name; `peak_period` (s) chooses the bands; the first `transient` (s) of the even
-    `times` (s) is left out; `options` are those of `simulate`. Raises ValueError for an unknown group or number.
+    Args:
+        platform: Platform description, path of a file, or name of a built-in platform.
+        sea: The sea.
+        times: Output times (s), (t,), even.
+        peak_period: Peak period (s), which chooses the frequency bands.
+        elements: Numbers of load elements per member.
+        group: Group of members that is refined.
+        points: Gauss points per load element.
+        transient: Time (s) at the start that is left out.
+        dofs: Degrees of freedom to compare.
+        **options: Other arguments of `simulate`.
+
+    Returns:
+        Band integrals, differences and natural periods by number of elements.
+
+    Raises:
+        ValueError: An unknown group, an unknown degree of freedom, or a number of elements that is not whole and at least 1.
     """
     from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum
 

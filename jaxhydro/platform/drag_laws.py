@@ -1,4 +1,4 @@
-"""Laws of drag coefficients, by their labels: which a model has, and others in place of plain Morison drag."""
+"""Drag laws of a model by coefficient label, and their replacement."""
 
 import math
 from collections.abc import Mapping
@@ -19,20 +19,19 @@ DragLaw: TypeAlias = ConstantDrag | HighPass | HighPassAtEnds | KeuleganCarpente
 
 
 def parameter_label(label: str, name: str) -> str:
-    """The label of a law's parameter: of `exponent` and column.Cd_t, column.drag_exponent_t."""
+    """Label of a law's parameter: column.drag_exponent_t for `exponent` and column.Cd_t."""
     return label.replace(".Cd_", f".drag_{name}_")
 
 
 def coefficient_label(label: str) -> str | None:
-    """The coefficient's of a law's parameter; None of what is none."""
+    """Label of the coefficient of a law's parameter; None for other labels."""
     group, _, symbol = label.rpartition(".")
     parts = symbol.split("_")
     return f"{group}.Cd_{parts[-1]}" if group and parts[0] == "drag" and parts[-1] in ("t", "z") else None
 
 
 def drag_laws_of(model: Model) -> dict[str, DragLaw]:
-    """The laws that coefficients have, with their parameters as they are, by label; those of plain drag are left out. Values
-    are not checked."""
+    """Drag laws of a model by coefficient label, plain drag left out; values are not checked."""
     found: dict[str, DragLaw] = {}
     for load in model.loads:
         inner = load.load if isinstance(load, SeaStateLaw) else load
@@ -58,14 +57,15 @@ def drag_laws_of(model: Model) -> dict[str, DragLaw]:
 
 
 def plain_drag(model: Model) -> list[str]:
-    """The coefficients of plain Morison drag, which may be given another law."""
+    """Labels of the coefficients of plain Morison drag, which may be given another law."""
     return [label for load in model.loads if type(load) in (StripDrag, EndDrag) for label in load.values]
 
 
 def with_drag_laws(model: Model, laws: Mapping[str, DragLaw]) -> Model:
-    """The model with other laws in place of plain drag, on the lines of the coefficients that they are given for.
+    """Model with other laws in place of plain drag, on the lines of the given coefficients.
 
-    Raises ValueError for a coefficient that no plain drag has.
+    Raises:
+        ValueError: A coefficient is not one of plain drag.
     """
     laws = {label: law for label, law in laws.items() if not isinstance(law, ConstantDrag)}
     if not laws:
@@ -91,9 +91,9 @@ def with_drag_laws(model: Model, laws: Mapping[str, DragLaw]) -> Model:
 
 
 def surface_number(hull: Hull, label: str, height: float) -> float:
-    """The Keulegan-Carpenter number 2 pi a/D = pi H/D of what moves with the water's surface in waves of a height H (m).
+    """Keulegan-Carpenter number 2 pi a/D = pi H/D of motion with the water surface.
 
-    D is the mean extent (m) across the flow on the lines that a coefficient is for.
+    H is the wave height (m), D the mean size (m) across the flow on the lines of a coefficient.
     """
     n = hull.strips.size.shape[1]
     extent = np.concatenate([np.asarray(hull.strips.size)[::-1].reshape(2 * n), 2 * np.asarray(hull.ends.radius)])

@@ -1,4 +1,4 @@
-"""Masses in a platform file that move with the hull in some directions only, checked. SI."""
+"""Schema of masses that follow the hull in some directions only, in SI."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal

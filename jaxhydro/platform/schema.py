@@ -1,4 +1,4 @@
-"""The platform file: what `platform.yaml` may hold, checked, and as plain values. SI; headings in degrees."""
+"""Schema of the platform file `platform.yaml`: checked, plain values in SI, headings in degrees."""
 
 from collections.abc import Iterator
 from importlib import resources
@@ -40,7 +40,7 @@ Exponent = Annotated[float, Field(strict=True, ge=-3, le=3)]
 
 
 class Water(Schema):
-    """Density, kg/m3; depth, m; gravity, m/s2."""
+    """Density (kg/m³), depth (m) and gravity (m/s²)."""
 
     density: Positive
     depth: Positive
@@ -63,7 +63,7 @@ Key = TypeVar("Key", bound=str)
 
 
 class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
-    """Entries of a 6 by 6 matrix by name, B15 in row 1 and column 5; those left out are zero."""
+    """Entries of a 6 x 6 matrix by name, such as B15 in row 1 and column 5; the others are 0."""
 
     root: dict[Key, Number] = {}
     dissipative: ClassVar[bool] = False
@@ -76,7 +76,7 @@ class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
         return self
 
     def matrix(self) -> Matrix6:
-        """The matrix; where only one of ij and ji is given, the other is its mirror."""
+        """The matrix, (6, 6); where only one of ij and ji is given, the other is equal."""
         matrix = np.zeros((6, 6))
         named = {(int(key[1]) - 1, int(key[2]) - 1): value for key, value in self.root.items()}
         for (i, j), value in named.items():
@@ -86,7 +86,7 @@ class Entries(RootModel[dict[Key, Number]], Generic[Key], frozen=True):
 
 
 class Damping(Entries[Key], Generic[Key], frozen=True):
-    """Entries of a damping matrix: none on the diagonal is negative."""
+    """Entries of a damping matrix, not negative on the diagonal."""
 
     dissipative: ClassVar[bool] = True
 
@@ -98,14 +98,17 @@ Stiffness = Entries[Annotated[str, _key("C")]]  # N/m, N/rad, N m/rad
 
 
 class NoMooring(Schema):
-    """Nothing holds the platform."""
+    """No mooring."""
 
     kind: Literal["none"] = "none"
 
 
 class Line(Schema):
-    """A straight massless spring from anchor to fairlead, m: stiffness, N/m, and the pretension, N, it has at the
-    reference position; or axial stiffness EA, N, and unstretched length, m."""
+    """Straight massless spring from anchor to fairlead (m).
+
+    It has a stiffness (N/m) and the pretension (N) at the reference position; or the axial stiffness EA (N) and the
+    unstretched length (m).
+    """
 
     anchor: Vector
     fairlead: Vector
@@ -115,8 +118,11 @@ class Line(Schema):
     unstretched_length: Positive | None = None
 
     def spring(self, length_at_rest: float | None = None) -> tuple[float, float]:
-        """Stiffness, N/m, and unstretched length, m. The pretension holds at `length_at_rest`, m: anchor to fairlead
-        at the reference position if left out."""
+        """Stiffness (N/m) and unstretched length (m).
+
+        The pretension holds at `length_at_rest` (m); default: the distance from anchor to fairlead at the reference
+        position.
+        """
         if self.axial_stiffness is not None and self.unstretched_length is not None:
             return self.axial_stiffness / self.unstretched_length, self.unstretched_length
         assert self.stiffness is not None and self.pretension is not None
@@ -125,7 +131,10 @@ class Line(Schema):
         return self.stiffness, length_at_rest - self.pretension / self.stiffness
 
     def slack(self) -> tuple[float, float] | None:
-        """Distance from anchor to fairlead at the reference position and unstretched length, m, if the line is slack there."""
+        """Distance from anchor to fairlead and unstretched length (m) of a slack line, or None.
+
+        The distance is that at the reference position.
+        """
         distance, unstretched = float(np.linalg.norm(np.subtract(self.anchor, self.fairlead))), self.spring()[1]
         return (distance, unstretched) if unstretched > distance * (1 + 1e-9) else None
 
@@ -148,13 +157,13 @@ class Line(Schema):
 
 
 class LinearSprings(Schema):
-    """Straight lines with their geometric law."""
+    """Mooring of straight elastic lines."""
 
     kind: Literal["linear_springs"]
     lines: Annotated[tuple[Line, ...], Field(min_length=1)]
 
     def slackness(self) -> str:
-        """What is to be said of lines that are slack at the reference position; nothing where none is."""
+        """Warning of lines that are slack at the reference position; "" where none is."""
         slack = [(i, *found) for i, line in enumerate(self.lines, 1) if (found := line.slack()) is not None]
         if not slack:
             return ""
@@ -179,7 +188,7 @@ Square = Annotated[
 
 
 class StiffnessMatrix(Schema):
-    """A mooring about the reference position: force on the platform = preload - stiffness @ motion."""
+    """Mooring about the reference position: force on the platform = preload - stiffness @ motion."""
 
     kind: Literal["stiffness_matrix"]
     stiffness: Square = Field(description="6 rows of 6 numbers, or entries C11 to C66")
@@ -193,9 +202,12 @@ class StiffnessMatrix(Schema):
 Body = Annotated[Count | Text, Field(description="a body's name, or in WAMIT's files its number from 1")]
 
 
-class OfFile(Schema):
-    """What another program computed, in a `file` beside the platform file: WAMIT's or Capytaine's `format`, and which `body`
-    of several it is. WAMIT's files are of ULEN `length` (m), and `by` says what their first column is."""
+class FromFile(Schema):
+    """Results of another program in a `file` beside the platform file.
+
+    `format` is WAMIT's or Capytaine's, `body` which of several bodies. WAMIT's files have the unit of length `length` (ULEN,
+    m); `by` says what their first column is.
+    """
 
     endings: ClassVar[dict[str, str]]  # of files, and the format that each means
     wamit_only: ClassVar[tuple[str, ...]] = ("length", "by")
@@ -207,7 +219,7 @@ class OfFile(Schema):
 
     @property
     def kind(self) -> str | None:
-        """The format, or that of the file's ending."""
+        """The format; by default that of the file's ending."""
         return self.format or self.endings.get(Path(self.file).suffix.lower())
 
     @model_validator(mode="after")
@@ -229,9 +241,12 @@ class OfFile(Schema):
         return self
 
 
-class Hydrostatics(OfFile):
-    """What replaces the values worked out from members and mass: m3, N/m, N m/rad (`_buoyancy`: without the weight). What is
-    not given is taken from the `file`, where there is one. `weight`: whether a .hst file's C44 and C55 include it."""
+class Hydrostatics(FromFile):
+    """Hydrostatics in place of those of members and mass (m³, N/m, N m/rad).
+
+    `_buoyancy` values are without the weight. Values that are not given come from the `file`, where there is one. `weight`:
+    whether C44 and C55 of a .hst file include it.
+    """
 
     endings = {".hst": "wamit", ".out": "wamit", ".nc": "capytaine"}
     wamit_only = ("length", "weight")
@@ -258,9 +273,12 @@ class Hydrostatics(OfFile):
         return self
 
 
-class Radiation(OfFile):
-    """Radiation damping computed by another program: WAMIT's `.1` or Capytaine's `.nc`, followed to `tolerance` by a state
-    space of at most `order` states. `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+class Radiation(FromFile):
+    """Radiation damping from another program: WAMIT's `.1` or Capytaine's `.nc`.
+
+    A state space of at most `order` states follows it to `tolerance`. `use`: part of the model, or a candidate of
+    `diagnose`.
+    """
 
     endings = {".1": "wamit", ".nc": "capytaine"}
 
@@ -271,10 +289,12 @@ class Radiation(OfFile):
 
 
 class Drift(Schema):
-    """Difference-frequency second-order forces computed by another program: `file`, beside the platform file, as WAMIT's
-    `.12d` of ULEN `length` (m), for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation.
-    `by` says what its first two columns are. `use`: part of the model, or a candidate that `diagnose` may find to be
-    missing."""
+    """Difference-frequency second-order forces from another program: WAMIT's `.12d`.
+
+    They are for waves of a `heading` (deg), of all pairs of frequencies or by Newman's approximation. The file has the unit
+    of length `length` (ULEN, m); `by` says what its first two columns are. `use`: part of the model, or a candidate of
+    `diagnose`.
+    """
 
     file: Text
     length: Positive = 1.0
@@ -285,9 +305,12 @@ class Drift(Schema):
     use: Literal["load", "candidate"] = "load"
 
 
-class Excitation(OfFile):
-    """First-order wave forces computed by another program, in place of the strips': WAMIT's `.3` or Capytaine's `.nc`, for
-    waves of a `heading` (deg). `use`: part of the model, or a candidate that `diagnose` may find to be missing."""
+class Excitation(FromFile):
+    """First-order wave forces from another program, in place of the strips'.
+
+    The file is WAMIT's `.3` or Capytaine's `.nc`, for waves of a `heading` (deg). `use`: part of the model, or a candidate
+    of `diagnose`.
+    """
 
     endings = {".3": "wamit", ".nc": "capytaine"}
 
@@ -296,19 +319,19 @@ class Excitation(OfFile):
     use: Literal["load", "candidate"] = "load"
 
 
-BESIDE = ("hydrostatics", "radiation", "excitation", "drift")  # keys that may name a file
-OF_WAVES = ("excitation", "drift")  # ... that is of waves of one heading
+FILE_KEYS = ("hydrostatics", "radiation", "excitation", "drift")  # keys that may name a file
+WAVE_FILE_KEYS = ("excitation", "drift")  # ... that is of waves of one heading
 
 
 class ReferenceSea(Schema):
-    """The sea state in which coefficients are as declared: m, s."""
+    """Sea state (m, s) in which coefficients are as declared."""
 
     significant_height: Positive
     peak_period: Positive
 
 
 class Exponents(Schema):
-    """Powers of significant height and peak period, each over the reference's, that multiply a coefficient."""
+    """Exponents of significant height and peak period, each over the reference's, in a coefficient."""
 
     significant_height: Exponent | None = None
     peak_period: Exponent | None = None
@@ -322,8 +345,11 @@ class SeaStateLaws(Schema):
 
 
 class Platform(Consistent):
-    """A platform file. `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at` and `centripetal` choose
-    between forms of the strip loads (see the loads and `Model`)."""
+    """Checked contents of a platform file.
+
+    `wetting`, `drag_speed`, `diffraction`, `directions`, `waves_at` and `centripetal` choose between forms of the strip
+    loads: see `Model` and the loads.
+    """
 
     name: Text
     water: Water
@@ -353,12 +379,12 @@ class Platform(Consistent):
     sea_state_laws: SeaStateLaws | None = None
 
     def files(self) -> dict[str, str]:
-        """Files that the platform file names, by their key."""
-        return {key: one.file for key in BESIDE if (one := getattr(self, key)) is not None and one.file}
+        """Paths of the files that the platform file names, by key."""
+        return {key: one.file for key in FILE_KEYS if (one := getattr(self, key)) is not None and one.file}
 
     def of_other_waves(self, heading: float) -> tuple[str, float] | None:
-        """Key and heading (deg) of forces that were computed for waves of another heading than this."""
-        tables = {f"{key}.heading": one.heading for key in OF_WAVES if (one := getattr(self, key)) is not None}
+        """Key and heading (deg) of a table that was computed for another wave heading than this, or None."""
+        tables = {f"{key}.heading": one.heading for key in WAVE_FILE_KEYS if (one := getattr(self, key)) is not None}
         return next(((key, own) for key, own in tables.items() if not same_heading(own, heading)), None)
 
     def _faults(self) -> Iterator[Problem]:
@@ -384,13 +410,23 @@ class Platform(Consistent):
 
 
 def builtin_platforms() -> tuple[str, ...]:
-    """Names of the platforms that come with the package."""
+    """Names of the built-in platforms."""
     folder = resources.files("jaxhydro") / "platforms"
     return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
 
 
 def load_platform(path_or_name: str | PathLike[str]) -> Platform:
-    """The platform in a YAML file, or the built-in one of that name; `InputError` with all that is wrong in it."""
+    """Checked contents of a platform file, or of a built-in platform.
+
+    Args:
+        path_or_name: Path of a YAML file, or name of a built-in platform.
+
+    Returns:
+        The platform description; paths in it are resolved relative to the file.
+
+    Raises:
+        InputError: The file has mistakes; all of them are listed.
+    """
     name, known = str(path_or_name), builtin_platforms()
     is_path = not isinstance(path_or_name, str) or "/" in name or name.endswith((".yaml", ".yml"))
     if not is_path and name.lower() in known:

@@ -1,4 +1,4 @@
-"""Checks of coefficients that groups share: whom each names, and that every number is used."""
+"""Checks of coefficients that groups of members share."""
 
 from collections.abc import Iterator, Mapping
 

@@ -1,4 +1,4 @@
-"""Whether tables of other programs fit together and to their platform, which tells a column that is another than declared."""
+"""Consistency of other programs' tables with each other and with their platform."""
 
 import math
 from collections.abc import Sequence
@@ -12,21 +12,26 @@ from jaxhydro.interop.radiation_coefficients import RadiationCoefficients
 from jaxhydro.interop.retardation import Realisation, realise
 from jaxhydro.interop.wamit_tables import By, to_omega
 
-ASYMMETRIC = 0.1  # of the geometric mean of two motions' own coefficients
+MAX_ASYMMETRY = 0.1  # of the geometric mean of two motions' own coefficients
 LONG_HEAVE = (0.5, 1.3)  # heave force of the longest wave over C33, where that wave is long
 NO_HEAVE, ALL_HEAVE = 0.5, (0.7, 1.3)  # the same of the longest and the shortest wave, where the column is turned around
 LONG_SURGE = (0.25, 5.0)  # horizontal force of a long wave over mass times acceleration: 1 + Ca; less by tables of deeper water
 NO_SURGE = (0.25, 8.0)  # outside: no body in long waves
-VARIES = 0.05  # of added mass: what varies less says nothing about its damping
-UNRELATED, RELATED = 0.8, 0.4  # misfit of added mass and damping by Kramers and Kronig, over its variation
-DRIFTING, STILL = 0.3, 0.05  # of the largest drift: what the longest waves have, and the shortest not, in a wrong column
+MIN_VARIATION = 0.05  # of added mass: what varies less says nothing about its damping
+# misfit of added mass and damping by Kramers and Kronig, over its variation
+MIN_UNRELATED_MISFIT, MAX_RELATED_MISFIT = 0.8, 0.4
+# of the largest drift: what the longest waves have, and the shortest have not, in a wrong column
+MIN_LONG_WAVE_DRIFT, MAX_SHORT_WAVE_DRIFT = 0.3, 0.05
 WORDS = {"period": "a period (s)", "rad/s": "a frequency in rad/s", "Hz": "a frequency in Hz"}
-SAME = 1e-4  # of a number in the first column
+COLUMN_TOLERANCE = 1e-4  # of a number in the first column
 KINDS: tuple[str, ...] = get_args(By)
 
 
 class LongWaves(NamedTuple):
-    """What long waves act on: heave stiffness rho g A (N/m), mass (kg), and the water's depth (m) and gravity (m/s2)."""
+    """Platform properties that decide the forces of long waves.
+
+    They are heave stiffness rho g A (N/m), mass (kg), water depth (m) and gravity (m/s²).
+    """
 
     stiffness: float
     mass: float
@@ -104,7 +109,7 @@ def drift_column(curve: Float[np.ndarray, " n"], by: str, source: str) -> list[s
         source: The file.
     """
     largest = float(curve.max(initial=0.0))
-    if not largest > 0 or curve[0] < DRIFTING * largest or curve[-1] > STILL * largest:
+    if not largest > 0 or curve[0] < MIN_LONG_WAVE_DRIFT * largest or curve[-1] > MAX_SHORT_WAVE_DRIFT * largest:
         return []
     way = "a frequency: `drift.by`: rad/s or Hz" if by == "period" else "a period: `drift.by`: period"
     return [f"{source}: the first column is probably {way}. Read by {by}, the longest waves drift most and the shortest not"]
@@ -118,7 +123,7 @@ def asymmetry(found: RadiationCoefficients, source: str) -> list[str]:
         own = np.sqrt(np.abs(np.einsum("wii->wi", cube)).max(axis=0))
         size = np.outer(own, own)
         off = np.abs(cube - cube.transpose(0, 2, 1)).max(axis=0) / np.where(size > 0, size, np.inf)
-        if off.max() > ASYMMETRIC:
+        if off.max() > MAX_ASYMMETRY:
             i, j = np.unravel_index(int(off.argmax()), off.shape)
             pair = f"({i + 1}, {j + 1}) and ({j + 1}, {i + 1})"
             said.append(f"{source}: {name} is not symmetric: {pair} differ by {off.max():.0%} of the motions' own")
@@ -139,7 +144,7 @@ def radiation_column(found: RadiationCoefficients, space: Realisation, by: str |
         source: The file.
     """
     misfit = _misfit(found, space)
-    if misfit is None or misfit < UNRELATED:
+    if misfit is None or misfit < MIN_UNRELATED_MISFIT:
         return []
     apart = f"added mass does not follow from damping (Kramers-Kronig): it misses {min(misfit, 9.99):.0%} of its variation"
     plain = f"{source}: {apart}. Damping is used: see where the file is from"
@@ -154,7 +159,7 @@ def radiation_column(found: RadiationCoefficients, space: Realisation, by: str |
         there = _misfit(turned, realise(turned, 0.05, 20))
     except ValueError:
         there = None
-    if there is None or there > RELATED:
+    if there is None or there > MAX_RELATED_MISFIT:
         return [plain]
     way = "a frequency: `radiation.by`: rad/s or Hz" if other == "rad/s" else "a period: `radiation.by`: period"
     return [f"{source}: the first column is probably {way}. Read by {by}, {apart}"]
@@ -166,7 +171,7 @@ def _misfit(found: RadiationCoefficients, space: Realisation) -> float | None:
     theirs = np.einsum("wii->wi", found.added_mass)
     ours = np.einsum("wii->wi", space.transfer(found.omega).imag) / found.omega[:, None]
     varies = np.maximum(theirs.std(axis=0), ours.std(axis=0))
-    used = varies > VARIES * np.abs(theirs).mean(axis=0)
+    used = varies > MIN_VARIATION * np.abs(theirs).mean(axis=0)
     used &= np.einsum("wii->wi", found.damping).max(axis=0) > 0
     if not used.any():
         return None
@@ -182,12 +187,11 @@ class Column(NamedTuple):
 
 
 def same_columns(columns: Sequence[Column]) -> list[str]:
-    """Warnings where two files have the same numbers in their first column, or one has some of the other's, and these were
-    declared to be different things."""
+    """Warnings where two files share first-column values that were declared to be different quantities."""
     said = []
     for one, other in combinations(columns, 2):
         few, many = sorted((as_column(one.omega, one.by), as_column(other.omega, other.by)), key=len)
-        found = np.abs(many[:, None] / few - 1).min(axis=0) < SAME
+        found = np.abs(many[:, None] / few - 1).min(axis=0) < COLUMN_TOLERANCE
         if one.by != other.by and found.all():
             files = f"{one.source} and {other.source} have the same first column"
             said.append(f"{files}, and are read by {one.by} and by {other.by}: see `by`")

@@ -1,1 +1,1 @@
-"""How figures look, and the figures of motions."""
+"""Style of the figures, and figures of motions."""

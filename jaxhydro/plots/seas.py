@@ -1,4 +1,4 @@
-"""The figures of a motion in an irregular sea: the whole record, a window of it, spectra."""
+"""Figures of a motion in an irregular sea: record, window and spectra."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -11,8 +11,8 @@ from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, header, stack
 from jaxhydro.units import unit_of
 
 WINDOW = 200.0  # s, of which the waves can be told apart at half a page
-SHORTEST = 400.0  # s, of the segments of a spectrum
-TALL = 1.01  # inches of a panel
+MIN_SEGMENT = 400.0  # s, of the segments of a spectrum
+PANEL_HEIGHT = 1.01  # inches of a panel
 DECADES = 4.5  # of a spectrum, under its largest value
 LOW_BAND, WAVE_BAND = "#e9d9bd", "#d5e6ea"
 Figure = Any
@@ -28,7 +28,7 @@ def moving(channels: Mapping[str, np.ndarray]) -> list[str]:
 def record_figure(time: np.ndarray, channels: Mapping[str, np.ndarray], start: float, title: str) -> Figure:
     """All of the record; what statistics leave out, until `start` (s), is grey."""
     names = moving(channels)
-    figure, axes = stack([TALL] * len(names))
+    figure, axes = stack([PANEL_HEIGHT] * len(names))
     artists = {}
     for ax, name in zip(axes, names, strict=True):
         ax.plot(time, channels[name], color=_colour(name), lw=0.35)
@@ -50,7 +50,7 @@ def window_figure(
     width = min(WINDOW, time[-1] - start)
     begin = min(max(crest - 0.5 * width, start), time[-1] - width)
     seen = (time >= begin) & (time <= begin + width)
-    figure, axes = stack([TALL] * len(names))
+    figure, axes = stack([PANEL_HEIGHT] * len(names))
     artists = {}
     for ax, name in zip(axes, names, strict=True):
         (line,) = ax.plot(time[seen], channels[name][seen], color=_colour(name), lw=0.9)
@@ -76,7 +76,7 @@ def spectra_figure(
     figure, axes = stack([0.95] * len(names))
     artists: dict[str, Any] = {}
     for ax, name in zip(axes, names, strict=True):
-        spectrum = power_spectrum(time, channels[name], min(SEGMENT, max(0.5 * (time[-1] - time[0]), SHORTEST)))
+        spectrum = power_spectrum(time, channels[name], min(SEGMENT, max(0.5 * (time[-1] - time[0]), MIN_SEGMENT)))
         seen = (spectrum.frequency <= highest) & (spectrum.frequency > 0)
         f, density = spectrum.frequency[seen], spectrum.density[seen]
         for band, (low, high) in bands_of(name, peak_period).items():

@@ -1,4 +1,4 @@
-"""How figures look, and the figure of a simulated motion. Objects only: no pyplot, no state, no screen."""
+"""Style of the figures, and the figure of a simulated motion (no pyplot, no global state)."""
 
 import io
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Sweeps: one platform in every sea state of a scatter table, with every heading, with every seed: `run_sweep`."""
+"""Sweeps: one platform in every sea state of a scatter table, with every heading and every seed."""
 
 from jaxhydro.sweep.run_sweep import Progress, run_sweep
 from jaxhydro.sweep.sensitivity import Sensitivity, lifetime_sensitivity

@@ -1,4 +1,4 @@
-"""Seas in which a platform is simulated at once, by one vectorised program: what a GPU is for."""
+"""Simulation of one platform in several seas at once by one vectorised program, for GPUs."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -19,29 +19,50 @@ from jaxhydro.waves.sea_state import state_of
 from jaxhydro.waves.second_order import elevation_spectrum
 
 
-class Moved(NamedTuple):
-    """Positions (m, rad) in a sea, and its `elevation_spectrum` (m; None of first order)."""
+class SeaMotion(NamedTuple):
+    """Motion in one sea.
+
+    Attributes:
+        position: Positions (m, rad), (t, 6).
+        bound: `elevation_spectrum` of the sea (m), (b,); None at first order.
+    """
 
     position: Float[np.ndarray, "t 6"]
     bound: Complex[np.ndarray, " b"] | None
 
 
-def in_halves(model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float) -> list[Moved | None]:
-    """`together`, half as many at once where the memory does not hold all."""
+def simulate_in_halves(
+    model: Model, seas: list[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+) -> list[SeaMotion | None]:
+    """`simulate_together`, with half as many seas at once where memory runs out."""
     if not seas:
         return []
     try:
-        return together(model, seas, times, limit)
+        return simulate_together(model, seas, times, limit)
     except jax.errors.JaxRuntimeError:
         half = len(seas) // 2
-        return in_halves(model, seas[:half], times, limit) + in_halves(model, seas[half:], times, limit) if half else [None]
+        return (
+            simulate_in_halves(model, seas[:half], times, limit) + simulate_in_halves(model, seas[half:], times, limit)
+            if half
+            else [None]
+        )
 
 
-def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float) -> list[Moved | None]:
-    """The platform in seas that differ in amplitudes, phases and heading only, in steps of at most `limit` (s): by one
-    vectorised program, preparations included, for all of one heading. None where the platform leaves the box that the sea was
-    prepared for, or does not rest."""
-    found: list[Moved | None] = [None] * len(seas)
+def simulate_together(
+    model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray, " t"], limit: float
+) -> list[SeaMotion | None]:
+    """Simulate seas that differ in amplitudes, phases and heading only, at once per heading.
+
+    Args:
+        model: The platform.
+        seas: The seas.
+        times: Output times (s), (t,).
+        limit: Largest time step (s).
+
+    Returns:
+        One motion per sea. None where the platform leaves the box that its sea was prepared for, or has no equilibrium.
+    """
+    found: list[SeaMotion | None] = [None] * len(seas)
     alike: dict[Any, list[tuple[int, Any]]] = {}
     for i, sea in enumerate(seas):
         waves = sea.components
@@ -55,24 +76,26 @@ def together(model: Model, seas: Sequence[IrregularSea], times: Float[np.ndarray
         alike.setdefault((float(waves.heading[0]), jax.tree.structure(own), shape), []).append((i, own))
     points, at = jnp.asarray(model.hull.extremities()), jnp.asarray(times)
     for same in alike.values():
-        shared, step, steps = shared_by(model, seas[same[0][0]], times, limit)
+        shared, step, steps = shared_preparation(model, seas[same[0][0]], times, limit)
         padded = [own for _, own in same] + [same[-1][1]] * (power_of_two(len(same)) - len(same))
         own, axes = _stacked(padded)
         position, reached, bound = _vectorised(own, axes, len(padded), shared, points, at, jnp.asarray(step), steps)
         spectra = [None] * len(padded) if bound is None else np.asarray(bound)
         for (i, _), moved, far, spectrum in zip(same, np.asarray(position), np.asarray(reached), spectra):
             if not far > shared.half:
-                found[i] = Moved(moved, spectrum)
+                found[i] = SeaMotion(moved, spectrum)
     return found
 
 
 def power_of_two(count: int) -> int:
-    """The smallest that is not below: seas at once are made up to one, so that few programs are compiled."""
+    """Smallest power of two from `count` on: seas are filled up to it, so that few programs are compiled."""
     return 1 << (count - 1).bit_length()
 
 
-def shared_by(model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float) -> tuple[Preparation, float, int]:
-    """What all seas like this one share for the model's hull, and the steps as in `prepared_for`."""
+def shared_preparation(
+    model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
+) -> tuple[Preparation, float, int]:
+    """Preparation that all seas like this one share, with size (s) and number of the time steps."""
     step, steps = steps_in(sea, float(times[-1] - times[0]), limit)
     instants = clock("ab4", float(times[0]), step, steps)
     hull, computed = (model.hull.extremities(), model.cylinders), {"transfer": model.transfer, "exciting": model.excitation}
@@ -80,7 +103,10 @@ def shared_by(model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], l
 
 
 def _stacked(each: Sequence[Any]) -> tuple[Any, Any]:
-    """Trees of one structure in one, and the axes along which it is to be vectorised: what all share stays as it is."""
+    """Trees of one structure stacked in one, and the axes to vectorise over.
+
+    Leaves that all trees share are not stacked.
+    """
     leaves, tree = zip(*(jax.tree.flatten(one) for one in each))
     alike = [all(x is column[0] for x in column) or not eqx.is_array(column[0]) for column in zip(*leaves)]
     found = [c[0] if same else np.stack([np.asarray(x) for x in c]) for same, c in zip(alike, zip(*leaves))]

@@ -1,4 +1,4 @@
-"""Runs of a sweep simulated: one after the other by one compiled program, or several at once."""
+"""Simulation of the runs of a sweep, one after the other or several at once."""
 
 import math
 from collections.abc import Sequence
@@ -12,9 +12,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from jaxhydro.cli.calibrated_model import Used, with_calibration
+from jaxhydro.cli.calibrated_model import UsedCalibration, with_calibration
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import Asked, build_sea
+from jaxhydro.dynamics.requested_sea import RequestedSea, build_sea
 from jaxhydro.dynamics.simulate import largest_step, simulate
 from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.environment import DOFS
@@ -23,9 +23,9 @@ from jaxhydro.loads import MooringLines
 from jaxhydro.platform.build import model_of
 from jaxhydro.platform.schema import load_platform
 from jaxhydro.rotations import rotation
-from jaxhydro.sweep.at_once import in_halves, shared_by
+from jaxhydro.sweep.at_once import shared_preparation, simulate_in_halves
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.run_statistics import Kept, kept_of
+from jaxhydro.sweep.run_statistics import RunResults, run_results
 from jaxhydro.units import for_people
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import state_of
@@ -35,22 +35,35 @@ PLATFORM, CALIBRATION, PLAN = "platform.yaml", "calibration.json", "plan.json"  
 
 
 class Setup(NamedTuple):
-    """What all runs of a sweep share: times (s) of the records, largest step (s), what of a calibration is used."""
+    """Model and options that all runs of a sweep share.
+
+    Attributes:
+        plan: Cases, seeds and options of the sweep.
+        model: The platform.
+        times: Times of the records (s), (t,).
+        limit: Largest time step (s).
+        calibrated: What of a calibration is used, or None.
+    """
 
     plan: Plan
     model: Model
     times: Float[np.ndarray, " t"]
     limit: float
-    calibrated: Used | None
+    calibrated: UsedCalibration | None
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """wave, the motions asked for, mooring lines."""
+        """Names of the recorded channels: the wave, the motions asked for, and mooring lines."""
         return "wave", *self.plan.motions, *(f"line{i + 1}" for i in range(_line_count(self.model)))
 
 
 def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setup:
-    """From a platform's name or file and a calibration's file. Raises InputError, EquilibriumError."""
+    """Setup from a plan, a platform's name or file, and a calibration's file.
+
+    Raises:
+        InputError: A file has mistakes, or a table was computed for waves of another heading.
+        EquilibriumError: The platform has no static equilibrium.
+    """
     declared = load_platform(platform)
     for heading in sorted({case.heading for case in plan.cases}):
         if (other := declared.of_other_waves(heading)) is not None:
@@ -66,17 +79,24 @@ def setup_of(plan: Plan, platform: str | Path, calibration: Path | None) -> Setu
 
 
 def pace_of_platform(platform: str | Path) -> float:
-    """The pace (`jaxhydro.scales`) of a platform by name or file. Raises InputError."""
+    """Time scale (-) of a platform relative to VolturnUS-S (`jaxhydro.scales`).
+
+    Args:
+        platform: Name or file of the platform.
+
+    Raises:
+        InputError: The file has mistakes.
+    """
     return float(model_of(load_platform(platform)).pace)
 
 
 def setup_in(inputs: Path) -> Setup:
-    """From a sweep's folder of inputs; kept for as long as it stays as it is."""
+    """Setup from a sweep's folder of inputs, cached while that is unchanged."""
     return _setup_in(inputs, (inputs / PLAN).stat().st_mtime_ns)
 
 
 def plan_in(inputs: Path) -> Plan:
-    """The plan in a sweep's folder of inputs."""
+    """Plan from a sweep's folder of inputs."""
     return Plan.from_json((inputs / PLAN).read_text(encoding="utf-8"))
 
 
@@ -87,55 +107,62 @@ def _setup_in(inputs: Path, stamp: int) -> Setup:
 
 
 def sea_of(setup: Setup, run: Run) -> IrregularSea:
-    """The sea of a run, as `jaxhydro simulate` makes it. Raises InputError for one that cannot be."""
+    """Sea of a run, as `jaxhydro simulate` makes it.
+
+    Raises:
+        InputError: The sea is impossible.
+    """
     plan, case = setup.plan, run.case
     kind = plan.spectrum.replace("_", "-")
     how = (plan.low, plan.cutoff, plan.order, plan.stretching, case.heading, plan.start)
-    asked = Asked(case.hs, case.tp, case.gamma, kind, run.seed, plan.amplitudes, *how)
+    asked = RequestedSea(case.hs, case.tp, case.gamma, kind, run.seed, plan.amplitudes, *how)
     return build_sea(setup.model, asked, plan.duration).sea
 
 
-def outcome(setup: Setup, run: Run) -> Kept | str:
-    """What is kept of a run, or why it failed."""
+def run_outcome(setup: Setup, run: Run) -> RunResults | str:
+    """Results of one run, or the reason why it failed."""
     try:
         sea = sea_of(setup, run)
         position = np.asarray(simulate(setup.model, setup.times, sea, step=setup.limit).position)
-        return _kept(setup, run, sea, position, elevation(sea, setup.times))
+        return _results(setup, run, sea, position, elevation(sea, setup.times))
     except Exception as error:  # whatever it is, it is this run's, and the others go on
-        return reason_of(error)
+        return failure_reason(error)
 
 
-def outcomes(setup: Setup, runs: Sequence[Run]) -> list[Kept | str]:
-    """As `outcome`, of several runs simulated at once: for GPUs. Numbers differ from `outcome`'s by rounding."""
-    found: dict[int, Kept | str] = {}
+def run_outcomes(setup: Setup, runs: Sequence[Run]) -> list[RunResults | str]:
+    """Results of several runs simulated at once, for GPUs.
+
+    They differ from those of `run_outcome` by rounding.
+    """
+    found: dict[int, RunResults | str] = {}
     seas = {}
     for run in runs:
         try:
             seas[run.number] = sea_of(setup, run)
         except Exception as error:
-            found[run.number] = reason_of(error)
-    every = dict(zip(seas, in_halves(setup.model, list(seas.values()), setup.times, setup.limit)))
+            found[run.number] = failure_reason(error)
+    every = dict(zip(seas, simulate_in_halves(setup.model, list(seas.values()), setup.times, setup.limit)))
     for run in runs:
         if (moved := every.get(run.number)) is not None:
             sea = seas[run.number]
             try:
-                found[run.number] = _kept(setup, run, sea, moved.position, elevation(sea, setup.times, moved.bound))
+                found[run.number] = _results(setup, run, sea, moved.position, elevation(sea, setup.times, moved.bound))
             except Exception as error:
-                found[run.number] = reason_of(error)
+                found[run.number] = failure_reason(error)
         elif run.number in seas:  # out of the box that its sea was made for, or without equilibrium
-            found[run.number] = outcome(setup, run)
+            found[run.number] = run_outcome(setup, run)
     return [found[run.number] for run in runs]
 
 
 def prepared_for(
     model: Model, sea: IrregularSea, times: Float[np.ndarray, " t"], limit: float
 ) -> tuple[SupportSea, float, int]:
-    """The sea for the model's hull, and the steps taken: size (s) and number, those of `simulate`."""
-    shared, step, steps = shared_by(model, sea, times, limit)
+    """Sea prepared for the model's hull, with size (s) and number of the steps, as in `simulate`."""
+    shared, step, steps = shared_preparation(model, sea, times, limit)
     return shared.of(sea.components), step, steps
 
 
-def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wave: np.ndarray) -> Kept:
+def _results(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wave: np.ndarray) -> RunResults:
     plan, times = setup.plan, setup.times
     if not (numbers := np.isfinite(position).all(axis=1)).all():
         raise ValueError(f"the motion grows beyond all bounds at {times[np.argmin(numbers)]:.4g} s: a smaller step, perhaps")
@@ -144,15 +171,22 @@ def _kept(setup: Setup, run: Run, sea: IrregularSea, position: np.ndarray, wave:
         model = setup.model.in_sea(state_of(sea.components))
         tension = np.asarray(_tensions(model, jnp.asarray(position)))
         channels |= {f"line{i + 1}": column for i, column in enumerate(tension.T)}
-    kept = kept_of(times, plan.start, channels, run.case.tp, plan.exponents, plan.equivalent_frequency)
+    kept = run_results(times, plan.start, channels, run.case.tp, plan.exponents, plan.equivalent_frequency)
     return kept if plan.time_series else kept._replace(series=None)
 
 
 def elevation(
     sea: IrregularSea, times: Float[np.ndarray, " t"], bound: Complex[np.ndarray, " b"] | None = None
 ) -> Float[np.ndarray, " t"]:
-    """`IrregularSea.gauge` at the origin (m) at even times (s) from 0 on, by one Fourier transform where they divide the
-    period; `bound` is its `elevation_spectrum` (m), where that is known."""
+    """Wave elevation at the origin (m) at even times from 0 on, (t,).
+
+    It is `IrregularSea.gauge`, by one Fourier transform where the times divide the period.
+
+    Args:
+        sea: The sea.
+        times: Times (s), (t,).
+        bound: Its `elevation_spectrum` (m), where known.
+    """
     waves, step = sea.components, float(times[1] - times[0])
     period, (first, last) = float(waves.period), waves.harmonics
     count = round(period / step)
@@ -178,14 +212,14 @@ def _line_count(model: Model) -> int:
 
 @eqx.filter_jit
 def _tensions(model: Model, position: Float[Array, "t 6"]) -> Float[Array, "t l"]:
-    """N: `MooringLines.tension` at every sample."""
+    """Tension of each mooring line (N) at every sample, (t, l)."""
     lines = _lines(model)
     assert lines is not None
     return jax.vmap(lambda q: lines.tension(q, rotation(q[3:]))[0])(position)
 
 
-def reason_of(error: Exception) -> str:
-    """Why a run failed, in one line."""
+def failure_reason(error: Exception) -> str:
+    """Reason why a run failed, in one line."""
     if isinstance(error, InputError):
         return "; ".join(f"expected {problem.expected}, found {problem.found}" for problem in error.problems)
     expected = isinstance(error, ValueError | EquilibriumError)

@@ -1,4 +1,4 @@
-"""What a sweep runs, in order: every case, a sea state with a heading, and every seed. Plain values, as kept on disk."""
+"""Cases and runs of a sweep, in order: sea states, headings and seeds as plain values."""
 
 import json
 import math
@@ -15,7 +15,15 @@ State: TypeAlias = tuple[float, float, float | None]
 
 
 class Case(NamedTuple):
-    """A sea state (m, s; gamma None: IEC's, or no JONSWAP), where it runs to (deg) and its share of the time."""
+    """Sea state and heading.
+
+    Attributes:
+        hs: Significant wave height (m).
+        tp: Peak period (s).
+        gamma: Peak enhancement (-); None: IEC's, or not a JONSWAP spectrum.
+        heading: Direction that the waves travel to (deg).
+        probability: Fraction of the time.
+    """
 
     hs: float
     tp: float
@@ -25,25 +33,33 @@ class Case(NamedTuple):
 
     @property
     def state(self) -> State:
-        """The sea state alone."""
+        """Height, period and gamma of the sea state."""
         return self[:3]
 
 
 def named(state: State) -> str:
-    """A sea state for people."""
+    """Sea state in words."""
     hs, tp, gamma = state
     return f"Hs {hs:g} m, Tp {tp:g} s" + ("" if gamma is None else f", gamma {gamma:g}")
 
 
-def runs_named(state: State, headings: Sequence[float], seeds: Sequence[int]) -> str:
-    """Runs of one sea state for people."""
+def runs_in_words(state: State, headings: Sequence[float], seeds: Sequence[int]) -> str:
+    """Runs of one sea state in words."""
     towards = f"heading {headings[0]:g} deg" if len(headings) == 1 else f"{len(headings)} headings"
     drawn = f"seed {seeds[0]}" if len(seeds) == 1 else f"{len(seeds)} seeds"
     return f"{named(state)}, {towards}, {drawn}"
 
 
 class Run(NamedTuple):
-    """One sea: its number in the sweep, those of its case and of its seed, the case and the seed."""
+    """One simulation of a sweep.
+
+    Attributes:
+        number: Number of the run in the sweep.
+        row: Number of its case.
+        column: Number of its seed.
+        case: Sea state and heading.
+        seed: Seed of the random numbers.
+    """
 
     number: int
     row: int
@@ -54,10 +70,11 @@ class Run(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """A sweep that can be run: run `number` is case number // seeds with seed number % seeds.
+    """Cases, seeds and options of a sweep.
 
-    The random seed of a run is its seed and nothing else, as in `jaxhydro simulate --seed`: so it does not depend on the order,
-    and one seed's phases are the same in all cases. Units are those of `Sweep`; `start` (s) is where statistics begin.
+    Run `number` has case number // seeds and seed number % seeds. The random seed of a run is its seed alone, as in
+    `jaxhydro simulate --seed`. So it does not depend on the order, and one seed's phases are the same in all cases. Units
+    are those of `Sweep`; statistics begin at `start` (s).
     """
 
     cases: tuple[Case, ...]
@@ -82,23 +99,23 @@ class Plan:
         return len(self.cases) * len(self.seeds)
 
     def run(self, number: int) -> Run:
-        """The run of a number."""
+        """Run of a number."""
         row, column = divmod(number, len(self.seeds))
         return Run(number, row, column, self.cases[row], self.seeds[column])
 
     def to_json(self) -> str:
-        """As text, from which the same plan is read."""
+        """JSON text of the plan."""
         return json.dumps(asdict(self), indent=1, allow_nan=False) + "\n"
 
     @classmethod
     def from_json(cls, text: str) -> "Plan":
-        """From what `to_json` wrote."""
+        """Plan from the text of `to_json`."""
         data = json.loads(text)
         lists = {name: tuple(value) for name, value in data.items() if isinstance(value, list)}
         return cls(**data | lists | {"cases": tuple(Case(*row) for row in data["cases"])})
 
     def differences(self, other: "Plan") -> Iterator[tuple[str, str, str]]:
-        """Keys of two plans that differ, with the values of both as text."""
+        """Keys in which two plans differ, with both values as text."""
         mine, others = asdict(self), asdict(other)
         for name, value in mine.items():
             if value != others[name]:
@@ -108,7 +125,7 @@ class Plan:
                 yield self._case_apart(other)
 
     def _case_apart(self, other: "Plan") -> tuple[str, str, str]:
-        """As `differences`, of cases: by the key that they come from, the heading or sea state that moved."""
+        """`differences` of cases: the heading or the sea state that changed."""
         by: dict[str, tuple[str, Callable[[Case], Any], Callable[[Any], str]]] = {
             "headings": ("headings", lambda case: case.heading, lambda heading: f"heading {heading:g} deg"),
             "scatter": ("sea states", lambda case: case.state, named),
@@ -132,7 +149,7 @@ class Plan:
 
 
 def _shares(cases: Sequence[Case], of: Callable[[Case], Any]) -> dict[Any, float]:
-    """Of the life, by what `of` gives of a case."""
+    """Fractions of the lifetime, summed by the value of `of` for each case."""
     found: dict[Any, float] = {}
     for case in cases:
         found[of(case)] = found.get(of(case), 0.0) + case.probability
@@ -144,12 +161,19 @@ def _short(value: Any) -> str:
 
 
 def plan_of(sweep: Sweep, source: str, pace: float = 1.0) -> tuple[Plan, list[str]]:
-    """The plan of a sweep whose files are read, for a platform of a `pace`, and what is to be known of how it was made.
+    """Plan of a sweep, for a platform of a `pace`, and notes on how it was made.
 
-    Where the sweep has no band, it is that of its sea states by `jaxhydro.waves.wave_bands`, by Hs^2 and share of the time.
+    Without a band in the sweep, it is that of the sea states by `jaxhydro.waves.wave_bands`, weighted by Hs² and
+    probability. Probabilities of sea states and of headings multiply and are divided by their sum. Those of a sea state that
+    is in the table more than once add up.
 
-    Shares of sea states and of headings multiply, and are divided by their sum; those of a sea state that is in the table more
-    than once add up. Raises InputError that names `source` where none is above 0.
+    Args:
+        sweep: Checked contents of a sweep file.
+        source: Name of the sweep in errors.
+        pace: Time scale (-) of the platform relative to VolturnUS-S.
+
+    Raises:
+        InputError: No probability is above 0, or the band is empty.
     """
     states: tuple[SeaState, ...] = sweep.scatter.states() if isinstance(sweep.scatter, Grid) else sweep.scatter  # type: ignore[assignment]
     notes: list[str] = []

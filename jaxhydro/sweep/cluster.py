@@ -1,42 +1,60 @@
-"""Runs of a sweep on a dask.distributed cluster, whose workers write to the store themselves."""
+"""Runs of a sweep on a dask.distributed cluster."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.sweep.worker import Found, fail_runs, simulate_runs
+from jaxhydro.sweep.worker import RunsDone, fail_runs, simulate_runs
 
 RETRIES = 3
-PATIENCE = 30.0  # s, for the scheduler to answer
+SCHEDULER_TIMEOUT = 30.0  # s, for the scheduler to answer
 
 
 def client_of(scheduler: str) -> Any:
-    """A client of the scheduler at an address. Raises InputError where dask is not there or nothing answers."""
+    """Client of a dask scheduler.
+
+    Args:
+        scheduler: Address of the scheduler.
+
+    Raises:
+        InputError: dask.distributed is not installed, or nothing answers.
+    """
     try:
         from distributed import Client
     except ImportError:
         problem = Problem("", "dask.distributed", "no such package", "pip install 'jaxhydro[distributed]'")
         raise InputError("--scheduler", [problem]) from None
     try:
-        return Client(scheduler, timeout=PATIENCE)
+        return Client(scheduler, timeout=SCHEDULER_TIMEOUT)
     except (OSError, ValueError) as error:
         said = " ".join(str(error).split())[:200] or type(error).__name__
         raise InputError("--scheduler", [Problem("", "a scheduler that answers", f"{scheduler!r} ({said})")]) from None
 
 
 def workers_of(scheduler: str) -> int:
-    """How many workers a scheduler has now. Raises InputError as `client_of`."""
+    """Number of workers that a scheduler has now.
+
+    Raises:
+        InputError: As `client_of`.
+    """
     with client_of(scheduler) as client:
         return len(client.nthreads())
 
 
-def simulated_there(folder: Path, batches: Sequence[Sequence[int]], scheduler: str) -> Iterator[Found]:
-    """Each batch's runs when they are in the store, in the order in which they come. Workers must see `folder` by the same
-    path.
+def simulate_on_cluster(folder: Path, batches: Sequence[Sequence[int]], scheduler: str) -> Iterator[RunsDone]:
+    """Simulate batches of runs on a cluster; yields each batch when it is in the store.
 
-    A worker that is lost costs the runs that it had in hand: they are done again elsewhere. Runs that end `RETRIES` workers are
-    failed. Raises InputError as `client_of`.
+    Workers write to the store themselves and must see `folder` by the same path. The runs of a lost worker are repeated
+    elsewhere. Runs that end `RETRIES` workers are marked as failed.
+
+    Args:
+        folder: Folder of the sweep.
+        batches: Numbers of the runs of each batch.
+        scheduler: Address of the scheduler.
+
+    Raises:
+        InputError: As `client_of`.
     """
     client = client_of(scheduler)
     from distributed import as_completed

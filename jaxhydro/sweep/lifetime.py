@@ -1,4 +1,4 @@
-"""Statistics over the life of a platform: runs weighed by the probability of their cases. Pure."""
+"""Lifetime statistics: statistics of runs weighted by the probability of their cases."""
 
 import math
 from typing import NamedTuple
@@ -10,11 +10,19 @@ Runs = Float[np.ndarray, "case seed"]
 
 
 class Lifetime(NamedTuple):
-    """Of one channel, in its unit. `spread` are standard deviations over seeds, NaN of one seed.
+    """Lifetime statistics of one channel, in its unit.
 
-    `mean`; `standard_deviation` about each run's own mean, root of the weighted mean of variances; `ranges` by exponent m,
-    (sum p R^m)^(1/m), those that do the same damage in the same time; `maximum` and `minimum` of all runs; `maximum_of_seed`
-    and `minimum_of_seed`, the same of every seed's runs, averaged over seeds.
+    Attributes:
+        mean: Weighted mean.
+        standard_deviation: Root of the weighted mean variance about each run's own mean.
+        standard_deviation_spread: Its standard deviation over seeds; NaN with one seed.
+        ranges: Damage-equivalent range (sum p R^m)^(1/m) for each exponent m, (m,).
+        maximum: Largest value of all runs.
+        maximum_of_seed: Largest value of a seed's runs, averaged over seeds.
+        maximum_spread: Its standard deviation over seeds; NaN with one seed.
+        minimum: Smallest value of all runs.
+        minimum_of_seed: Smallest value of a seed's runs, averaged over seeds.
+        minimum_spread: Its standard deviation over seeds; NaN with one seed.
     """
 
     mean: float
@@ -30,7 +38,12 @@ class Lifetime(NamedTuple):
 
 
 def weighted(probability: Float[np.ndarray, " case"], values: Runs) -> float:
-    """Mean over the seeds of each case that are not NaN, then over cases that have any, by probability."""
+    """Mean over seeds, then over cases by probability; NaN is left out.
+
+    Args:
+        probability: Probability of each case, (case,).
+        values: Values by case and seed, NaN where a run failed.
+    """
     there = np.isfinite(values)
     count = there.sum(axis=1)
     share = np.where(count > 0, probability, 0.0)
@@ -47,7 +60,19 @@ def lifetime(
     ranges: Float[np.ndarray, "case seed m"],
     exponents: Float[np.ndarray, " m"],
 ) -> Lifetime:
-    """From the runs' statistics, NaN where a run failed. The shares of cases without a run are left out."""
+    """Lifetime statistics from the statistics of the runs, NaN where a run failed.
+
+    Cases without a run are left out.
+
+    Args:
+        probability: Probability of each case, (case,).
+        mean: Means, (case, seed).
+        deviation: Standard deviations, (case, seed).
+        least: Minima, (case, seed).
+        most: Maxima, (case, seed).
+        ranges: Damage-equivalent ranges, (case, seed, m).
+        exponents: Slopes m of the S-N curves, (m,).
+    """
 
     def root(values: Runs, power: float) -> float:
         largest = np.nanmax(np.abs(values), initial=0.0)
@@ -79,7 +104,14 @@ def lifetime(
 def exceedance(
     probability: Float[np.ndarray, " case"], values: Float[np.ndarray, " case"]
 ) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, " case"]]:
-    """Values in ascending order, and the probability that a run of a random case has at least that value; NaN is left out."""
+    """Ascending values, and the probability that a run of a random case reaches each.
+
+    NaN is left out.
+
+    Args:
+        probability: Probability of each case, (case,).
+        values: Values, NaN where a run failed, (case,).
+    """
     there = np.isfinite(values)
     order = np.argsort(values[there])
     share = probability[there][order] / probability[there].sum()

@@ -1,4 +1,4 @@
-"""Runs of a sweep on the cores or GPUs of this machine: one process each, that is started anew where it is killed."""
+"""Runs of a sweep on the cores or GPUs of this machine, in processes that are restarted where killed."""
 
 import json
 import queue
@@ -10,13 +10,13 @@ import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from jaxhydro.sweep.worker import Found, environment, fail_runs
+from jaxhydro.sweep.worker import RunsDone, environment, fail_runs
 
 TRIES = 3  # processes that one batch may end, before its runs are given up
 
 
 class Worker:
-    """A process that simulates runs, and its pipes."""
+    """Process that simulates runs, with its pipes."""
 
     def __init__(self, folder: Path, device: str | None) -> None:
         self.folder, self.device, self.ended = folder, device, False
@@ -36,8 +36,8 @@ class Worker:
             start_new_session=True,
         )
 
-    def ask(self, numbers: Sequence[int]) -> Found:
-        """Have runs simulated and written; a killed process is replaced, and its runs are done again."""
+    def ask(self, numbers: Sequence[int]) -> RunsDone:
+        """Simulate and store runs; a killed process is replaced, and its runs are repeated."""
         said = ""
         for _ in range(TRIES):
             process = self.process
@@ -70,12 +70,21 @@ class Worker:
         self.process.wait()
 
 
-def simulated(folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = ()) -> Iterator[Found]:
-    """Each batch's runs when they are in the store, in the order in which they come. `devices` is the GPU of each worker."""
+def simulate_locally(
+    folder: Path, batches: Sequence[Sequence[int]], workers: int, devices: Sequence[str] = ()
+) -> Iterator[RunsDone]:
+    """Simulate batches of runs on this machine; yields each batch when it is in the store.
+
+    Args:
+        folder: Folder of the sweep.
+        batches: Numbers of the runs of each batch.
+        workers: Largest number of processes.
+        devices: GPU of each process; empty: CPU.
+    """
     left: queue.SimpleQueue[Sequence[int]] = queue.SimpleQueue()
     for batch in batches:
         left.put(batch)
-    answers: queue.SimpleQueue[Found | BaseException] = queue.SimpleQueue()
+    answers: queue.SimpleQueue[RunsDone | BaseException] = queue.SimpleQueue()
     every = [Worker(folder, devices[i] if devices else None) for i in range(min(workers, len(batches)))]
     stopped = threading.Event()
 

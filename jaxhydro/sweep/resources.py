@@ -1,4 +1,4 @@
-"""How many runs at a time: what the cores, the GPUs and the memory of this machine hold."""
+"""Number of runs at a time that the cores, GPUs and memory of this machine hold."""
 
 import math
 import os
@@ -15,18 +15,25 @@ from jaxhydro.sweep.at_once import power_of_two
 from jaxhydro.sweep.batch import Setup
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.irregular import fourier_length, harmonics, repeat_period
-from jaxhydro.waves.supports import MOST, Box, supports
+from jaxhydro.waves.supports import MAX_SUPPORTS, Box, supports
 
-COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
-PROCESS = 700e6  # bytes of a worker before its first sea
-SHARE = 0.6  # of what is available, that is used
-MOST_AT_ONCE = 512  # runs: that progress is seen
-PER_GPU = 4  # workers: while one makes statistics on its core, the others keep the GPU busy
+MEMORY_COPIES = 2.5  # of a sea's series, while it is made: 2.3 to 2.5 were seen
+PROCESS_BYTES = 700e6  # bytes of a worker before its first sea
+MEMORY_SHARE = 0.6  # of what is available, that is used
+MAX_RUNS_AT_ONCE = 512  # runs: that progress is seen
+WORKERS_PER_GPU = 4  # workers: while one makes statistics on its core, the others keep the GPU busy
 
 
-class Chosen(NamedTuple):
-    """Worker processes, runs that each takes at a time, the GPU of each as CUDA names it (none: the cores), bytes of a run, and
-    all that in words."""
+class Workload(NamedTuple):
+    """Processes and batches of a sweep.
+
+    Attributes:
+        workers: Number of processes.
+        batch: Runs that each takes at a time.
+        devices: GPU of each process, as CUDA names it; empty: CPU.
+        size: Memory of a run (bytes).
+        words: The choice in words.
+    """
 
     workers: int
     batch: int
@@ -36,9 +43,12 @@ class Chosen(NamedTuple):
 
 
 def supports_of(setup: Setup, source: str = "sweep") -> int:
-    """Support wavenumbers of the sweep's seas, of the heading that needs most: those that `IrregularSea.prepared` finds.
+    """Largest number of support wavenumbers that a heading of the sweep needs.
 
-    Raises InputError that names `source` where the waves are too short for the hull.
+    They are those of `IrregularSea.prepared`.
+
+    Raises:
+        InputError: The waves are too short for the hull; it names `source`.
     """
     plan, environment = setup.plan, setup.model.environment
     depth, gravity, period = float(environment.depth), float(environment.gravity), repeat_period(plan.duration)
@@ -51,7 +61,7 @@ def supports_of(setup: Setup, source: str = "sweep") -> int:
         try:
             most = max(most, supports(box, free, 2 * free if plan.order == 2 else 0.0).wavenumber.size)
         except ValueError:
-            highest = 2 * (MOST - 8) / box.half  # rad/m, that about so many supports do for
+            highest = 2 * (MAX_SUPPORTS - 8) / box.half  # rad/m, that about so many supports do for
             usual = math.sqrt(gravity * highest / plan.order) / (2 * math.pi)
             expected = f"about {usual:.2g} Hz or less at order {plan.order} for so large a hull"
             hint = "Shorter waves need too many support wavenumbers."
@@ -60,42 +70,51 @@ def supports_of(setup: Setup, source: str = "sweep") -> int:
 
 
 def bytes_of_run(setup: Setup) -> float:
-    """Of one run at its largest: its sea's series while they are made, and the spectra that they are made of."""
+    """Largest memory of one run (bytes): the sea's series while they are made, and their spectra."""
     plan, model = setup.plan, setup.model
     period, cylinders = repeat_period(plan.duration), model.cylinders
     steps = fourier_length(period / setup.limit) * plan.duration / period
     radii = 0 if cylinders is None else cylinders.radius.size * (2 if cylinders.ramp else 1)
     rows = 6 + 2 * radii + (0 if model.excitation is None else 6)
-    complex_numbers = COPIES * steps + 3 * plan.order * plan.cutoff * period
+    complex_numbers = MEMORY_COPIES * steps + 3 * plan.order * plan.cutoff * period
     return complex_numbers * rows * supports_of(setup) * 16 + len(setup.times) * 50 * 8
 
 
-def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Chosen:
-    """Workers and batch as given, else those that fit: on the CPU one run per core at a time (more at once are no faster); on
-    GPUs `PER_GPU` workers each and as many runs as its memory holds, a power of two, at most `MOST_AT_ONCE`."""
+def chosen(setup: Setup, runs: int, workers: int | None, batch: int | None) -> Workload:
+    """Number of processes and of runs at a time, as given or as fits the machine.
+
+    On the CPU each core takes one run at a time; more at once are no faster. Each GPU has `WORKERS_PER_GPU` processes.
+    It takes as many runs as its memory holds, a power of two, at most `MAX_RUNS_AT_ONCE`.
+
+    Args:
+        setup: The sweep.
+        runs: Number of runs to do.
+        workers: Number of processes; None: what fits.
+        batch: Runs at a time; None: what fits.
+    """
     size = bytes_of_run(setup)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     gpus = [device for device in jax.local_devices() if device.platform == "gpu"]
     if gpus:
         available = min(float((device.memory_stats() or {}).get("bytes_limit", 8e9)) for device in gpus)
-        count = workers or max(len(gpus), min(PER_GPU * len(gpus), cores))
+        count = workers or max(len(gpus), min(WORKERS_PER_GPU * len(gpus), cores))
         each = -(-count // len(gpus))  # workers of one GPU
         names = os.environ.get("CUDA_VISIBLE_DEVICES", "").split(",")
         names = names if len(names) == len(gpus) and all(names) else [str(i) for i in range(len(gpus))]
-        fits = max(1, min(MOST_AT_ONCE, int(SHARE * available / each / size)))
+        fits = max(1, min(MAX_RUNS_AT_ONCE, int(MEMORY_SHARE * available / each / size)))
         taken = min(1 << (fits.bit_length() - 1), power_of_two(-(-runs // count))) if batch is None else batch
         count = min(count, -(-runs // taken))
         words = (
             f"{count} process{'es' * (count > 1)} on {len(gpus)} GPU{'s' * (len(gpus) > 1)}, {taken} runs at once each: "
             f"{min(each, count) * taken * size / 1e9:.2g} of {available / 1e9:.0f} GB"
         )
-        return Chosen(count, taken, tuple(names[i % len(gpus)] for i in range(count)), size, words)
+        return Workload(count, taken, tuple(names[i % len(gpus)] for i in range(count)), size, words)
     available = float(psutil.virtual_memory().available)
     taken = 1 if batch is None else batch
-    fits = max(1, min(cores, int(SHARE * available / (size + PROCESS))))
+    fits = max(1, min(cores, int(MEMORY_SHARE * available / (size + PROCESS_BYTES))))
     count = max(1, min(fits if workers is None else workers, -(-runs // taken)))
     words = (
         f"{count} process{'es' * (count > 1)} on {cores} cores, {taken} run{'s' * (taken > 1)} at a time each: "
-        f"{count * (size + PROCESS) / 1e9:.2g} of {available / 1e9:.0f} GB"
+        f"{count * (size + PROCESS_BYTES) / 1e9:.2g} of {available / 1e9:.0f} GB"
     )
-    return Chosen(count, taken, (), size, words)
+    return Workload(count, taken, (), size, words)

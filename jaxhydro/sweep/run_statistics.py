@@ -1,4 +1,4 @@
-"""What is kept of every run: statistics, spectra, energy in bands, damage-equivalent ranges. Pure functions of records."""
+"""Results of one run: statistics, spectra, band energies and damage-equivalent ranges."""
 
 import math
 from collections.abc import Sequence
@@ -15,12 +15,19 @@ from jaxhydro.units import unit_of
 
 STATISTICS = Statistics._fields
 BANDS = ("low_frequency", "wave_frequency")
-HIGHEST = 0.5  # Hz, that spectra are kept to
+MAX_FREQUENCY = 0.5  # Hz, that spectra are kept to
 
 
-class Kept(NamedTuple):
-    """Of one run, by channel (m, deg, N): `STATISTICS`, density at `frequencies` (unit^2/Hz), integral over `BANDS` (unit^2;
-    NaN: there is no such band), damage-equivalent ranges by exponent (unit), and the whole record or None."""
+class RunResults(NamedTuple):
+    """Results of one run by channel (m, deg, N).
+
+    Attributes:
+        statistics: `STATISTICS` of each channel, (c, s).
+        density: Spectral density at `frequencies` (unit²/Hz), (c, f).
+        bands: Integral of the density over `BANDS` (unit²), (c, b); NaN for a band that a channel does not have.
+        ranges: Damage-equivalent ranges by exponent (unit), (c, m).
+        series: The whole record (unit), (c, t), or None.
+    """
 
     statistics: Float[np.ndarray, "c s"]
     density: Float[np.ndarray, "c f"]
@@ -30,30 +37,47 @@ class Kept(NamedTuple):
 
 
 def unit(channel: str) -> str:
-    """Of a channel: m, deg for rotations, N for mooring lines."""
+    """Unit of a channel: m, deg for rotations, N for mooring lines."""
     return "N" if channel.startswith("line") else unit_of(channel)
 
 
 def frequencies(time: Float[np.ndarray, " t"]) -> Float[np.ndarray, " f"]:
-    """Hz, up to `HIGHEST`: those of `power_spectrum` for records at these times (s)."""
+    """Frequencies (Hz) of `power_spectrum` for records at these times (s), up to `MAX_FREQUENCY`."""
     found = power_spectrum(time, np.zeros(len(time))).frequency
-    return found[found <= HIGHEST * (1 + 1e-9)]
+    return found[found <= MAX_FREQUENCY * (1 + 1e-9)]
 
 
 def bands_in(channel: str, peak_period: float) -> dict[str, tuple[float, float]]:
-    """Bands (Hz) of a channel in a sea of this peak period (s): those of `jaxhydro simulate`, none of mooring lines."""
+    """Frequency bands (Hz) of a channel, as in `jaxhydro simulate`; none for mooring lines.
+
+    Args:
+        channel: Name of the channel.
+        peak_period: Peak period of the sea (s).
+    """
     return bands_of(channel, peak_period) if channel in ("wave", *DOFS) else {}
 
 
-def kept_of(
+def run_results(
     time: Float[np.ndarray, " t"],
     start: float,
     channels: dict[str, Float[np.ndarray, " t"]],
     peak_period: float,
     exponents: Sequence[float],
     equivalent_frequency: float,
-) -> Kept:
-    """Of records (m, deg, N) at even times (s) from `start` (s) on. Raises ValueError for records with gaps."""
+) -> RunResults:
+    """Results of a run from its records.
+
+    Args:
+        time: Sample times (s), (t,), even.
+        start: Time (s) from which statistics are taken.
+        channels: Records (m, deg, N) by channel, (t,).
+        peak_period: Peak period of the sea (s).
+        exponents: Slopes m of the S-N curves.
+        equivalent_frequency: Frequency (Hz) of the damage-equivalent ranges.
+
+    Raises:
+        ValueError: A record has gaps.
+    """
     inside = time >= start
     when = time[inside]
     size, found = len(frequencies(when)), []
@@ -65,14 +89,21 @@ def kept_of(
         damage = equivalent_ranges(values, exponents, equivalent_frequency * (when[-1] - when[0]))
         found.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))
     of_statistics, density, areas, ranges = (np.stack(column) for column in zip(*found))
-    return Kept(of_statistics, density, areas, ranges, np.stack(list(channels.values())))
+    return RunResults(of_statistics, density, areas, ranges, np.stack(list(channels.values())))
 
 
 def equivalent_ranges(values: Float[np.ndarray, " t"], exponents: Sequence[float], cycles: float) -> Float[np.ndarray, " m"]:
-    """(sum n r^m / N)^(1/m): the range (unit of the record) of N even `cycles` that do the damage of the record's own n of
-    range r.
+    """Damage-equivalent ranges (sum n r^m / N)^(1/m) of a record (unit), (m,).
 
-    Miner's (1945) sum with an S-N curve of slope m, its cycles by rainflow (ASTM E1049-85, 5.4.4), halves counted as halves.
+    They are the ranges of N even cycles that do the same damage as the record's own n cycles of range r.
+
+    Args:
+        values: Record (unit), (t,).
+        exponents: Slopes m of the S-N curves.
+        cycles: Number N of even cycles.
+
+    References:
+        Miner (1945), sum of damage; ASTM E1049-85, 5.4.4, rainflow counting, halves counted as halves.
     """
     pairs = np.array([(cycle[0], cycle[2]) for cycle in rainflow.extract_cycles(values.tolist())]).reshape(-1, 2)
     largest = pairs[:, 0].max(initial=0.0)

@@ -1,4 +1,4 @@
-"""A sweep from its file to its results: made or resumed, run by run, with what failed recorded."""
+"""Run or resume a sweep, from its file to its results."""
 
 import json
 import time as clock
@@ -22,19 +22,41 @@ from jaxhydro.platform.schema import builtin_platforms, load_platform
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of
 from jaxhydro.sweep.cases import named, plan_of
-from jaxhydro.sweep.local import simulated
-from jaxhydro.sweep.resources import Chosen, chosen, supports_of
-from jaxhydro.sweep.store import DONE, FAILED, RESULTS, TO_DO, Inputs, Store, alone, check_same, create, discard, open_results
+from jaxhydro.sweep.local import simulate_locally
+from jaxhydro.sweep.resources import Workload, chosen, supports_of
+from jaxhydro.sweep.store import (
+    DONE,
+    FAILED,
+    RESULTS,
+    TO_DO,
+    Inputs,
+    Store,
+    check_same,
+    create,
+    discard,
+    locked_folder,
+    open_results,
+)
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.sweep_remarks import impossible, notes, outside, shares_in_band
 from jaxhydro.sweep.sweep_schema import Sweep
-from jaxhydro.sweep.worker import Found
+from jaxhydro.sweep.worker import RunsDone
 from jaxhydro.sweep.write_sweep import summary_of, write_outputs
 
 
-class Prepared(NamedTuple):
-    """A sweep that can be stored and run: its file, the platform and the calibration as they were asked for, the share of every
-    case's spectrum in the band, what is to be known of the sweep (`notes`) and of its tables (`remarks`)."""
+class PreparedSweep(NamedTuple):
+    """Sweep that can be stored and run.
+
+    Attributes:
+        inputs: Plan, platform file and calibration file as text.
+        setup: Model and options that all runs share.
+        source: Name of the sweep file.
+        platform: The platform as asked for.
+        calibration: The calibration as asked for, or None.
+        shares: Fraction of each case's spectrum within the band, (case,).
+        notes: Notes on the sweep.
+        remarks: Remarks on the tables of the platform.
+    """
 
     inputs: Inputs
     setup: Setup
@@ -47,7 +69,7 @@ class Prepared(NamedTuple):
 
     @property
     def about(self) -> dict[str, Any]:
-        """What sweep.json says first."""
+        """First entries of sweep.json."""
         about: dict[str, Any] = {"sweep": self.source, "platform": Path(self.platform).stem}
         notes = [one.text for one in sorted(self.remarks, key=lambda one: not one.warning)] + self.notes
         if (used := self.setup.calibrated) is None:
@@ -59,7 +81,14 @@ class Prepared(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """Runs done, failed, and to be done in all; simulated seconds per second of this session."""
+    """Progress of a sweep.
+
+    Attributes:
+        done: Number of runs done.
+        failed: Number of runs that failed.
+        total: Number of runs in all.
+        speed: Simulated seconds per second of this session.
+    """
 
     done: int
     failed: int
@@ -67,8 +96,15 @@ class Progress(NamedTuple):
     speed: float
 
 
-class Ran(NamedTuple):
-    """What a session did: runs simulated, of them failed, seconds it took, seconds simulated."""
+class SessionResult(NamedTuple):
+    """Result of a session.
+
+    Attributes:
+        runs: Number of runs simulated.
+        failed: Number of these that failed.
+        seconds: Duration of the session (s).
+        simulated: Simulated time (s).
+    """
 
     runs: int
     failed: int
@@ -76,11 +112,18 @@ class Ran(NamedTuple):
     simulated: float
 
 
-def prepared(sweep: Sweep, source: str) -> Prepared:
-    """Read what the sweep names, and build the model: all mistakes but those of single seas show here. `source` names it in
-    errors.
+def prepared(sweep: Sweep, source: str) -> PreparedSweep:
+    """Read the files that a sweep names, and build its model.
 
-    Raises InputError, EquilibriumError.
+    All mistakes except those of single seas show here.
+
+    Args:
+        sweep: Checked contents of a sweep file.
+        source: Name of the sweep in errors.
+
+    Raises:
+        InputError: A file has mistakes, or no sea state is possible.
+        EquilibriumError: The platform has no stable equilibrium.
     """
     try:
         pace = pace_of_platform(sweep.platform)
@@ -106,13 +149,19 @@ def prepared(sweep: Sweep, source: str) -> Prepared:
     remarks = (*setup.model.remarks, *outside(plan, setup.model, failing))
     text = None if calibration is None else calibration.read_text(encoding="utf-8-sig")
     inputs = Inputs(plan, _platform_text(sweep.platform), text)
-    return Prepared(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)
+    return PreparedSweep(inputs, setup, source, sweep.platform, sweep.calibration, shares, known, remarks)
 
 
-def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
-    """Make the folder's store where there is none, or anew; whether there are runs of it already.
+def opened(folder: Path, made: PreparedSweep, restart: bool = False) -> bool:
+    """Make the folder's store where there is none; whether runs of this sweep are already there.
 
-    Raises InputError for a store of other inputs.
+    Args:
+        folder: Folder of the sweep.
+        made: The sweep.
+        restart: Discard the runs that are there.
+
+    Raises:
+        InputError: The store belongs to other inputs.
     """
     if restart:
         discard(folder)
@@ -124,20 +173,34 @@ def opened(folder: Path, made: Prepared, restart: bool = False) -> bool:
 
 
 def to_do(folder: Path, retry_failed: bool = False) -> list[int]:
-    """Numbers of the runs to be done, in order."""
+    """Numbers of the runs still to do, in order.
+
+    Args:
+        folder: Folder of the sweep.
+        retry_failed: Include runs that failed.
+    """
     wanted = (TO_DO, FAILED) if retry_failed else (TO_DO,)
     return [number for number, status in enumerate(Store(folder).status()) if status in wanted]
 
 
 def run_all(
     folder: Path,
-    made: Prepared,
+    made: PreparedSweep,
     numbers: list[int],
-    how: Chosen,
+    how: Workload,
     scheduler: str | None = None,
     progress: Callable[[Progress], None] = lambda now: None,
-) -> Ran:
-    """Simulate runs, each written as it is done."""
+) -> SessionResult:
+    """Simulate runs; each is written to the store when it is done.
+
+    Args:
+        folder: Folder of the sweep.
+        made: The sweep.
+        numbers: Numbers of the runs.
+        how: Processes and batches.
+        scheduler: Address of a dask scheduler; None: this machine.
+        progress: Called after each batch.
+    """
     if how.devices:  # what is simulated at once has one heading
         numbers = sorted(numbers, key=lambda number: made.inputs.plan.run(number).case.heading)
     batches = [numbers[i : i + how.batch] for i in range(0, len(numbers), how.batch)]
@@ -150,15 +213,15 @@ def run_all(
         failed += sum(not good for _, good in found)
         speed = (done + failed) * made.inputs.plan.duration / (clock.perf_counter() - since)
         progress(Progress(earlier + done, failed, total, speed))
-    return Ran(done + failed, failed, clock.perf_counter() - since, (done + failed) * made.inputs.plan.duration)
+    return SessionResult(done + failed, failed, clock.perf_counter() - since, (done + failed) * made.inputs.plan.duration)
 
 
-def _answers(folder: Path, batches: list[list[int]], how: Chosen, scheduler: str | None) -> Iterator[Found]:
+def _answers(folder: Path, batches: list[list[int]], how: Workload, scheduler: str | None) -> Iterator[RunsDone]:
     if scheduler is None:
-        return simulated(folder, batches, how.workers, how.devices)
-    from jaxhydro.sweep.cluster import simulated_there
+        return simulate_locally(folder, batches, how.workers, how.devices)
+    from jaxhydro.sweep.cluster import simulate_on_cluster
 
-    return simulated_there(folder, batches, scheduler)
+    return simulate_on_cluster(folder, batches, scheduler)
 
 
 def run_sweep(
@@ -172,17 +235,32 @@ def run_sweep(
     scheduler: str | None = None,
     progress: Callable[[Progress], None] = lambda now: None,
 ) -> xr.Dataset:
-    """Run a sweep, or what is left of it, and open its results, in the folder `out`, with all files of the command: see
-    docs/guide/sweeps.md.
+    """Run a sweep, or what is left of it, and open its results.
 
-    `workers` processes take `batch` runs at a time (None: what fits); on the CPU results do not depend on either. `restart`
-    forgets the runs that are there, `retry_failed` does those that failed again; `scheduler` is the address of a
-    dask.distributed one. Raises InputError for a sweep that cannot be, or a folder with runs of another one; EquilibriumError.
+    The folder gets all files of the command: see docs/guide/sweeps.md. On the CPU results do not depend on `workers` or
+    `batch`.
+
+    Args:
+        sweep: Sweep, or path of a sweep file.
+        out: Folder of the results.
+        workers: Number of processes; None: what fits.
+        batch: Runs at a time per process; None: what fits.
+        restart: Discard the runs that are there.
+        retry_failed: Repeat the runs that failed.
+        scheduler: Address of a dask.distributed scheduler; None: this machine.
+        progress: Called with the progress after each batch.
+
+    Returns:
+        The results, loaded from disk where used.
+
+    Raises:
+        InputError: The sweep has mistakes, or the folder has runs of another sweep.
+        EquilibriumError: The platform has no stable equilibrium.
     """
     source = "sweep" if isinstance(sweep, Sweep) else str(sweep)
     made = prepared(sweep if isinstance(sweep, Sweep) else load_sweep(source), source)
     folder = check_folder(out, "out")
-    with alone(folder):
+    with locked_folder(folder):
         opened(folder, made, restart)
         if numbers := to_do(folder, retry_failed):
             run_all(folder, made, numbers, chosen(made.setup, len(numbers), workers, batch), scheduler, progress)

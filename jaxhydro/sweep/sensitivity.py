@@ -1,4 +1,4 @@
-"""How a lifetime statistic changes with coefficients: exact derivatives through the same simulations."""
+"""Exact derivatives of a lifetime statistic with respect to coefficients."""
 
 import math
 from collections.abc import Sequence
@@ -24,8 +24,14 @@ from jaxhydro.waves.support_sea import SupportSea
 
 
 class Sensitivity(NamedTuple):
-    """Lifetime standard deviation of a motion (m, rad), and its derivative to each coefficient by label (per its unit); the
-    same of every run (case, seed)."""
+    """Lifetime standard deviation of a motion and its derivatives.
+
+    Attributes:
+        value: Lifetime standard deviation (m or rad).
+        gradient: Derivative with respect to each coefficient, by label, per the coefficient's unit.
+        deviation: Standard deviation of each run (m or rad), (case, seed).
+        gradients: Derivatives of `deviation` by label, (case, seed).
+    """
 
     value: float
     gradient: dict[str, float]
@@ -34,14 +40,28 @@ class Sensitivity(NamedTuple):
 
 
 def lifetime_sensitivity(sweep: Sweep, labels: Sequence[str], dof: str = "surge") -> Sensitivity:
-    """d/dc of sqrt(sum p s^2), s the standard deviation of a motion about its mean in each run, by forward mode.
+    """Derivatives of the lifetime standard deviation sqrt(sum p s²) with respect to coefficients.
 
-    The seas, their probabilities, steps and transient are those of the sweep; coefficients that follow a law of the sea state
-    move with their value at the reference. The static equilibrium is held: right for whatever does not move it, drag and
-    damping and added mass; not for stiffness. Runs are done one after the other in this process: for some tens of them.
+    s is the standard deviation of the motion about its mean in each run. Derivatives are by forward mode. The seas, their
+    probabilities, steps and transient are those of the sweep. A coefficient with a sea-state law moves with its value at the
+    reference sea state.
 
-    Raises KeyError for an unknown label or motion, InputError, EquilibriumError, ValueError for a sea that cannot be or a
-    platform that leaves the box that its sea was prepared for.
+    The static equilibrium is held. That is right for drag, damping and added mass, not for stiffness. Runs are done one
+    after the other in this process, so it is for some tens of them.
+
+    Args:
+        sweep: The sweep.
+        labels: Labels of the coefficients.
+        dof: Degree of freedom.
+
+    Returns:
+        Value and derivatives.
+
+    Raises:
+        UnknownName: An unknown label or degree of freedom (a KeyError).
+        InputError: The sweep has mistakes, or a sea is impossible.
+        EquilibriumError: The platform has no static equilibrium.
+        ValueError: The platform leaves the box that its sea was prepared for.
     """
     plan, _ = plan_of(sweep, "sweep", pace_of_platform(sweep.platform))
     setup = setup_of(plan, sweep.platform, None if sweep.calibration is None else Path(sweep.calibration))
@@ -96,7 +116,7 @@ def _with_slope(
     labels: tuple[str, ...],
     column: int,
 ) -> tuple[Float[Array, ""], Float[Array, " l"], Float[Array, ""]]:
-    """Standard deviation of a motion over the times kept, its derivatives, and how far the reference point comes (m)."""
+    """Standard deviation of a motion, its derivatives, and the largest distance (m) from the box's middle."""
 
     def deviation(values: Float[Array, " l"]):
         here = model.with_values(dict(zip(labels, values))).in_sea(state)

@@ -1,7 +1,8 @@
-"""The store of a sweep: results.zarr (zarr v3, for `xarray.open_zarr`) and the inputs it was made of. Whole from the beginning.
+"""Store of a sweep: results.zarr and the inputs it was made of.
 
-One chunk of every variable per run: writers never share one. A run's numbers are written first and its status last, each chunk
-by renaming a finished file, so that a process killed at any moment leaves a run that is done or one to be done again.
+The store (zarr v3, for `xarray.open_zarr`) is whole from the beginning. Every variable has one chunk per run, so writers
+never share one. A run's numbers are written first and its status last, each chunk by renaming a finished file. A process
+killed at any moment leaves a run that is done or one to be repeated.
 """
 
 import json
@@ -24,12 +25,12 @@ from jaxhydro.files import staged
 from jaxhydro.fingerprint import computed_with, content_hash, fingerprint
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, Kept, bands_in, frequencies, unit
+from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, RunResults, bands_in, frequencies, unit
 
 RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2
-SHORT = 16  # characters of a fingerprint in files
-KEPT = {  # variable: its dimensions after case and seed, and what it is
+FINGERPRINT_LENGTH = 16  # characters of a fingerprint in files
+RESULT_VARIABLES = {  # variable: its dimensions after case and seed, and what it is
     "statistics": (("channel", "statistic"), "in units of the channel; skewness and kurtosis 1, zero_crossing_period s"),
     "density": (("channel", "frequency"), "one-sided power spectral density, unit of the channel squared per Hz"),
     "bands": (("channel", "band"), "integral of the density over the band, unit of the channel squared"),
@@ -39,7 +40,13 @@ KEPT = {  # variable: its dimensions after case and seed, and what it is
 
 
 class Inputs(NamedTuple):
-    """What a store is made of: the plan, the platform's file and the calibration's (None: none), as text."""
+    """Inputs of a store, as text.
+
+    Attributes:
+        plan: Cases, seeds and options.
+        platform: Platform file.
+        calibration: Calibration file, or None.
+    """
 
     plan: Plan
     platform: str
@@ -47,15 +54,18 @@ class Inputs(NamedTuple):
 
     @property
     def fingerprint(self) -> str:
-        """One hash of it all, and of what computes it."""
-        return fingerprint(self.plan.to_json(), self.platform, self.calibration)[:SHORT]
+        """Hash of the inputs and of the program that computes them."""
+        return fingerprint(self.plan.to_json(), self.platform, self.calibration)[:FINGERPRINT_LENGTH]
 
 
 @contextmanager
-def alone(folder: Path) -> Iterator[None]:
-    """The folder, made where absent, is written by nobody else meanwhile. Raises InputError where another sweep does.
+def locked_folder(folder: Path) -> Iterator[None]:
+    """Lock the folder, made where absent, against other sweeps.
 
     Where the file system has no locks nothing is checked.
+
+    Raises:
+        InputError: Another sweep writes to the folder.
     """
     folder.mkdir(parents=True, exist_ok=True)
     lock = FileLock(folder / LOCK, fallback_to_soft=False)  # a soft lock outlives a killed process
@@ -73,9 +83,16 @@ def alone(folder: Path) -> Iterator[None]:
 
 
 def create(folder: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, " c"]) -> None:
-    """Make the folder's inputs and its store, with all runs to be done; `shares` of every case's spectrum are in its seas.
+    """Write the folder's inputs and its store, with all runs to do.
 
-    Raises InputError where they cannot be written.
+    Args:
+        folder: Folder of the sweep.
+        inputs: Plan, platform file and calibration file.
+        setup: Model and options that all runs share.
+        shares: Fraction of each case's spectrum within the band, (case,).
+
+    Raises:
+        InputError: They cannot be written.
     """
     discard(folder)
     with staged(folder) as temporary:
@@ -90,7 +107,7 @@ def create(folder: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray,
 
 
 def discard(folder: Path) -> None:
-    """Take away a store, its inputs and what was made of it."""
+    """Remove a store, its inputs and its outputs."""
     shutil.rmtree(folder / UNFINISHED, ignore_errors=True)
     if (folder / RESULTS).is_dir():
         (folder / RESULTS).rename(folder / UNFINISHED)  # at once no store any more
@@ -101,7 +118,7 @@ def discard(folder: Path) -> None:
 
 
 def check_same(folder: Path, inputs: Inputs) -> None:
-    """Raises InputError where the folder's store was made of something else."""
+    """Raise InputError where the folder's store was made of other inputs or by another program."""
     there = folder / INPUTS
     problems = []
     try:
@@ -112,12 +129,12 @@ def check_same(folder: Path, inputs: Inputs) -> None:
         )
     except (OSError, ValueError, TypeError, KeyError) as error:
         found = f"{str(there)!r}, which cannot be read ({error})"
-        raise InputError("--out", [Problem("", "a folder with a sweep's inputs", found, WAYS)]) from None
+        raise InputError("--out", [Problem("", "a folder with a sweep's inputs", found, RESTART_HINT)]) from None
     for key, before, now in old.plan.differences(inputs.plan):
-        problems.append(Problem(key, f"{before}, as in the runs that are there", now, WAYS))
+        problems.append(Problem(key, f"{before}, as in the runs that are there", now, RESTART_HINT))
     for name, what in (("platform", "platform file"), ("calibration", "calibration")):
         if getattr(old, name) != getattr(inputs, name):
-            problems.append(Problem(name, f"the {what} of the runs that are there", "another", WAYS))
+            problems.append(Problem(name, f"the {what} of the runs that are there", "another", RESTART_HINT))
     try:
         group = zarr.open_group(folder / RESULTS, mode="r", zarr_format=3, use_consolidated=False)
         made_by: Any = group.attrs.get("computed_with")
@@ -128,27 +145,27 @@ def check_same(folder: Path, inputs: Inputs) -> None:
         if earlier != now:
             told = "another" if name == "source code" else now
             were = "that" if name == "source code" else f"{earlier or 'that'},"
-            problems.append(Problem(name, f"{were} which made the runs that are there", told, WAYS))
+            problems.append(Problem(name, f"{were} which made the runs that are there", told, RESTART_HINT))
     if problems:
         raise InputError(f"--out {folder}", problems[:1])
 
 
-WAYS = "Another --out keeps both; --restart begins anew."
+RESTART_HINT = "Another --out keeps both; --restart begins anew."
 
 
 class Store:
-    """An open store, to write runs to."""
+    """Open store, to write runs to."""
 
     def __init__(self, folder: Path) -> None:
         self.group = zarr.open_group(folder / RESULTS, mode="r+", zarr_format=3, use_consolidated=False)
         self.arrays: dict[str, Any] = {name: array for name, array in self.group.arrays()}
 
     def status(self) -> np.ndarray:
-        """Of every run by number: TO_DO, DONE or FAILED."""
+        """Status of every run by number: TO_DO, DONE or FAILED."""
         return np.asarray(self.arrays["status"][:]).reshape(-1)
 
-    def write(self, run: Run, found: Kept | str) -> bool:
-        """Write what a run gave, or why it failed; whether it is done."""
+    def write(self, run: Run, found: RunResults | str) -> bool:
+        """Write the results of a run, or the reason why it failed; whether it is done."""
         at = (run.row, run.column)
         if isinstance(found, str):
             self.arrays["reason"][at] = found
@@ -156,7 +173,7 @@ class Store:
             return False
         if self.arrays["status"][at] == FAILED:
             self.arrays["reason"][at] = ""
-        for name in KEPT:
+        for name in RESULT_VARIABLES:
             values = getattr(found, name)
             if values is not None:
                 self.arrays[name][at] = values
@@ -165,7 +182,7 @@ class Store:
 
 
 def open_results(folder: Path) -> xr.Dataset:
-    """The results of a sweep; variables are loaded from disk where they are used."""
+    """Results of a sweep; variables are loaded from disk where used."""
     data = xr.open_zarr(folder / RESULTS, chunks=None, zarr_format=3)
     return data.assign_coords({name: coordinate.load() for name, coordinate in data.coords.items()})
 
@@ -216,7 +233,7 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, 
                 dimension_names=("case", "seed"),
                 attributes=about,
             )
-        for name, (dims, text) in KEPT.items():
+        for name, (dims, text) in RESULT_VARIABLES.items():
             if name == "series" and not plan.time_series:
                 continue
             shape = tuple(len(sizes[dim]) for dim in dims)
@@ -258,8 +275,10 @@ def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
         | {
             "source": f"jaxhydro {jaxhydro.__version__}",
             "fingerprint": inputs.fingerprint,
-            "fingerprint_platform": content_hash(inputs.platform)[:SHORT],
-            "fingerprint_calibration": content_hash(inputs.calibration)[:SHORT] if inputs.calibration is not None else "",
+            "fingerprint_platform": content_hash(inputs.platform)[:FINGERPRINT_LENGTH],
+            "fingerprint_calibration": content_hash(inputs.calibration)[:FINGERPRINT_LENGTH]
+            if inputs.calibration is not None
+            else "",
             "computed_with": computed_with(),
             "units": "m, s, Hz, deg, N",
             "coordinates": coordinates,

@@ -1,4 +1,4 @@
-"""The figures of a sweep: the scatter diagram, and how often maxima are exceeded."""
+"""Figures of a sweep: scatter diagram and exceedance of extremes."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, stack
 from jaxhydro.sweep.lifetime import Runs, exceedance
 
-WRITTEN = 16  # sea states, up to which their probability is written into the diagram
+MAX_LABELLED_STATES = 16  # sea states, up to which their probability is written into the diagram
 COLOURS = "viridis"
 Figure = Any
 
@@ -23,10 +23,18 @@ def scatter_figure(
     label: str,
     title: str,
 ) -> Figure:
-    """Sea states over Tp (s) and Hs (m), as large as they are probable and coloured by a standard deviation; hollow: none is
-    known.
+    """Scatter diagram of sea states, with area by probability and colour by a standard deviation.
 
-    Cases of one sea state are one mark: its probability is their sum, its deviation the root of their weighted mean square.
+    A hollow mark has no result. Cases of one sea state share a mark: probabilities add up, and the deviation is the root of
+    their weighted mean square.
+
+    Args:
+        hs: Significant wave heights (m), (case,).
+        tp: Peak periods (s), (case,).
+        probability: Probabilities, (case,).
+        deviation: Standard deviations, NaN where unknown, (case,).
+        label: Label of the colours.
+        title: Title of the figure.
     """
     states, of = np.unique(np.stack([hs, tp], axis=1), axis=0, return_inverse=True)
     of = of.reshape(-1)
@@ -54,7 +62,7 @@ def scatter_figure(
     if not solid.all():
         at = states[~solid]
         ax.scatter(at[:, 1], at[:, 0], s=size[~solid], fc="none", ec=SIMULATED, lw=0.9, zorder=3, clip_on=False)
-    if len(states) <= WRITTEN:
+    if len(states) <= MAX_LABELLED_STATES:
         for (height, period), one, area in zip(states, share, size):
             said = "100" if one > 0.995 else f"{100 * one:.2g}"
             ax.annotate(
@@ -86,10 +94,17 @@ def exceedance_figure(
     duration: float,
     title: str,
 ) -> Figure:
-    """Probability that a run of a random case, `duration` (s) long, goes beyond: below a minimum, to the left, or above a
-    maximum, to the right. One line per seed, and all of them.
+    """Probability that a run of a random case goes beyond a value.
 
-    `names` are those of the panels, with units; `minima` and `maxima` are NaN where a run failed.
+    Minima are to the left, maxima to the right. There is one line per seed and one for all seeds.
+
+    Args:
+        names: Panels, with units.
+        minima: Minima of each panel's channel, NaN where a run failed, (case, seed).
+        maxima: Maxima, likewise.
+        probability: Probabilities, (case,).
+        duration: Duration of a run (s).
+        title: Title of the figure.
     """
     figure, axes = stack([1.15] * len(names), shared=False)
     artists: dict[str, Any] = {}
@@ -123,5 +138,5 @@ def exceedance_figure(
 
 
 def _begun(x: Float[np.ndarray, " n"]) -> Float[np.ndarray, " m"]:
-    """Values of `exceedance` from where it is 1."""
+    """Values of `exceedance` with the first repeated, where the probability is 1."""
     return np.concatenate([x[:1], x])

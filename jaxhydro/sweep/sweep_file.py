@@ -1,4 +1,4 @@
-"""A sweep read from its files: the YAML, and a scatter table in a CSV file, one sea state in a row."""
+"""Sweep file (YAML) and scatter table (CSV, one sea state per row)."""
 
 import codecs
 import csv
@@ -16,9 +16,16 @@ LIMITS = {"hs": (0.0, "a number > 0"), "tp": (0.0, "a number > 0"), "probability
 
 
 def load_sweep(path: str | Path) -> Sweep:
-    """The sweep in a YAML file, its paths and its scatter table resolved: those in it are relative to the file.
+    """Checked contents of a sweep file, with its scatter table read.
 
-    Raises InputError with all that is wrong in it, or with the first row of a scatter table that is.
+    Args:
+        path: YAML file; paths in it are relative to it.
+
+    Returns:
+        The sweep.
+
+    Raises:
+        InputError: The file has mistakes, all of which are listed, or its scatter table has.
     """
     path = Path(path)
     sweep = validate(Sweep, read_yaml(path, "sweep"), str(path))
@@ -35,9 +42,14 @@ def load_sweep(path: str | Path) -> Sweep:
 
 
 def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
-    """Sea states in the order of the rows. `asked` names the key that names the file.
+    """Sea states of a scatter table, in the order of its rows.
 
-    Raises InputError for a file that is not there, columns that are not known or lacking, and rows with what is no number.
+    Args:
+        path: CSV file.
+        asked: Key that names the file, for errors.
+
+    Raises:
+        InputError: The file is missing, a column is unknown or missing, or a cell is not a number.
     """
     try:
         content = path.read_bytes()
@@ -102,7 +114,7 @@ def read_scatter(path: Path, asked: str) -> tuple[SeaState, ...]:
 
 
 def _column(head: str) -> str:
-    """A header without its case and its unit, `Hs (m)` or `Tp [s]`, where that is the right one."""
+    """Header without its case and its unit, `Hs (m)` or `Tp [s]`, where that is the right unit."""
     name, unit = re.fullmatch(r"(.*?)\s*(?:[(\[](.*?)[)\]])?", head.lower(), re.DOTALL).groups()  # type: ignore[union-attr]
     return name if unit is None or unit.strip() == UNITS.get(name, unit.strip()) else head.lower()
 

@@ -1,4 +1,4 @@
-"""What is to be known of a sweep before it runs: what `jaxhydro simulate` notes of one sea, of all of them."""
+"""Notes on a sweep before it runs: as `jaxhydro simulate` notes on one sea, for all of them."""
 
 from collections.abc import Iterator
 
@@ -7,33 +7,36 @@ import numpy as np
 from jaxtyping import Float
 
 from jaxhydro.dynamics.model import Model
-from jaxhydro.dynamics.requested_sea import CUT, usual_cutoff
+from jaxhydro.dynamics.requested_sea import NOTED_SHARE, usual_cutoff
 from jaxhydro.dynamics.table_ranges import TableRange, table_ranges
 from jaxhydro.interrupts import stop_if_asked
 from jaxhydro.remarks import Remark
-from jaxhydro.sweep.batch import Setup, reason_of, sea_of
+from jaxhydro.sweep.batch import Setup, failure_reason, sea_of
 from jaxhydro.sweep.cases import Plan, Run, State, named
 from jaxhydro.waves.irregular import harmonics, repeat_period
 from jaxhydro.waves.spectra import jonswap, peak_enhancement, pierson_moskowitz
 
-AT_ONCE = 256  # sea states whose spectra are in memory
+STATES_IN_MEMORY = 256  # sea states whose spectra are in memory
 
 
 def shares_in_band(plan: Plan) -> Float[np.ndarray, " c"]:
-    """Of every case: share of its spectrum's variance, Hs^2/16, from `low` to `cutoff`, on the frequencies of its seas."""
+    """Fraction of each case's spectrum within the band, (case,).
+
+    It is the variance from `low` to `cutoff`, on the frequencies of the seas, over Hs²/16.
+    """
     step = 2 * np.pi / repeat_period(plan.duration)
     found = {state: float(density.sum()) * step / (state[0] ** 2 / 16) for state, _, density in _spectra(plan)}
     return np.array([found[case.state] for case in plan.cases])
 
 
 def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float[np.ndarray, " w"]]]:
-    """Every sea state, the frequencies (rad/s) of its seeds in the band and its spectrum there (m2 s/rad)."""
+    """Sea states, their frequencies (rad/s) in the band, and their spectra there (m² s/rad)."""
     period = repeat_period(plan.duration)
     first, last = harmonics(plan.low, plan.cutoff, period)
     omega = jnp.asarray(2 * np.pi / period * np.arange(first, last + 1))
     states = list(dict.fromkeys(case.state for case in plan.cases))
-    for i in range(0, len(states), AT_ONCE):
-        some = states[i : i + AT_ONCE]
+    for i in range(0, len(states), STATES_IN_MEMORY):
+        some = states[i : i + STATES_IN_MEMORY]
         hs, tp = (jnp.array([state[k] for state in some])[:, None] for k in (0, 1))
         if plan.spectrum == "jonswap":
             asked = jnp.array([[np.nan if state[2] is None else state[2]] for state in some])
@@ -44,7 +47,7 @@ def _spectra(plan: Plan) -> Iterator[tuple[State, Float[np.ndarray, " w"], Float
 
 
 def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Remark]:
-    """What is to be said of waves outside the model's tables, of the sea state in which most of the energy is."""
+    """Remarks on waves outside the model's tables, for the sea state with most energy there."""
     ranges = table_ranges(model)
     if not ranges:
         return
@@ -62,19 +65,26 @@ def outside(plan: Plan, model: Model, failing: dict[State, str]) -> Iterator[Rem
 
 
 def impossible(setup: Setup) -> dict[State, str]:
-    """Why the runs of a sea state will fail, of those that cannot be: its waves break, or hardly any are in the band."""
+    """Reasons why the runs of some sea states will fail: breaking waves, or hardly any energy in the band."""
     found: dict[State, str] = {}
     for state, case in {case.state: case for case in setup.plan.cases}.items():
         stop_if_asked()
         try:
             sea_of(setup, Run(0, 0, 0, case, setup.plan.seeds[0]))
         except Exception as error:  # whatever it is, it is this sea state's
-            found[state] = reason_of(error)
+            found[state] = failure_reason(error)
     return found
 
 
 def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: dict[State, str]) -> Iterator[str]:
-    """One sentence each, of a plan with the `shares_in_band` of its cases and its `impossible` sea states."""
+    """Notes on a plan, one sentence each.
+
+    Args:
+        plan: The plan.
+        model: The platform.
+        shares: `shares_in_band` of its cases.
+        failing: `impossible` sea states.
+    """
     seas = {case.state: float(share) for case, share in zip(plan.cases, shares)}
     if failing:
         state, reason = next(iter(failing.items()))
@@ -92,12 +102,12 @@ def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: di
 
 
 def _of_band(seas: dict[State, float], total: int, plan: Plan) -> Iterator[str]:
-    if cut := {state: share for state, share in seas.items() if share < CUT}:
+    if cut := {state: share for state, share in seas.items() if share < NOTED_SHARE}:
         state = min(cut, key=cut.__getitem__)
         yield (
-            f"{_in(len(cut), total)} less than {CUT:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, and "
-            f"the rest is left out; least in {named(state)}, {cut[state]:.1%} or Hs {state[0] * cut[state] ** 0.5:.3g} m: see "
-            "low and cutoff"
+            f"{_in(len(cut), total)} less than {NOTED_SHARE:.0%} of the spectrum lies from {plan.low:g} to {plan.cutoff:g} Hz, "
+            f"and the rest is left out; least in {named(state)}, {cut[state]:.1%} or "
+            f"Hs {state[0] * cut[state] ** 0.5:.3g} m: see low and cutoff"
         )
 
 

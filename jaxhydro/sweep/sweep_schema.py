@@ -1,11 +1,11 @@
-"""The sweep file: which seas, how often, for how long. Checked, and as plain values; s, Hz, m, degrees."""
+"""Schema of the sweep file: checked, plain values in s, Hz, m and degrees."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from jaxhydro.dynamics.requested_sea import LEAST, usual_transient
+from jaxhydro.dynamics.requested_sea import MIN_SAMPLES, usual_transient
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import Consistent, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text
 from jaxhydro.waves.sea import Stretching
@@ -14,12 +14,19 @@ Gamma = Annotated[float, Field(strict=True, ge=1, le=7)]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
 Exponent = Annotated[float, Field(strict=True, ge=1, le=20)]
 Dof: TypeAlias = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
-LONGEST = 5_000_000  # samples of a run
+MAX_SAMPLES = 5_000_000  # samples of a run
 COLUMNS = ("hs", "tp", "probability", "gamma")  # of a scatter table
 
 
 class SeaState(Schema):
-    """Significant height, m, peak period, s, its share of the time in any unit, and JONSWAP's gamma (left out: IEC's)."""
+    """Sea state of a scatter table.
+
+    Attributes:
+        hs: Significant wave height (m).
+        tp: Peak period (s).
+        probability: Share of the time, in any unit.
+        gamma: JONSWAP's peak enhancement (-); None: IEC's.
+    """
 
     hs: Positive
     tp: Positive
@@ -28,7 +35,7 @@ class SeaState(Schema):
 
 
 class Grid(Schema):
-    """Every height, m, with every period, s; a row of shares for each height."""
+    """Every wave height (m) with every period (s), and a row of probabilities for each height."""
 
     hs: Annotated[tuple[Positive, ...], Field(min_length=1)]
     tp: Annotated[tuple[Positive, ...], Field(min_length=1)]
@@ -45,7 +52,7 @@ class Grid(Schema):
         return self
 
     def states(self) -> tuple[SeaState, ...]:
-        """Row by row."""
+        """Sea states of the grid, row by row."""
         shares = self.probability or ((1.0,) * len(self.tp),) * len(self.hs)
         return tuple(
             SeaState(hs=hs, tp=tp, probability=share) for hs, row in zip(self.hs, shares) for tp, share in zip(self.tp, row)
@@ -53,14 +60,14 @@ class Grid(Schema):
 
 
 class Heading(Schema):
-    """Where waves run to, deg from x towards y, and its share of the time in any unit."""
+    """Direction that the waves travel to (deg, from x towards y), and its share of the time in any unit."""
 
     heading: Number
     probability: NonNegative = 1.0
 
 
 class Fatigue(Schema):
-    """Slopes m of S-N curves, and the frequency, Hz, of the even ranges that do the same damage."""
+    """Slopes m of S-N curves, and the frequency (Hz) of the damage-equivalent ranges."""
 
     exponents: Annotated[tuple[Exponent, ...], Field(min_length=1)] = (3.0, 4.0, 5.0)
     equivalent_frequency: Positive = 1.0
@@ -80,13 +87,13 @@ Scatter = Annotated[
 ]
 OneHeading = Annotated[Annotated[Number, Tag("one")] | Annotated[Heading, Tag("more")], Discriminator(_number_or)]
 Many: TypeAlias = Annotated[tuple[Seed, ...], Field(min_length=1)]
-MOST_SEEDS = 100_000
-Number1 = Annotated[int, Field(strict=True, ge=1, le=MOST_SEEDS)]
+MAX_SEEDS = 100_000
+Number1 = Annotated[int, Field(strict=True, ge=1, le=MAX_SEEDS)]
 Seeds = Annotated[Annotated[Number1, Tag("one")] | Annotated[Many, Tag("more")], Discriminator(_number_or)]
 
 
 def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
-    """Those of a list of sea states or headings that have no probability, where others have one."""
+    """Sea states or headings of a list without a probability, where others have one."""
     given = [isinstance(row, Schema) and "probability" in row.model_fields_set for row in rows]
     if any(given):
         for i, there in enumerate(given):
@@ -95,7 +102,10 @@ def _some_without_share(key: str, rows: tuple[Any, ...]) -> Iterator[Problem]:
 
 
 class Sweep(Consistent):
-    """A sweep file: every sea state with every heading and every seed. What is left out is as in `jaxhydro simulate`."""
+    """Checked contents of a sweep file: every sea state with every heading and every seed.
+
+    Defaults are those of `jaxhydro simulate`.
+    """
 
     platform: Text
     calibration: Text | None = None
@@ -103,7 +113,7 @@ class Sweep(Consistent):
     spectrum: Literal["jonswap", "pierson_moskowitz"] = "jonswap"
     amplitudes: Literal["deterministic", "rayleigh"] = "deterministic"
     headings: Annotated[tuple[OneHeading, ...], Field(min_length=1)] = (0.0,)
-    seeds: Seeds = Field(default=1, description=f"a number of seeds, 1 to {MOST_SEEDS}, or a list of whole numbers >= 0")
+    seeds: Seeds = Field(default=1, description=f"a number of seeds, 1 to {MAX_SEEDS}, or a list of whole numbers >= 0")
     duration: Positive = 3600.0
     transient: NonNegative | None = None
     time_step: Positive = 0.5
@@ -125,13 +135,13 @@ class Sweep(Consistent):
             return
         for key in ("time_step", "step"):
             value = getattr(self, key)
-            if value is not None and not 1 <= self.duration / value <= LONGEST:
-                limits = f"a number from {self.duration / LONGEST:g} to {self.duration:g} s"
+            if value is not None and not 1 <= self.duration / value <= MAX_SAMPLES:
+                limits = f"a number from {self.duration / MAX_SAMPLES:g} to {self.duration:g} s"
                 yield Problem(key, f"{limits}, for a duration of {self.duration:g} s", f"{value:g}")
                 return
         left = (self.duration - self.start) / self.time_step
-        if left < LEAST:
-            expected = f"{LEAST} samples or more after the transient of {self.start:g} s"
+        if left < MIN_SAMPLES:
+            expected = f"{MIN_SAMPLES} samples or more after the transient of {self.start:g} s"
             yield Problem("duration", expected, f"{left:.0f} of them {self.time_step:g} s apart")
         if self.spectrum != "jonswap" and not isinstance(self.scatter, str | Grid):
             for i, state in enumerate(self.scatter):
@@ -151,10 +161,10 @@ class Sweep(Consistent):
 
     @property
     def towards(self) -> tuple[Heading, ...]:
-        """The headings, each with its share."""
+        """Headings with their probabilities."""
         return tuple(one if isinstance(one, Heading) else Heading(heading=float(one)) for one in self.headings)
 
     @property
     def start(self) -> float:
-        """Time (s) from which on statistics are taken."""
+        """Time (s) from which statistics are taken."""
         return usual_transient(self.duration) if self.transient is None else self.transient

@@ -1,7 +1,7 @@
-"""A process that simulates runs of a sweep and writes them to its store: `python -m jaxhydro.sweep.worker FOLDER`.
+"""Process that simulates runs of a sweep: `python -m jaxhydro.sweep.worker FOLDER`.
 
-Lists of run numbers come in on standard input, one line each; the same with what became of them goes out, one line each. It
-ends with its standard input: when the process that started it ends, however it does.
+Lists of run numbers come in on standard input, one per line. The same numbers go out, one line each, with whether each run
+is done. The process ends with its standard input: when the process that started it ends, however it does.
 """
 
 import json
@@ -13,16 +13,16 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
-Found = list[tuple[int, bool]]  # numbers of runs, and whether they are done
-FLAG = "--xla_cpu_multi_thread_eigen=false"
+RunsDone = list[tuple[int, bool]]  # numbers of runs, and whether they are done
+SINGLE_THREAD_FLAG = "--xla_cpu_multi_thread_eigen=false"
 
 
 def environment(device: str | None = None) -> dict[str, str]:
-    """Environment variables of a worker: one thread of arithmetic, on the GPU `device` where one is named."""
+    """Environment variables of a worker: one thread of arithmetic, on the GPU `device` if named."""
     found = dict(os.environ)
     found["NPROC"] = "1"  # threads of XLA's pool
-    if FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
-        found["XLA_FLAGS"] = f"{flags} {FLAG}".strip()
+    if SINGLE_THREAD_FLAG not in (flags := found.get("XLA_FLAGS", "")):  # once: programs are kept by their flags
+        found["XLA_FLAGS"] = f"{flags} {SINGLE_THREAD_FLAG}".strip()
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         found[name] = "1"
     found.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # of GPU memory, which the processes share
@@ -31,23 +31,23 @@ def environment(device: str | None = None) -> dict[str, str]:
     return found
 
 
-def simulate_runs(folder: str, numbers: Sequence[int]) -> Found:
-    """Simulate runs and write them, on a GPU all at once; each with whether it is done."""
+def simulate_runs(folder: str, numbers: Sequence[int]) -> RunsDone:
+    """Simulate runs and write them to the store, on a GPU all at once; whether each is done."""
     prepare()
     import jax
 
-    from jaxhydro.sweep.batch import outcome, outcomes, setup_in
+    from jaxhydro.sweep.batch import run_outcome, run_outcomes, setup_in
     from jaxhydro.sweep.store import INPUTS, Store
 
     store, setup = Store(Path(folder)), setup_in(Path(folder) / INPUTS)
     runs = [setup.plan.run(number) for number in numbers]
     if jax.default_backend() != "cpu":
-        return [(run.number, store.write(run, found)) for run, found in zip(runs, outcomes(setup, runs))]
-    return [(run.number, store.write(run, outcome(setup, run))) for run in runs]
+        return [(run.number, store.write(run, found)) for run, found in zip(runs, run_outcomes(setup, runs))]
+    return [(run.number, store.write(run, run_outcome(setup, run))) for run in runs]
 
 
-def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> Found:
-    """Write that runs failed; for those whose process was lost."""
+def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> RunsDone:
+    """Write runs as failed, where their process was lost."""
     from jaxhydro.sweep.batch import plan_in
     from jaxhydro.sweep.store import INPUTS, Store
 
@@ -57,7 +57,7 @@ def fail_runs(folder: str, numbers: Sequence[int], reason: str) -> Found:
 
 @lru_cache(maxsize=1)
 def prepare() -> None:
-    """Limit this process to one thread of arithmetic, unless JAX has compiled a program before."""
+    """Limit this process to one thread of arithmetic, unless JAX has already compiled a program."""
     os.environ.update({name: value for name, value in environment().items() if name not in os.environ or name == "XLA_FLAGS"})
 
 

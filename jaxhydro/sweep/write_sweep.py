@@ -1,4 +1,4 @@
-"""What a finished sweep leaves beside its store: sweep.json, lifetime.csv and two figures."""
+"""Outputs of a finished sweep beside its store: sweep.json, lifetime.csv and two figures."""
 
 import csv
 import json
@@ -13,13 +13,13 @@ import jaxhydro
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.plots.style import save, style
-from jaxhydro.sweep.cases import State, runs_named
+from jaxhydro.sweep.cases import State, runs_in_words
 from jaxhydro.sweep.lifetime import Lifetime, lifetime
 from jaxhydro.sweep.store import DONE, FAILED
 from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
 
 PANELS = ("surge", "heave", "pitch")  # whose maxima are drawn, where they move
-FAILURES = 1000  # listed in sweep.json; all are in the store
+MAX_LISTED_FAILURES = 1000  # listed in sweep.json; all are in the store
 OPTIONS = (
     "duration",
     "start",
@@ -34,11 +34,21 @@ OPTIONS = (
     "diffraction",
     "equivalent_frequency",
 )
-STILL = 1e-6  # m, deg
+MIN_DEVIATION = 1e-6  # m, deg
 
 
 class Failure(NamedTuple):
-    """Runs of one sea state (m, s) that failed alike, from these headings (deg) with these seeds, and why."""
+    """Runs of one sea state that failed for one reason.
+
+    Attributes:
+        hs: Significant wave height (m).
+        tp: Peak period (s).
+        gamma: Peak enhancement (-), or None.
+        headings: Headings (deg) of these runs.
+        seeds: Seeds of these runs.
+        runs: Number of runs.
+        reason: Why they failed.
+    """
 
     hs: float
     tp: float
@@ -50,12 +60,22 @@ class Failure(NamedTuple):
 
     @property
     def where(self) -> str:
-        """The runs, for people."""
-        return runs_named(self[:3], self.headings, self.seeds)
+        """The runs in words."""
+        return runs_in_words(self[:3], self.headings, self.seeds)
 
 
 class Summary(NamedTuple):
-    """Runs in all, done and failed; lifetime statistics by channel; share of the life in cases without a run done; failures."""
+    """Summary of a sweep.
+
+    Attributes:
+        total: Number of runs.
+        done: Number of runs done.
+        failed: Number of runs that failed.
+        missing: Probability of cases without a run done.
+        lifetimes: Lifetime statistics by channel.
+        units: Unit of each channel.
+        failures: Failed runs, by sea state and reason.
+    """
 
     total: int
     done: int
@@ -67,7 +87,7 @@ class Summary(NamedTuple):
 
 
 def summary_of(data: xr.Dataset) -> Summary:
-    """From the results of a sweep, finished or not."""
+    """Summary of the results of a sweep, finished or not."""
     status, found = data.status.values, data.statistics.load()
     probability = data.probability.values
     names, exponents = [str(name) for name in data.statistic.values], data.exponent.values
@@ -100,13 +120,20 @@ def _failures(data: xr.Dataset) -> list[Failure]:
 
 
 def _states(data: xr.Dataset) -> list[State]:
-    """Of every case."""
+    """Sea state of every case."""
     columns = (data[name].values.tolist() for name in ("hs", "tp", "gamma"))
     return [(hs, tp, None if math.isnan(gamma) else gamma) for hs, tp, gamma in zip(*columns)]
 
 
 def write_outputs(folder: Path, data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> None:
-    """Write the files, whole or not at all. `about` is what sweep.json says first."""
+    """Write the output files, all or none.
+
+    Args:
+        folder: Folder of the sweep.
+        data: Results of the sweep.
+        summary: Their summary.
+        about: First entries of sweep.json.
+    """
     with staged(folder) as temporary:
         (temporary / "sweep.json").write_text(_document(data, summary, about), encoding="utf-8")
         with (temporary / "lifetime.csv").open("w", newline="", encoding="utf-8") as file:
@@ -138,7 +165,7 @@ def _document(data: xr.Dataset, summary: Summary, about: dict[str, Any]) -> str:
         "options": {name: data.attrs[name] for name in OPTIONS if name in data.attrs},
         "probability_without_runs": summary.missing,
         "lifetime": lifetimes,
-        "failures": [one._asdict() for one in summary.failures[:FAILURES]],
+        "failures": [one._asdict() for one in summary.failures[:MAX_LISTED_FAILURES]],
     }
     return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -155,7 +182,7 @@ def _table(summary: Summary, exponents: np.ndarray) -> list[list[str]]:
 def _figures(folder: Path, data: xr.Dataset, summary: Summary, platform: str) -> None:
     names = [str(name) for name in data.statistic.values]
     found, probability = data.statistics, data.probability.values
-    moving = {name: one for name, one in summary.lifetimes.items() if name in DOFS and one.standard_deviation > STILL}
+    moving = {name: one for name, one in summary.lifetimes.items() if name in DOFS and one.standard_deviation > MIN_DEVIATION}
     first = "surge" if "surge" in moving else next(iter(moving), "wave")
     square = found.sel(channel=first).values[..., names.index("standard_deviation")] ** 2
     count = np.isfinite(square).sum(axis=1)

@@ -1,4 +1,4 @@
-"""Seas and the flow that they make."""
+"""Wave components, spectra, seas of first and second order, and the flow that they make."""
 
 from jaxhydro.waves.components import Components, PlaneWaves, components
 from jaxhydro.waves.diffraction import maccamy_fuchs

@@ -1,8 +1,8 @@
-"""J1' and Y1' in JAX, by Chebyshev series summed by Clenshaw's rule.
+"""Derivatives J1' and Y1' of Bessel functions in JAX, by Chebyshev series.
 
-Their forms are those of Abramowitz and Stegun (1964), 9.1.11 below x = 8 and 9.2.11, 9.2.12 above. The coefficients are
-printed by benchmarks/make_bessel_series.py: interpolation at Chebyshev points in 40-digit arithmetic, cut where terms
-no longer count.
+The series are summed by Clenshaw's rule. Their forms are those of Abramowitz and Stegun (1964), 9.1.11 below x = 8 and
+9.2.11, 9.2.12 above. The coefficients are printed by benchmarks/make_bessel_series.py: interpolation at Chebyshev points in
+40-digit arithmetic, cut where terms no longer count.
 """
 
 import math
@@ -42,7 +42,17 @@ ABOVE_S = (  # s x / 8, t = 2 (8/x)^2 - 1
 
 
 def bessel_primes(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
-    """J1'(x) and Y1'(x), the derivatives of the Bessel functions of the first and second kind and order one, for x > 0."""
+    """Derivatives of the Bessel functions of the first and second kind and order one.
+
+    Args:
+        x: Arguments (-), above 0.
+
+    Returns:
+        J1'(x) and Y1'(x), in the shape of `x`.
+
+    References:
+        Abramowitz and Stegun (1964), 9.1.11, 9.2.11 and 9.2.12.
+    """
     x = jnp.asarray(x, float)
     j, y = scaled_bessel_primes(x)
     return j, y / x**2
@@ -50,7 +60,10 @@ def bessel_primes(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Ar
 
 @jax.jit
 def scaled_bessel_primes(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
-    """J1'(x) and x^2 Y1'(x) for x >= 0: both, and their first derivatives, are finite at x = 0, where they are 1/2 and 2/pi."""
+    """J1'(x) and x² Y1'(x) for x >= 0.
+
+    Both, and their first derivatives, are finite at x = 0, where they are 1/2 and 2/pi.
+    """
     x = jnp.asarray(x, float)
     near = x <= SWITCH
     j_near, y_near = _below(jnp.where(near, x, SWITCH))
@@ -77,7 +90,7 @@ def _above(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, ".
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))
 def _series(terms: tuple[float, ...], t: Float[Array, "..."]) -> Float[Array, "..."]:
-    """sum of terms_n T_n(t), |t| <= 1."""
+    """Sum of terms_n T_n(t), |t| <= 1."""
     ahead = after = jnp.zeros_like(t)
     for term in terms[:0:-1]:
         ahead, after = term + 2 * t * ahead - after, ahead

@@ -1,4 +1,4 @@
-"""What a sea is made of: first-order components, and plane waves, free or bound, of any order."""
+"""First-order wave components, and plane waves (free or bound) of any order."""
 
 import math
 
@@ -11,10 +11,18 @@ from jaxhydro.waves.dispersion import wavenumber
 
 
 class Components(eqx.Module):
-    """First-order waves: eta = sum a cos(omega t - k (x cos heading + y sin heading) + phase).
+    """First-order wave components: eta = sum a cos(omega t - k (x cos heading + y sin heading) + phase).
 
-    `first` is set where the frequencies are successive harmonics of a period, omega = (first, first + 1 ...) 2 pi / period, a
-    component of no amplitude included: what Fourier transforms and sums over pairs ask for. None: any frequencies.
+    `first` is set where the frequencies are successive harmonics of a period, omega = (first, first + 1 ...) 2 pi / period,
+    zero amplitudes included. Fourier transforms and sums over pairs need that. None: any frequencies.
+
+    Attributes:
+        amplitude: Amplitudes (m), (w,).
+        omega: Angular frequencies (rad/s), (w,).
+        wavenumber: Wavenumbers (rad/m), (w,).
+        heading: Directions that the waves travel to (rad), from x towards y, (w,).
+        phase: Phases (rad), (w,).
+        first: Number of the first harmonic, or None.
     """
 
     amplitude: Float[Array, " w"]  # m
@@ -26,22 +34,30 @@ class Components(eqx.Module):
 
     @property
     def harmonics(self) -> tuple[int, int]:
-        """Numbers of the first and the last harmonic. Raises ValueError where the frequencies are none."""
+        """Numbers of the first and the last harmonic.
+
+        Raises:
+            ValueError: The frequencies are not harmonics of a period.
+        """
         if self.first is None:
             raise ValueError("the components are no successive harmonics of a period")
         return self.first, self.first + self.omega.size - 1
 
     @property
     def period(self) -> Float[Array, ""]:
-        """Time (s) after which the sea repeats itself. Raises ValueError where the frequencies are no harmonics."""
+        """Time (s) after which the sea repeats itself.
+
+        Raises:
+            ValueError: The frequencies are not harmonics of a period.
+        """
         return self.harmonics[0] * 2 * math.pi / self.omega[0]
 
     def vector(self) -> Float[Array, "2 w"]:
-        """Wavenumber vectors (rad/m)."""
+        """Wavenumber vectors (rad/m), (2, w)."""
         return self.wavenumber * jnp.stack([jnp.cos(self.heading), jnp.sin(self.heading)])
 
     def complex_amplitude(self) -> Complex[Array, " w"]:
-        """a exp(i phase) (m)."""
+        """Complex amplitudes a exp(i phase) (m), (w,)."""
         return self.amplitude * jnp.exp(1j * self.phase)
 
 
@@ -54,7 +70,19 @@ def components(
     phase: Float[Array, " w"] | float = 0.0,
     first: int | None = None,
 ) -> Components:
-    """Components of amplitudes (m) and angular frequencies (rad/s); headings and phases (rad) for each or for all."""
+    """Wave components from amplitudes and frequencies, with wavenumbers by linear dispersion.
+
+    Args:
+        amplitude: Amplitudes (m), (w,).
+        omega: Angular frequencies (rad/s), (w,).
+        environment: Water depth and gravity.
+        heading: Directions that the waves travel to (rad), for each or for all.
+        phase: Phases (rad), for each or for all.
+        first: Number of the first harmonic, where the frequencies are successive harmonics of a period.
+
+    Returns:
+        The components.
+    """
     amplitude, omega = jnp.asarray(amplitude, float), jnp.asarray(omega, float)
     k = wavenumber(omega, jnp.asarray(environment.depth), jnp.asarray(environment.gravity))
     one = jnp.ones_like(omega)
@@ -62,13 +90,25 @@ def components(
 
 
 class PlaneWaves(eqx.Module):
-    """Plane waves, free or bound: with theta = omega t - k . x, a surface elevation and a velocity potential
+    """Plane waves, free or bound: surface elevation and velocity potential of each.
+
+    With theta = omega t - k . x,
 
         eta = Re sum E exp(i theta),    phi = Re sum i Phi cosh |k|(z + h) / cosh |k|h exp(i theta).
 
-    So the velocity is Re k Phi C exp(i theta) along, Re i |k| Phi S exp(i theta) up (C as above, S with sinh above), the
-    dynamic pressure over density, -d phi/dt, Re omega Phi C exp(i theta), and the acceleration i omega times the velocity. A
-    free wave has Phi = g E / omega; of a bound one omega, k, E and Phi are each their own.
+    With C the ratio of hyperbolic functions above and S the same with sinh on top:
+
+    - horizontal velocity Re k Phi C exp(i theta), vertical velocity Re i |k| Phi S exp(i theta);
+    - dynamic pressure over density, -d phi/dt, Re omega Phi C exp(i theta);
+    - acceleration i omega times the velocity.
+
+    A free wave has Phi = g E / omega. In a bound wave omega, k, E and Phi are independent.
+
+    Attributes:
+        omega: Angular frequencies (rad/s), not negative, (w,).
+        vector: Wavenumber vectors k (rad/m), (2, w).
+        elevation: Complex elevations E (m), (w,).
+        potential: Complex potentials Phi (m²/s), (w,).
     """
 
     omega: Float[Array, " w"]  # rad/s, not negative
@@ -78,12 +118,12 @@ class PlaneWaves(eqx.Module):
 
     @classmethod
     def free(cls, waves: Components, environment: Environment) -> "PlaneWaves":
-        """The first-order field of components."""
+        """Free first-order waves of components."""
         elevation = waves.complex_amplitude()
         return cls(waves.omega, waves.vector(), elevation, environment.gravity * elevation / waves.omega)
 
     def __add__(self, other: "PlaneWaves") -> "PlaneWaves":
-        """Both together."""
+        """Both sets of waves together."""
         return PlaneWaves(
             jnp.concatenate([self.omega, other.omega]),
             jnp.concatenate([self.vector, other.vector], axis=1),

@@ -1,4 +1,7 @@
-"""Linear dispersion in finite depth: omega^2 = g k tanh(k h) (Dean and Dalrymple 1991, Water Wave Mechanics, chapter 3)."""
+"""Linear dispersion in finite depth: omega² = g k tanh(k h).
+
+References: Dean and Dalrymple (1991), Water Wave Mechanics, chapter 3.
+"""
 
 import jax
 import jax.numpy as jnp
@@ -7,10 +10,20 @@ from jaxtyping import Array, Float
 
 @jax.custom_jvp
 def wavenumber(omega: Float[Array, "..."], depth: Float[Array, "..."], gravity: Float[Array, "..."]) -> Float[Array, "..."]:
-    """Wavenumber k (rad/m) of angular frequency omega >= 0 (rad/s) in water of depth h (m), to rounding.
+    """Wavenumber (rad/m) of linear waves in finite depth, accurate to rounding.
 
-    Newton's iteration from the explicit formula of Guo (2002), Coastal Engineering 45, 71-74. Derivatives are implicit.
-    omega = 0 gives k = 0.
+    Newton's method starts from Guo's explicit formula. Derivatives are implicit.
+
+    Args:
+        omega: Angular frequency (rad/s), not negative; 0 gives 0.
+        depth: Water depth (m).
+        gravity: Acceleration of gravity (m/s²).
+
+    Returns:
+        Wavenumber (rad/m), in the common shape of the arguments.
+
+    References:
+        Guo (2002), Coastal Engineering 45, 71-74.
     """
     return _newton(omega, depth, gravity)
 

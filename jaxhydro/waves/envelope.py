@@ -1,4 +1,4 @@
-"""The squared envelope of first-order waves on a clock: what slow second-order forces go with."""
+"""Squared envelope of first-order waves over time, for slow second-order forces."""
 
 import math
 
@@ -13,15 +13,23 @@ from jaxhydro.waves.transfer import Transfer
 
 
 class Envelope(eqx.Module):
-    """`AbstractSea.drift` on a clock: `series` (m2; N, N m) step by step, read `lead` (s) ahead; `slowness` (s/m) is the
-    inverse of the group velocity, by energy."""
+    """`AbstractSea.drift` at the steps of a clock.
+
+    Attributes:
+        series: Squared envelopes (m²) and forces (N, N m) by step, (t, d).
+        slowness: Inverse of the group velocity (s/m), weighted by energy.
+        lead: Time (s) by which the series is read ahead.
+    """
 
     series: Float[Array, "t d"]
     slowness: Float[Array, ""]
     lead: Float[Array, ""]
 
     def at(self, steps: Float[Array, ""]) -> Float[Array, " d"]:
-        """`steps` after the first, of any fraction, by the cubic through four of them; held beyond both ends."""
+        """Values at a fractional number of steps after the first, by cubic interpolation.
+
+        Beyond the ends they are constant.
+        """
         last = self.series.shape[0] - 1
         place = jnp.clip(steps, 0.0, last)
         base = jnp.clip(jnp.floor(place).astype(int) - 1, 0, max(last - 3, 0))
@@ -47,11 +55,20 @@ def envelope(
     start: Float[Array, ""],
     transfer: Transfer | None = None,
 ) -> Envelope:
-    """|a|^2, its Hilbert transform, Re(a_w conj(a)) and the mean of |a|^2, a the complex elevation at the origin and a_w that
-    with components times `weight`, and the six forces of a `transfer`, times `share`, at steps from `start` (s) on of which
-    `size` are a period.
+    """Squared envelopes, and difference-frequency forces, of first-order waves at the origin.
 
-    By products over one period at so many times that every difference of frequencies has a place of its own.
+    With a the complex elevation and a_w that of components times `weight`, the rows are: |a|², its Hilbert transform, Re(a_w
+    conj(a)), the mean of |a|², and the six forces of `transfer`. They are products over one period at so many times that
+    every difference of frequencies is resolved.
+
+    Args:
+        waves: Components on successive harmonics of a period.
+        environment: Water depth and gravity.
+        weight: Weight of each component, (w,).
+        share: Factor at each step, (t,).
+        size: Number of steps in a period.
+        start: Time of the first step (s).
+        transfer: Difference-frequency transfer function, or None.
     """
     n, amplitude = waves.omega.size, waves.complex_amplitude()
     count = 1 << (2 * n - 1).bit_length()

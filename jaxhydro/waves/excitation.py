@@ -1,4 +1,4 @@
-"""First-order forces of waves on a platform as a radiation-diffraction program computed them."""
+"""First-order wave forces from tables of a radiation-diffraction program."""
 
 from typing import Self
 
@@ -7,17 +7,22 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
 
-CLOSE = 1e-4  # of a table's first and last frequency, by which waves may be outside it
+TABLE_END_TOLERANCE = 1e-4  # of a table's first and last frequency, by which waves may be outside it
 
 
 class Excitation(eqx.Module):
-    """F_i = Re sum_k X_i(w_k) A_k exp(i w_k t), A_k the complex amplitudes of first-order waves at the reference point,
-    eta = Re sum A_k exp(i w_k t) (Newman 1977, Marine Hydrodynamics, section 6.15; Faltinsen 1990, Sea Loads on Ships and
-    Offshore Structures, chapter 3).
+    """First-order wave force on a platform, F_i = Re sum_k X_i(w_k) A_k exp(i w_k t).
 
-    `omega` (n,) in rad/s, ascending; `force` (6, n) is X in N/m and N m/m, of surge, sway, heave, roll, pitch and yaw about the
-    reference point, along earth axes. Between the table's frequencies X is linear, real and imaginary parts apart; outside them
-    waves do not excite.
+    A_k are the complex amplitudes of first-order waves at the reference point, eta = Re sum A_k exp(i w_k t). Between the
+    table's frequencies X is linear, real and imaginary parts apart. Outside them X is zero.
+
+    Attributes:
+        omega: Angular frequencies (rad/s), ascending, (n,).
+        force: X of surge, sway, heave (N/m), roll, pitch, yaw (N m/m) about the reference point, earth axes, (6, n).
+
+    References:
+        Newman (1977), Marine Hydrodynamics, section 6.15; Faltinsen (1990), Sea Loads on Ships and Offshore Structures,
+            chapter 3.
     """
 
     omega: Float[Array, " n"]
@@ -25,14 +30,22 @@ class Excitation(eqx.Module):
 
     @classmethod
     def of(cls, omega: Float[np.ndarray, " n"], force: Complex[np.ndarray, "6 n"]) -> Self:
-        """From tables. Raises ValueError for fewer than two frequencies, or where they do not ascend."""
+        """Excitation from a table.
+
+        Args:
+            omega: Angular frequencies (rad/s), (n,).
+            force: Forces per wave amplitude (N/m, N m/m), (6, n).
+
+        Raises:
+            ValueError: Fewer than two frequencies, or frequencies that do not ascend.
+        """
         omega, force = np.asarray(omega, float), np.asarray(force, complex)
         if omega.ndim != 1 or force.shape != (6, omega.size) or omega.size < 2 or not (np.diff(omega) > 0).all():
             raise ValueError(f"two ascending frequencies or more and six forces of each, found {omega.shape}, {force.shape}")
         return cls(jnp.asarray(omega), jnp.asarray(force))
 
     def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 w"]:
-        """X at other frequencies (rad/s)."""
+        """X at other frequencies (rad/s), (6, w)."""
         place, share, inside = within(self.omega, omega)
         return jnp.where(inside, (1 - share) * self.force[:, place] + share * self.force[:, place + 1], 0.0)
 
@@ -40,11 +53,15 @@ class Excitation(eqx.Module):
 def within(
     table: Float[Array, " n"], omega: Float[Array, " w"]
 ) -> tuple[Int[Array, " w"], Float[Array, " w"], Bool[Array, " w"]]:
-    """Place of frequencies in a table (rad/s): number of the entry before, share of the way to the next, and whether inside.
+    """Place of frequencies in a table: index below, fraction of the way to the next, and whether inside.
 
-    What is outside by less than `CLOSE` is at the end: periods are written with few digits.
+    A frequency outside by less than `TABLE_END_TOLERANCE` counts as the end of the table: periods are written with few digits.
+
+    Args:
+        table: Frequencies of the table (rad/s), ascending, (n,).
+        omega: Frequencies to look up (rad/s), (w,).
     """
-    inside = (omega >= table[0] * (1 - CLOSE)) & (omega <= table[-1] * (1 + CLOSE))
+    inside = (omega >= table[0] * (1 - TABLE_END_TOLERANCE)) & (omega <= table[-1] * (1 + TABLE_END_TOLERANCE))
     place = jnp.clip(jnp.searchsorted(table, omega, side="right") - 1, 0, len(table) - 2)
     share = (omega - table[place]) / (table[place + 1] - table[place])
     return place, jnp.clip(share, 0.0, 1.0), inside

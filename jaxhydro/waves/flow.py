@@ -1,14 +1,18 @@
-"""How water moves: at points in space, and past the strips and ends of a moving platform."""
+"""Water velocity, acceleration and pressure at points, and flow past strips and ends."""
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
 
 class Cylinders(eqx.Module):
-    """Which points are on vertical circular cylinders that diffract waves: radii (m), and by point an index into them or -1.
+    """Vertical circular cylinders that diffract waves, and which points lie on them.
 
-    `lag` False drops the phase of the force, `bound` False the acceleration of bound waves, both as OpenFAST does. `ramp`
-    asks for `Flow.tuned`.
+    Attributes:
+        radius: Radii (m), (c,).
+        of: Index into `radius` by point; -1 for a point on no cylinder.
+        lag: Whether the force has its phase lag; False as in OpenFAST.
+        bound: Whether the acceleration of bound waves acts; False as in OpenFAST.
+        ramp: Whether `Flow.tuned` is computed.
     """
 
     radius: Float[Array, " c"]
@@ -19,14 +23,17 @@ class Cylinders(eqx.Module):
 
 
 class Flow(eqx.Module):
-    """Water at points: velocity (m/s), acceleration (m/s2), dynamic pressure over density (m2/s2).
+    """Water velocity, acceleration and dynamic pressure at points.
 
-    Vectors have components along `axes`, unit vectors in earth axes; None: along earth axes themselves.
-
-    `diffracted` (m/s2) is what the displaced mass of a cylinder is to be multiplied by for its excitation, the inertia
-    coefficient of MacCamy and Fuchs included: zero at points that are on none, None where there are none. Its vertical
-    component, of which a cylinder that leans takes what is across it, has the same coefficient. `tuned` (m/s2) is the
-    acceleration in waves that are long for the cylinder, where it was asked for: see `diffraction.long_waves`.
+    Attributes:
+        velocity: Velocity (m/s), (a, n), with components along `axes`.
+        acceleration: Acceleration (m/s²), (a, n).
+        pressure: Dynamic pressure over density (m²/s²), (n,).
+        diffracted: Acceleration times MacCamy and Fuchs' inertia coefficient (m/s²), (a, n). Times the displaced mass of a
+            cylinder it is the excitation. Zero at points on no cylinder; None without cylinders. A leaning cylinder takes
+            the vertical component across it with the same coefficient.
+        tuned: Acceleration in waves that are long for the cylinder (m/s²), or None: see `diffraction.long_waves`.
+        axes: Unit vectors of the components in earth axes, (3, a); None: earth axes.
     """
 
     velocity: Float[Array, "a n"]
@@ -37,12 +44,12 @@ class Flow(eqx.Module):
     axes: Float[Array, "3 a"] | None = None
 
     def weakened(self, share: Float[Array, ""]) -> "Flow":
-        """The same velocities, a share (-) of accelerations and pressures."""
+        """The same velocities, with accelerations and pressures times `share` (-)."""
         diffracted, tuned = (None if field is None else share * field for field in (self.diffracted, self.tuned))
         return Flow(self.velocity, share * self.acceleration, share * self.pressure, diffracted, tuned, self.axes)
 
     def earth(self) -> "Flow":
-        """The same along earth axes."""
+        """The same flow along earth axes."""
         if (axes := self.axes) is None:
             return self
         extra = (None if field is None else axes @ field for field in (self.diffracted, self.tuned))
@@ -52,8 +59,12 @@ class Flow(eqx.Module):
 class StripFlow(eqx.Module):
     """Flow past strips along their two directions.
 
-    `relative` is the water's velocity less the strip's (m/s), `acceleration` the water's (m/s2; None in still water),
-    `diffracted`, `tuned` and `pressure` are those of `Flow`.
+    Attributes:
+        relative: Velocity of the water relative to the strip (m/s), (2, n).
+        acceleration: Acceleration of the water (m/s²), (2, n); None in still water.
+        diffracted: As in `Flow`.
+        tuned: As in `Flow`.
+        pressure: Dynamic pressure over density (m²/s²), (n,).
     """
 
     relative: Float[Array, "2 n"]
@@ -64,8 +75,14 @@ class StripFlow(eqx.Module):
 
 
 class EndFlow(eqx.Module):
-    """The same for the ends of columns, along their axes; `pressure` is the dynamic pressure over density (m2/s2), `wet` 1
-    under water and 0 above."""
+    """Flow past the ends of columns along their axes.
+
+    Attributes:
+        relative: Velocity of the water relative to the end (m/s), (m,).
+        acceleration: Acceleration of the water (m/s²), (m,); None in still water.
+        pressure: Dynamic pressure over density (m²/s²), (m,); None in still water.
+        wet: 1 under water, 0 above, (m,).
+    """
 
     relative: Float[Array, " m"]
     acceleration: Float[Array, " m"] | None

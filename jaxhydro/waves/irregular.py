@@ -1,6 +1,7 @@
-"""Irregular seas: components drawn from a spectrum or taken from a measured elevation, on successive harmonics of a period.
+"""Components of irregular seas, drawn from a spectrum or taken from a measured elevation.
 
-Builders run at the edge, once per sea and in NumPy; what they return goes into jitted code.
+Frequencies are successive harmonics of a period. These builders run once per sea, in NumPy; their results go into jitted
+code.
 """
 
 import math
@@ -19,22 +20,26 @@ from jaxhydro.waves.continuation import continued
 from jaxhydro.waves.dispersion import wavenumber
 from jaxhydro.waves.second_order import KINDS, Kind, elevation_spectrum
 
-JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
+MAX_JITTER = 0.01  # of a step, by which times may miss an even grid: what rounding in a file does
 TOLERANCE = 1e-4  # of the record in the band, by root mean square, that first and second order together may miss
-BEYOND, LONGEST = 20.0, 1.5  # of the shortest waves: how far records are continued at least; times a record, at most
-ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
+MIN_CONTINUATION = 20.0  # of the shortest waves: how far records are continued at least
+MAX_LENGTHENING = 1.5  # times a record, that it may have when continued
+MAX_ROUNDS = 30  # of the iteration for the first-order part; 4 to 8 are usual, more in steep seas
 
 _second_order = eqx.filter_jit(elevation_spectrum)  # once per band and record length, not once per round
 
 
 def repeat_period(duration: float) -> float:
-    """The least number of whole seconds, not below `duration` (s), with no prime factor above 5: steps of 1, 0.5, 0.25, 0.2 or
-    0.1 s then make Fourier transforms of good lengths, and the sea does not repeat itself within `duration`."""
+    """Repeat period (s): the least whole number from `duration` on with no prime factor above 5.
+
+    Steps of 1, 0.5, 0.25, 0.2 or 0.1 s then give efficient Fourier transforms. The sea does not repeat within `duration`
+    (s).
+    """
     return float(fourier_length(duration))
 
 
 def fourier_length(least: float) -> int:
-    """The least whole number, not below `least`, with no prime factor above 5: a good length of Fourier transforms."""
+    """Efficient length of Fourier transforms: the least from `least` on with no prime factor above 5."""
     count = max(math.ceil(least - 1e-9), 1)
     while (60 ** count.bit_length()) % count:  # 60 = 2^2 3 5: divides a high power of it only if 2, 3 and 5 are all it has
         count += 1
@@ -53,17 +58,36 @@ def spectrum_components(
     heading: float = 0.0,
     spreading: float | None = None,
 ) -> Components:
-    """A sea of spectrum S (rad/s -> m2 s/rad) that does not repeat itself within `duration` (s).
+    """Draw a sea from a spectrum.
 
-    Harmonics of `repeat_period(duration)` from `low` to `cutoff` (Hz): what S has outside is cut, and nothing is scaled to make
-    up for it. Amplitudes sqrt(2 S d_omega), "deterministic", or "rayleigh", where a exp(i phase) is complex normal of that mean
-    square, as in nature: only then is the energy of a sea random (Tucker, Challenor and Carter 1984). Phases are uniform. With
-    `spreading`, the exponent s of `spectra.spreading`, each component has one heading drawn about `heading` (rad): with one
-    direction per frequency a mean over time is the same everywhere (Jefferys 1987).
+    Frequencies are the harmonics of `repeat_period(duration)` from `low` to `cutoff`. Energy of the spectrum outside is cut,
+    and nothing is scaled to make up for it. Phases are uniform.
 
-    Draws go by harmonic, phases, heights and headings each from their own stream of `seed`: another band or another option
-    leaves the others' draws as they are. Raises ValueError for a band, duration, option or spectrum out of range, and where
-    the sea's significant wave, of height 4 sqrt(m0) and zero-crossing period, would break (Miche 1944, as in `regular_wave`).
+    Phases, heights and headings each have a random stream of their own, drawn by harmonic. Another band or another option
+    leaves the other draws as they are.
+
+    Args:
+        spectrum: Spectral density S(omega), from rad/s to m² s/rad.
+        duration: Time (s) within which the sea must not repeat.
+        environment: Water depth and gravity.
+        low: Lowest frequency (Hz).
+        cutoff: Highest frequency (Hz).
+        seed: Seed of the random numbers.
+        amplitudes: "deterministic", sqrt(2 S d_omega), or "rayleigh", complex normal amplitudes of that mean square. Only
+            with "rayleigh" is the energy of a sea random, as in nature.
+        heading: Mean direction that the waves travel to (rad).
+        spreading: Exponent s of `spectra.spreading`, or None for long-crested waves. Each component has one heading: with
+            one direction per frequency, a mean over time is the same everywhere.
+
+    Returns:
+        The components.
+
+    Raises:
+        ValueError: A band, duration, option or spectrum is out of range, or a wave of height 4 sqrt(m0) and the
+            zero-crossing period would break (Miche, as in `regular_wave`).
+
+    References:
+        Tucker, Challenor and Carter (1984), on random amplitudes; Jefferys (1987), on one direction per frequency.
     """
     if not (duration > 0 and math.isfinite(duration)):
         raise ValueError(f"duration is above 0 s, found {duration}")
@@ -94,8 +118,13 @@ def spectrum_components(
 
 
 class Separation(NamedTuple):
-    """First-order waves of a record; root mean square by which the record, in the band, is missed by the orders asked for, as a
-    share of the record's; and rounds of the iteration."""
+    """First-order waves of a record.
+
+    Attributes:
+        waves: The components.
+        mismatch: Root mean square difference from the record within the band, over that of the record (-).
+        rounds: Number of iterations.
+    """
 
     waves: Components
     mismatch: float
@@ -116,7 +145,27 @@ def record_components(
     kinds: tuple[Kind, ...] = KINDS,
     highest_difference: float | None = None,
 ) -> Components:
-    """`separated_record`'s waves. Raises ValueError, too, where they miss the record by more than `tolerance`."""
+    """First-order waves of a measured elevation; an error where they do not reproduce it.
+
+    Args:
+        times: Sample times (s), (t,), even.
+        elevation: Elevation (m), (t,).
+        environment: Water depth and gravity.
+        position: Position of the gauge (m, earth axes).
+        heading: Direction that the waves travel to (rad).
+        low: Lowest frequency (Hz).
+        cutoff: Highest frequency (Hz).
+        order: 1 or 2, as in `separated_record`.
+        tolerance: Largest accepted mismatch (-).
+        kinds: As in `separated_record`.
+        highest_difference: As in `separated_record`.
+
+    Returns:
+        The components.
+
+    Raises:
+        ValueError: As `separated_record`, or the mismatch is above `tolerance`.
+    """
     found = separated_record(
         times,
         elevation,
@@ -152,17 +201,36 @@ def separated_record(
     kinds: tuple[Kind, ...] = KINDS,
     highest_difference: float | None = None,
 ) -> Separation:
-    """Long-crested first-order waves of an elevation (m) recorded at even `times` (s) by a gauge at `position` (m, earth axes).
+    """Long-crested first-order waves of an elevation recorded by a gauge.
 
-    Fourier components of the record, less its mean, from `low` to `cutoff` (Hz); phases are those at the origin, on the clock
-    of `times`. No taper: at the gauge the components are the band-passed record at every sample, where a taper would lower the
-    waves near the ends. The period is the record's own length, n steps, where its end meets its start; else it is some twenty
-    of the shortest waves longer, and the record `continued` until there, as it would ring near its ends.
+    They are the Fourier components of the record without its mean, from `low` to `cutoff`. Phases are those at the origin,
+    on the clock of `times`. There is no taper, which would lower the waves near the ends: at the gauge the components are
+    the band-passed record at every sample.
 
-    order 1: the record is taken for linear. order 2: eta1 = eta - eta2(eta1) within the band, iterated, by half steps where it
-    does not come nearer; the best found is returned, with its mismatch. The bound low-frequency set-down and the sums above
-    `cutoff` are not asked to match: they follow. `kinds` are the pairs that bind, differences up to `highest_difference`
-    (Hz). Raises ValueError for uneven times, gaps, or a band out of range.
+    The period is the record's own length where its end meets its start. Otherwise it is about twenty of the shortest waves
+    longer, and the record is continued until there (`continued`), since it would ring near its ends.
+
+    With `order` 2, eta1 = eta - eta2(eta1) within the band is iterated, by half steps where it diverges. The best iterate is
+    returned. The bound set-down at low frequencies and the sums above `cutoff` follow; they are not matched.
+
+    Args:
+        times: Sample times (s), (t,), even.
+        elevation: Elevation (m), (t,).
+        environment: Water depth and gravity.
+        position: Position of the gauge (m, earth axes).
+        heading: Direction that the waves travel to (rad).
+        low: Lowest frequency (Hz).
+        cutoff: Highest frequency (Hz).
+        order: 1: the record is taken as linear. 2: bound second-order waves are separated.
+        tolerance: Mismatch (-) that the iteration should reach.
+        kinds: Pairs that bind: at sums or differences of their frequencies, or both.
+        highest_difference: Highest difference frequency (Hz) of bound waves; None: all.
+
+    Returns:
+        The waves, and their mismatch.
+
+    Raises:
+        ValueError: The times are uneven, the record has gaps or no waves in the band, or the band is out of range.
     """
     times, elevation = np.asarray(times, float), np.asarray(elevation, float)
     step = sampling_interval(times)
@@ -176,8 +244,10 @@ def separated_record(
     if cutoff > 0.5 / step:
         raise ValueError(f"cutoff is at most half the sampling rate, {0.5 / step:g} Hz, found {cutoff:g} Hz")
     level = elevation - elevation.mean()
-    if cutoff > 0 and (length := fourier_length(len(times) + BEYOND / (cutoff * step))) <= LONGEST * len(times):
-        level = continued(level, step, low, cutoff, length)
+    if cutoff > 0:
+        length = fourier_length(len(times) + MIN_CONTINUATION / (cutoff * step))
+        if length <= MAX_LENGTHENING * len(times):
+            level = continued(level, step, low, cutoff, length)
     count = len(level)
     period = count * step
     first, last = harmonics(low, cutoff, period)
@@ -199,7 +269,7 @@ def separated_record(
     size = np.linalg.norm(measured)
     best, trial, share, rounds = measured, measured, 1.0, 0
     left, least = measured, np.inf  # what the best trial misses, and its norm over the record's
-    while rounds < ROUNDS and least > 0.1 * tolerance and share > 1e-3:
+    while rounds < MAX_ROUNDS and least > 0.1 * tolerance and share > 1e-3:
         rounds += 1
         second = np.asarray(_second_order(waves(trial), environment, position, kinds, highest_difference))[band]
         missed = measured - trial - second
@@ -213,14 +283,21 @@ def separated_record(
 
 
 def sampling_interval(times: Float[np.ndarray, " t"]) -> float:
-    """The step (s) of evenly sampled, ascending times. Raises ValueError where they are not (to 1 % of a step)."""
+    """Sampling interval (s) of even, ascending times.
+
+    Args:
+        times: Times (s), (t,), four or more.
+
+    Raises:
+        ValueError: Times are uneven by more than 1 % of a step.
+    """
     times = np.asarray(times, float)
     if times.ndim != 1 or len(times) < 4 or not np.all(np.isfinite(times)):
         raise ValueError(f"four or more times (s) expected, found an array of shape {times.shape} or with gaps")
     step = (times[-1] - times[0]) / (len(times) - 1)
     worst = int(np.argmax(np.abs(times - times[0] - step * np.arange(len(times)))))
     off = abs(times[worst] - times[0] - step * worst)
-    if not (step > 0 and off <= JITTER * step):
+    if not (step > 0 and off <= MAX_JITTER * step):
         raise ValueError(f"evenly sampled times expected, found {times[worst]:g} s {off:g} s off an even step of {step:g} s")
     return float(step)
 
@@ -233,8 +310,16 @@ def _components(
 
 
 def harmonics(low: float, cutoff: float, period: float) -> tuple[int, int]:
-    """First and last harmonic of a period (s) from `low` to `cutoff` (Hz), both included. Raises ValueError where there is
-    none."""
+    """First and last harmonic of a period within a band, both limits included.
+
+    Args:
+        low: Lower limit (Hz).
+        cutoff: Upper limit (Hz).
+        period: Period (s).
+
+    Raises:
+        ValueError: The band is out of range or holds no harmonic.
+    """
     if not (0 <= low < cutoff and math.isfinite(cutoff)):
         raise ValueError(f"a band has 0 <= low < cutoff, found {low} and {cutoff} Hz")
     first, last = max(math.ceil(low * period - 1e-6), 1), math.floor(cutoff * period + 1e-6)
@@ -244,7 +329,7 @@ def harmonics(low: float, cutoff: float, period: float) -> tuple[int, int]:
 
 
 def _below_breaking(omega: np.ndarray, energy: np.ndarray, environment: Environment) -> None:
-    """Raises ValueError where a wave as high as the significant one, of the sea's zero-crossing period, breaks."""
+    """Raise ValueError where a wave of the significant height and the zero-crossing period would break."""
     m0 = energy.sum()
     crossing = math.sqrt((omega**2 * energy).sum() / m0)
     k = float(wavenumber(jnp.asarray(crossing), jnp.asarray(environment.depth), jnp.asarray(environment.gravity)))

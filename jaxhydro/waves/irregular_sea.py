@@ -1,4 +1,4 @@
-"""Irregular seas of first and second order, summed as they are or made ready for a time integration."""
+"""Irregular seas of first and second order."""
 
 import math
 from typing import Literal, get_args
@@ -14,7 +14,7 @@ from jaxhydro.waves.components import Components, PlaneWaves
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.preparation import Preparation
-from jaxhydro.waves.sea import MIDDLE, AbstractSea, Stretching, WaveSea, direction, growth
+from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY, AbstractSea, Stretching, WaveSea, direction, growth
 from jaxhydro.waves.second_order import KINDS, Kind, bound_waves, elevation_spectrum
 from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import Box, supports
@@ -26,15 +26,22 @@ EXCURSION = 20.0  # m times the platform's size, that it may drift along the wav
 
 
 class IrregularSea(AbstractSea):
-    """Components on successive harmonics of a period, with what they bind at second order where `order` is 2: by `kinds` at
-    sums and differences of their frequencies, or at one of these alone; differences up to `highest_difference` (Hz; None: all),
-    as with OpenFAST's `WvHiCOffD`. `acting`: bound waves act "everywhere" as waves; only by their horizontal flow "at the
-    origin", which the whole platform is in, wherever it is: without vertical flow or pressure, as where a program takes long
-    waves for a current that changes; or "nowhere": gauges have them, platforms do not feel them. Their elevation is everywhere
-    all the same.
+    """Irregular sea on successive harmonics of a period, with bound waves where `order` is 2.
 
-    Stretching and `ramp` (s) are those of `WaveSea`. `flow`, `elevation` and `drift` are by direct summation, for few points
-    and components, and of waves that act everywhere; simulations call `prepared`.
+    `flow`, `elevation` and `drift` are direct summations, for few points and components, and only where bound waves act
+    everywhere. Simulations call `prepared`.
+
+    Attributes:
+        components: First-order waves.
+        environment: Water depth and gravity.
+        order: 1 or 2.
+        stretching: Kinematics above still water, as in `WaveSea`.
+        ramp: Time (s) over which waves grow from rest, as in `WaveSea`.
+        kinds: Frequencies of bound waves: "sum", "difference" or both.
+        highest_difference: Highest difference frequency (Hz) of bound waves, as OpenFAST's `WvHiCOffD`; None: all.
+        acting: Where bound waves act on the platform. "everywhere": as waves. "at the origin": the whole platform feels
+            their horizontal flow at the origin, without vertical flow or pressure, as where a program takes long waves for a
+            changing current. "nowhere": only gauges measure them. Their elevation is always everywhere.
     """
 
     components: Components
@@ -47,15 +54,18 @@ class IrregularSea(AbstractSea):
     acting: Acting = eqx.field(static=True, default="everywhere")
 
     def __check_init__(self) -> None:
-        """Raises UnknownName for another order, stretching, kind or place of action."""
+        """Raise UnknownName for another order, stretching, kind or place of action."""
         check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
         check(acting=(self.acting, get_args(Acting)))
         for kind in self.kinds:
             check(kinds=(kind, KINDS))
 
     def direct(self) -> WaveSea:
-        """The same sea by direct summation: exact, N components and at second order N^2 pairs at every point, where they act.
-        Raises ValueError where that is not everywhere."""
+        """The same sea by direct summation: exact, with N components and N² pairs at every point.
+
+        Raises:
+            ValueError: Bound waves do not act everywhere.
+        """
         if self.order == 2 and self.acting != "everywhere":
             raise ValueError(f"bound waves that act {self.acting} are for simulations: `prepared`")
         waves = PlaneWaves.free(self.components, self.environment)
@@ -86,7 +96,16 @@ class IrregularSea(AbstractSea):
     def gauge(
         self, times: Float[np.ndarray, " t"], position: tuple[float, float] = (0.0, 0.0), order: int | None = None
     ) -> Float[np.ndarray, " t"]:
-        """Elevation (m) at `times` (s) at a fixed horizontal `position` (m), of all orders or of the `order` asked for."""
+        """Elevation (m) at a fixed horizontal position.
+
+        Args:
+            times: Times (s), (t,).
+            position: Position (m, earth axes).
+            order: 1 or 2 for one order alone; None: all orders of the sea.
+
+        Returns:
+            Elevation (m), (t,).
+        """
         check(order=(order, (1, 2, None)))
         waves, times = self.components, np.asarray(times, float)
         first, last = waves.harmonics
@@ -102,7 +121,7 @@ class IrregularSea(AbstractSea):
         return found * np.asarray(growth(jnp.asarray(times), self.ramp))
 
     def bound_elevation(self, position: tuple[float, float] = (0.0, 0.0)) -> Complex[Array, " b"]:
-        """`elevation_spectrum` (m) of what is bound, of whatever `order`."""
+        """`elevation_spectrum` (m) of the bound waves, also for a sea of first order."""
         at = jnp.asarray(position, float)
         return _elevation(self.components, self.environment, at, self.kinds, self.highest_difference)
 
@@ -115,11 +134,22 @@ class IrregularSea(AbstractSea):
         transfer: Transfer | None = None,
         exciting: Excitation | None = None,
     ) -> "SupportSea":
-        """The same sea for the points of a hull (m, their extremities) that moves by up to `excursion` (m), on a clock. `drift`
-        has the forces of a `transfer`, too, and `excitation` those of first order.
+        """The sea prepared for one hull and one clock, for fast evaluation in a simulation.
 
-        Raises ValueError for components of several headings, that are no harmonics, or where the clock's steps do not divide
-        the period or are too long for the highest frequency.
+        Args:
+            points: Extremities of the hull (m), (3, p).
+            cylinders: Cylinders that diffract, or None.
+            clock: Times of the integration.
+            excursion: Distance (m) by which the hull may move.
+            transfer: Difference-frequency transfer function, whose forces `drift` then has.
+            exciting: First-order excitation, which `excitation` then has.
+
+        Returns:
+            The prepared sea.
+
+        Raises:
+            ValueError: Components have several headings or are not harmonics, or the clock's steps do not divide the period
+                or are too long for the highest frequency.
         """
         shared = self.preparation(points, cylinders, clock, excursion, transfer, exciting)
         return shared.of(self.components)
@@ -133,7 +163,10 @@ class IrregularSea(AbstractSea):
         transfer: Transfer | None = None,
         exciting: Excitation | None = None,
     ) -> Preparation:
-        """What `prepared` works out of frequencies and heading alone, for all seas that have these. Raises as it does."""
+        """The part of `prepared` that all seas of these frequencies and this heading share.
+
+        Arguments and errors are those of `prepared`.
+        """
         waves, depth = self.components, float(self.environment.depth)
         heading, period = float(waves.heading[0]), float(waves.period)
         if np.ptp(np.asarray(waves.heading)) > 1e-12:
@@ -165,7 +198,7 @@ class IrregularSea(AbstractSea):
             (True, True, False) if cylinders is None else (cylinders.lag, cylinders.bound, cylinders.ramp),
             exciting,
             transfer,
-            jnp.asarray((np.asarray(waves.omega) / MIDDLE) ** 2),
+            jnp.asarray((np.asarray(waves.omega) / DRIFT_REFERENCE_FREQUENCY) ** 2),
             jnp.asarray(share),
             2 * math.pi / period,
             size,

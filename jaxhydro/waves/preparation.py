@@ -1,4 +1,4 @@
-"""What irregular seas of one band and one heading share, made ready for a time integration."""
+"""Shared preparation of irregular seas of one band and one heading for a time integration."""
 
 import math
 from typing import Any
@@ -14,15 +14,18 @@ from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.envelope import envelope
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.sea import growth
-from jaxhydro.waves.second_order import Kind, fold
+from jaxhydro.waves.second_order import Kind, sum_over_pairs
 from jaxhydro.waves.support_sea import Clock, SupportSea
 from jaxhydro.waves.supports import weights
 from jaxhydro.waves.transfer import Transfer
 
 
 class Preparation(eqx.Module):
-    """Supports, their weights, a hull's cylinders and computed forces, a clock: what seas of the frequencies, the heading and
-    all else of `like` share, whose amplitudes and phases are their own. `of` may be vectorised over these."""
+    """Preparation that seas of the same frequencies and heading share; amplitudes and phases differ.
+
+    It holds support wavenumbers and their weights, the hull's cylinders and computed forces, and a clock. `of` may be
+    vectorised over the amplitudes and phases.
+    """
 
     like: Any  # `IrregularSea`, that makes it
     table: Float[Array, "g r"]
@@ -43,7 +46,7 @@ class Preparation(eqx.Module):
     half: float = eqx.field(static=True)  # m, of the box
 
     def of(self, waves: Components) -> SupportSea:
-        """The sea of these components, made ready."""
+        """The prepared sea of these components."""
         like, clock = self.like, self.clock
         arrays = (self.table, self.spacing, self.middle, self.along, self.radius)
         order = 1 if like.acting == "nowhere" else like.order
@@ -86,7 +89,7 @@ def _spectrum(
     radius: Float[Array, " c"],
     exciting: Excitation | None,
 ) -> Complex[Array, "b f r"]:
-    """Fourier amplitudes of the supports' quantities, by harmonic: see `SupportSea.series`."""
+    """Fourier amplitudes of the quantities of `SupportSea.series`, by harmonic."""
     lag, diffract_bound, ramp, apart = options
     depth = environment.depth
     # seen from the middle of the box
@@ -125,7 +128,7 @@ def _spectrum(
     found = jnp.swapaxes(rows, 0, 1)[:, :, None] * weights(table, spacing, k)[:, None]
     if order == 1:
         return jnp.pad(found, ((first, 0), (0, 0), (0, 0)))
-    real, imaginary = jnp.split(fold(waves, environment, sums, *pairs), 2, axis=1)
+    real, imaginary = jnp.split(sum_over_pairs(waves, environment, sums, *pairs), 2, axis=1)
     bound = real + 1j * imaginary
     if exciting is not None:
         bound = jnp.pad(bound, ((0, 0), (6, 0), (0, 0)))
@@ -136,7 +139,7 @@ def _spectrum(
 def _series(
     spectrum: Complex[Array, "b f r"], fundamental: float, size: int, clock: Clock, ramp: float
 ) -> tuple[Float[Array, "t s f 2*r"], Float[Array, "h f 2*r"] | None]:
-    """Real and imaginary parts on the clock, by inverse Fourier transforms, one for each node of the steps."""
+    """Real and imaginary parts at the times of a clock, by one inverse Fourier transform per node."""
     omega = fundamental * jnp.arange(spectrum.shape[0])
     kept = clock.steps + 1
     times = clock.start + clock.step * jnp.arange(kept)

@@ -1,4 +1,7 @@
-"""Seas: what gives the flow at any time and place. `AbstractSea.flow` and `surface` are all that the simulator asks for."""
+"""Seas: water flow and surface elevation at any time and position.
+
+The simulator asks for `AbstractSea.flow` and `AbstractSea.surface` only.
+"""
 
 import abc
 import dataclasses
@@ -19,54 +22,72 @@ from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.transfer import Transfer
 
 Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
-MIDDLE = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
-DRIFTS = 4  # entries of `AbstractSea.drift` without a transfer function
+DRIFT_REFERENCE_FREQUENCY = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one
+DRIFT_ENTRIES = 4  # entries of `AbstractSea.drift` without a transfer function
 
 
 class AbstractSea(eqx.Module):
-    """A sea. Points are in earth axes, the origin at still water level under or above the platform's rest position."""
+    """Base class of all seas: water flow and surface elevation over time and position.
+
+    Points are in earth axes. The origin is at still water level, on the vertical of the platform's reference position.
+    """
 
     @abc.abstractmethod
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow | None:
-        """Water at `points` (m) and `time` (s); None means still water everywhere, which costs nothing.
+        """Water velocity, acceleration and pressure at points.
 
-        `cylinders` says which of the points diffract the waves.
+        Args:
+            time: Time (s).
+            points: Positions (m), (3, n).
+            cylinders: Which points diffract the waves.
+
+        Returns:
+            The flow; None: still water everywhere, at no cost.
         """
 
     @abc.abstractmethod
     def elevation(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
-        """Surface elevation (m) at horizontal `points` (m) and `time` (s), None in still water."""
+        """Surface elevation (m), (n,), at a time (s) and horizontal points (m), (2, n); None in still water."""
 
     def surface(self, time: Float[Array, ""], points: Float[Array, "2 n"]) -> Float[Array, " n"] | None:
-        """The elevation up to which the platform is wetted; None: still water level."""
+        """Elevation (m), (n,), up to which the platform is wetted; None: still water level."""
         return self.elevation(time, points)
 
     def drift(self, time: Float[Array, ""]) -> Float[Array, " d"] | None:
-        """What slow second-order forces go with (m2), of first-order waves at the origin; None: nothing is known of it.
+        """Squared wave envelopes (m²) at the origin, for slow second-order forces; None: not known.
 
-        With a the complex elevation, eta = Re a: the squared envelope |a|^2; its Hilbert transform, which turns cos into sin
-        and a mean into nothing; Re(a_w conj(a)), a_w the waves weighted by (omega / `MIDDLE`)^2; and the mean of |a|^2, Hs^2/8.
-        Differences of frequencies only: there are no sums to be filtered out. Where the sea was made with a platform's transfer
-        function, its six forces (N, N m) come after these `DRIFTS`.
+        With a the complex elevation of first-order waves, eta = Re a, the entries are:
+
+        - the squared envelope |a|²;
+        - its Hilbert transform, which turns cos into sin and a mean into 0;
+        - Re(a_w conj(a)), a_w the waves weighted by (omega / `DRIFT_REFERENCE_FREQUENCY`)²;
+        - the mean of |a|², Hs²/8.
+
+        They contain difference frequencies only. A sea made with a platform's transfer function appends its six forces (N, N
+        m) to these `DRIFT_ENTRIES` entries.
         """
         return None
 
     def excitation(self, time: Float[Array, ""], place: Float[Array, "2"]) -> Float[Array, "6"] | None:
-        """First-order force (N, N m, earth axes) on a platform at a horizontal `place` (m), of waves where it is, where the sea
-        was made with its excitation; None: it was not."""
+        """First-order force on a platform (N, N m, earth axes) from a table; None for a sea made without one.
+
+        Args:
+            time: Time (s).
+            place: Horizontal position of the platform (m), (2,).
+        """
         return None
 
     def direction(self) -> Float[Array, "2"]:
-        """Unit vector along which the waves travel, by energy (earth axes)."""
+        """Unit vector that the waves travel along, weighted by energy (earth axes), (2,)."""
         raise NotImplementedError(f"{type(self).__name__} does not tell where its waves travel to")
 
     def moved(self, distance: Float[Array, ""]) -> "AbstractSea":
-        """The sea `distance` (m) further along its direction: what was at x is now at x + distance."""
+        """The sea shifted along its direction: what was at x is then at x + `distance` (m)."""
         raise NotImplementedError(f"{type(self).__name__} cannot be moved along its waves")
 
 
 class StillWater(AbstractSea):
-    """No waves and no current."""
+    """Still water: no waves and no current."""
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> None:
         return None
@@ -79,14 +100,26 @@ class StillWater(AbstractSea):
 
 
 class WaveSea(AbstractSea):
-    """Plane waves of any order by direct summation: the reference for what is faster, and the sea of a few components.
+    """Plane waves of any order by direct summation: the reference for faster seas.
 
-    Kinematics are those at the point's own position. Above still water they follow `stretching`: "vertical", those of z = 0;
-    "extrapolation", those of z = 0 and their slope (Rodenbusch and Forristall 1986 for first order); "wheeler", the profile
-    moved with the surface, that of z' = h (z - eta) / (h + eta) (Wheeler 1970, Journal of Petroleum Technology 22, 359-367);
-    "none": as vertical, and the platform is wetted to still water level. Waves grow from rest over the first `ramp` seconds
-    by a half cosine (0: at full height from the start). `bound` is what the waves bind at second order, `transfer` a platform's
-    difference-frequency forces, `exciting` those of first order.
+    Kinematics are those at the point's own position. Above still water they follow `stretching`:
+
+    - "vertical": those of z = 0;
+    - "extrapolation": those of z = 0 and their slope;
+    - "wheeler": the profile moved with the surface, z' = h (z - eta) / (h + eta);
+    - "none": as "vertical", and the platform is wetted up to still water level.
+
+    Attributes:
+        waves: First-order waves.
+        environment: Water depth and gravity.
+        ramp: Time (s) over which the waves grow from rest by a half cosine; 0: full height from the start.
+        stretching: Kinematics above still water.
+        bound: Waves bound at second order, or None.
+        transfer: Difference-frequency forces of a platform, or None.
+        exciting: First-order forces of a platform, or None.
+
+    References:
+        Wheeler (1970), Journal of Petroleum Technology 22, 359-367; Rodenbusch and Forristall (1986), on extrapolation.
     """
 
     waves: PlaneWaves
@@ -98,7 +131,7 @@ class WaveSea(AbstractSea):
     exciting: Excitation | None = None
 
     def __check_init__(self) -> None:
-        """Raises UnknownName for another stretching."""
+        """Raise UnknownName for another stretching."""
         check(stretching=(self.stretching, get_args(Stretching)))
 
     def flow(self, time: Float[Array, ""], points: Float[Array, "3 n"], cylinders: Cylinders | None = None) -> Flow:
@@ -157,7 +190,9 @@ class WaveSea(AbstractSea):
         sooner = jnp.sign(omega[:, None] - omega)
         pairs = (sooner * (one[:, None] * one.conj()).imag).sum()
         mean = (one * one.conj()).real.sum()
-        plain = jnp.stack([(every * every.conj()).real, pairs, (((omega / MIDDLE) ** 2 * one).sum() * every).real, mean])
+        plain = jnp.stack(
+            [(every * every.conj()).real, pairs, (((omega / DRIFT_REFERENCE_FREQUENCY) ** 2 * one).sum() * every).real, mean]
+        )
         if self.transfer is None:
             return plain
         return jnp.concatenate([plain, self.transfer.force(self.transfer.at(omega) @ one)])
@@ -182,12 +217,17 @@ class WaveSea(AbstractSea):
         return dataclasses.replace(self, waves=on(self.waves), bound=bound)
 
     def growth(self, time: Float[Array, "..."]) -> Float[Array, "..."]:
-        """Share of their full height (-) that the waves have at a time (s)."""
+        """Fraction (0 to 1) of their full height that the waves have at a time (s)."""
         return growth(time, self.ramp)
 
 
 def direction(vector: Float[Array, "2 w"], energy: Float[Array, " w"]) -> Float[Array, "2"]:
-    """Unit vector of the mean of wavenumber vectors weighted by energy; zero where there is none."""
+    """Unit vector of the energy-weighted mean of wavenumber vectors; zero where there is none.
+
+    Args:
+        vector: Wavenumber vectors (rad/m), (2, w).
+        energy: Weights, (w,).
+    """
     mean = vector @ energy
     square = (mean**2).sum()
     return jnp.where(square > 0, mean / jnp.sqrt(jnp.where(square > 0, square, 1.0)), 0.0)
@@ -195,7 +235,7 @@ def direction(vector: Float[Array, "2 w"], energy: Float[Array, " w"]) -> Float[
 
 @jax.jit
 def growth(time: Float[Array, "..."], ramp: Float[Array, ""] | float) -> Float[Array, "..."]:
-    """A half cosine from 0 to 1 over `ramp` (s)."""
+    """Half cosine from 0 to 1 over the first `ramp` (s); 1 where `ramp` is 0."""
     duration = jnp.asarray(ramp)
     progress = jnp.clip(time / jnp.where(duration > 0, duration, 1.0), 0.0, 1.0)
     return jnp.where(duration > 0, 0.5 - 0.5 * jnp.cos(math.pi * progress), 1.0)
@@ -208,7 +248,7 @@ def stretched(
     points: Float[Array, "3 n"],
     depth: Float[Array, ""] | float,
 ) -> tuple[Float[Array, " n"], Float[Array, " n"] | None]:
-    """Where the profiles are read (m, at most 0), and how far above it they are extrapolated (m; None: not)."""
+    """Level at which profiles are read (m, at most 0), and height of extrapolation (m) or None."""
     z = points[2]
     if stretching == "wheeler" and (eta := sea.elevation(time, points[:2])) is not None:
         z = depth * (z - eta) / (depth + eta)
@@ -219,7 +259,7 @@ def stretched(
 def profiles(
     k: Float[Array, "w 1"], z: Float[Array, " n"], depth: Float[Array, ""] | float
 ) -> tuple[Float[Array, "w n"], Float[Array, "w n"]]:
-    """cosh k(z+h) / cosh kh and sinh k(z+h) / cosh kh, without overflow."""
+    """cosh k(z+h) / cosh kh and sinh k(z+h) / cosh kh, without overflow, (w, n) each."""
     down, up = jnp.exp(k * z), jnp.exp(-k * (z + 2 * depth))
     scale = 1 / (1 + jnp.exp(-2 * k * depth))
     return (down + up) * scale, (down - up) * scale
@@ -235,10 +275,25 @@ def regular_wave(
     ramp: float = 0.0,
     stretching: Stretching = "vertical",
 ) -> WaveSea:
-    """A regular wave of first order: height (m, crest to trough), period (s), heading and phase (rad), ramp (s).
+    """Regular wave of first order.
 
-    Raises ValueError for a period or height out of range, or a wave steeper than breaking (Miche 1944: H k / (2 tanh kh) <=
-    0.142 pi).
+    Args:
+        height: Height from trough to crest (m).
+        period: Period (s).
+        environment: Water depth and gravity.
+        heading: Direction that the wave travels to (rad).
+        phase: Phase (rad).
+        ramp: Time (s) over which the wave grows from rest.
+        stretching: Kinematics above still water, as in `WaveSea`.
+
+    Returns:
+        The sea.
+
+    Raises:
+        ValueError: Period or height is out of range, or the wave would break: H k / (2 tanh kh) > 0.142 pi.
+
+    References:
+        Miche (1944), breaking limit.
     """
     if not (period > 0 and height >= 0):
         raise ValueError(f"a regular wave needs period > 0 s and height >= 0 m, found {period} s and {height} m")

@@ -1,4 +1,4 @@
-"""A sea state in two numbers."""
+"""Significant wave height and peak period of a sea."""
 
 from typing import NamedTuple
 
@@ -6,23 +6,36 @@ import numpy as np
 
 from jaxhydro.waves.components import Components
 
-SMOOTHED = 0.005  # Hz, half the width over which a spectrum is averaged
+SMOOTHING_HALF_WIDTH = 0.005  # Hz, half the width over which a spectrum is averaged
 
 
 class SeaState(NamedTuple):
-    """Significant height 4 m0^0.5 (m) and peak period (s)."""
+    """Sea state.
+
+    Attributes:
+        significant_height: Significant wave height Hs = 4 sqrt(m0) (m).
+        peak_period: Peak period (s).
+    """
 
     significant_height: float
     peak_period: float
 
 
 def peak_period(frequency: np.ndarray, density: np.ndarray) -> float:
-    """Tp = sum S^4 / sum f S^4 (s), steadier than the highest of a spectrum's estimates.
+    """Peak period (s) of a spectrum, Tp = sum S⁴ / sum f S⁴.
 
-    Young 1995, Ocean Engineering 22, 669-686, equation (3), of the density averaged over 0.01 Hz. `frequency` (n,) in Hz is
-    even, `density` (n,) in any unit.
+    It is steadier than the highest line of an estimated spectrum. The density is first averaged over 0.01 Hz.
+
+    Args:
+        frequency: Even frequencies (Hz), (n,).
+        density: Spectral density in any unit, (n,).
+
+    References:
+        Young (1995), Ocean Engineering 22, 669-686, equation (3).
     """
-    edges = np.searchsorted(frequency, np.add.outer((-SMOOTHED, SMOOTHED), frequency) + np.array([[-1e-9], [1e-9]]))
+    edges = np.searchsorted(
+        frequency, np.add.outer((-SMOOTHING_HALF_WIDTH, SMOOTHING_HALF_WIDTH), frequency) + np.array([[-1e-9], [1e-9]])
+    )
     summed = np.concatenate([[0.0], np.cumsum(density)])
     mean = (summed[edges[1]] - summed[edges[0]]) / (edges[1] - edges[0])
     weight = (mean / mean.max()) ** 4
@@ -30,7 +43,11 @@ def peak_period(frequency: np.ndarray, density: np.ndarray) -> float:
 
 
 def state_of(waves: Components) -> SeaState:
-    """The sea state of components on even frequencies."""
+    """Sea state of components on even frequencies.
+
+    Raises:
+        ValueError: All amplitudes are 0.
+    """
     power, frequency = 0.5 * np.asarray(waves.amplitude) ** 2, np.asarray(waves.omega) / (2 * np.pi)
     if not power.sum() > 0:
         raise ValueError("expected a sea with waves, found amplitudes of 0 only")

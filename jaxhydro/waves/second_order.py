@@ -1,7 +1,8 @@
-"""Second-order waves: what pairs of first-order components bind at the sums and differences of their frequencies.
+"""Second-order waves bound by pairs of first-order components, at sums and differences of frequencies.
 
 Sharma and Dean (1981), SPE Journal 21, 604-612, equations for E and Phi below; written out for offshore wind by Agarwal and
-Manuel (2011), Engineering Structures 33, 1246-1257. The mean flow of equal frequencies, which the theory leaves free, is zero.
+Manuel (2011), Engineering Structures 33, 1246-1257. The mean flow of equal frequencies, which the theory leaves free, is
+zero.
 """
 
 import math
@@ -26,16 +27,28 @@ Reduce = Callable[[Float[Array, " n"], Float[Array, "2 n"], Complex[Array, " n"]
 
 KINDS: tuple[Kind, ...] = ("sum", "difference")
 SIGN = {"sum": 1.0, "difference": -1.0}
-STATIONARY = 1e-9  # beats slower than this part of their frequencies are those of equal frequencies, but for rounding
-TILE = 128  # pairs at a time in `fold`: long enough for the overhead of a step, short enough for the cache
+MIN_BEAT = 1e-9  # beats slower than this part of their frequencies are those of equal frequencies, but for rounding
+TILE = 128  # pairs at a time in `sum_over_pairs`: long enough for the overhead of a step, short enough for the cache
 
 
 def transfer(first: Wave, second: Wave, environment: Environment, kind: Kind) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
-    """Elevation E (1/m) and potential Phi (1/s) that pairs of waves bind, per product of their complex amplitudes.
+    """Quadratic transfer functions of bound waves: elevation E (1/m) and potential Phi (1/s) of pairs.
 
-    Waves A_i exp(i theta_i), A_j exp(i theta_j) bind the `PlaneWaves` entry of frequency omega_i +- omega_j, vector k_i +- k_j,
-    elevation E A_i A_j (sum) or E A_i conj(A_j) (difference), and potential alike: the whole of the pair, (i, j) and (j, i)
-    together. Of a wave with itself it is half. A wave of frequency 0 binds nothing.
+    Waves A_i exp(i theta_i) and A_j exp(i theta_j) bind one entry of `PlaneWaves`. Its frequency is omega_i ± omega_j, its
+    vector k_i ± k_j, its elevation E A_i A_j (sum) or E A_i conj(A_j) (difference), and its potential alike. That is the
+    whole of the pair, (i, j) and (j, i) together; a wave with itself has half. A wave of frequency 0 binds nothing.
+
+    Args:
+        first: Angular frequencies (rad/s), (n,), and wavenumber vectors (rad/m), (2, n), of waves i.
+        second: The same of waves j.
+        environment: Water depth and gravity.
+        kind: "sum" or "difference".
+
+    Returns:
+        E and Phi, (n,) each.
+
+    References:
+        Sharma and Dean (1981), SPE Journal 21, 604-612.
     """
     check(kind=(kind, KINDS))
     return _transfer(first, second, environment, SIGN[kind])
@@ -65,7 +78,7 @@ def _transfer(
     square = (k**2).sum(axis=0)
     size = jnp.sqrt(jnp.where(square > 0, square, 1.0))
     # equal frequencies: K = 0 whatever the headings, and of one heading nothing but a constant is left
-    moving = exist & (square > 0) & (jnp.abs(omega) > STATIONARY * (omega_i + omega_j))
+    moving = exist & (square > 0) & (jnp.abs(omega) > MIN_BEAT * (omega_i + omega_j))
     detuning = jnp.where(moving, omega**2 - g * size * jnp.tanh(size * environment.depth), 1.0)
     potential = jnp.where(moving, (g * kinematic - omega * dynamic) / detuning, 0.0)
     return jnp.where(exist, (dynamic + omega * potential) / g, 0.0), potential
@@ -78,11 +91,23 @@ def bound_waves(
     set_down: bool = True,
     highest_difference: float | None = None,
 ) -> PlaneWaves:
-    """All pairs of any components written out, one entry each: exact, and as large as their number.
+    """Second-order waves of all pairs of components: exact, one entry per pair.
 
     A difference is ordered so that its frequency is not negative. Equal frequencies of two headings leave a standing pattern
-    of elevation, omega = 0 and k not, without flow. `set_down`: with the differences of components and themselves, one entry.
-    Differences above `highest_difference` (Hz) bind nothing.
+    of elevation, omega = 0 with k not 0, without flow.
+
+    Args:
+        waves: First-order components.
+        environment: Water depth and gravity.
+        kinds: "sum", "difference" or both.
+        set_down: Whether differences include those of components with themselves (one entry).
+        highest_difference: Highest difference frequency (Hz); None: all.
+
+    Returns:
+        The bound waves.
+
+    Raises:
+        UnknownName: Another kind.
     """
     omega, vector, amplitude = waves.omega, waves.vector(), waves.complex_amplitude()
     found = []
@@ -111,7 +136,7 @@ def bound_waves(
 
 
 class _Tiles(eqx.Module):
-    """Where runs of pairs of one frequency begin in `_padded`, by sign and harmonic."""
+    """First indices in `_padded` of runs of pairs of one frequency, with their sign and harmonic."""
 
     i: Int[Array, " t"]
     j: Int[Array, " t"]
@@ -120,7 +145,10 @@ class _Tiles(eqx.Module):
 
 
 def _tiles(n: int, first: int, kinds: Sequence[Kind], width: int) -> _Tiles:
-    """Pairs i >= j of n harmonics from `first` on, in runs of `width`: along anti-diagonals for sums, else diagonals."""
+    """Pairs i >= j of n harmonics from `first` on, in runs of `width` pairs of one frequency.
+
+    Runs go along anti-diagonals for sums, along diagonals for differences.
+    """
     parts = []
     for kind in kinds:
         check(kinds=(kind, KINDS))
@@ -141,30 +169,42 @@ def _tiles(n: int, first: int, kinds: Sequence[Kind], width: int) -> _Tiles:
 
 
 def _padded(rows: Float[Array, "r n"], width: int) -> Float[Array, "r m"]:
-    """Rows forwards and backwards, each followed by `width` zeros: waves that bind nothing."""
+    """Rows forwards and backwards, each followed by `width` zeros (waves that bind nothing)."""
     zeros = jnp.zeros((rows.shape[0], width))
     return jnp.concatenate([rows, zeros, rows[:, ::-1], zeros], axis=1)
 
 
 def _binds(beat: Float[Array, "..."], highest: float) -> Bool[Array, "..."]:
-    """Whether differences (rad/s) are up to a highest (Hz), but for rounding."""
+    """Whether difference frequencies (rad/s) are at most `highest` (Hz), up to rounding."""
     return beat <= 2 * math.pi * highest * (1 + 1e-9)
 
 
-def fold(
+def sum_over_pairs(
     waves: Components,
     environment: Environment,
     reduce: Reduce,
     kinds: Sequence[Kind] = KINDS,
     highest_difference: float | None = None,
 ) -> PyTree:
-    """Sums over the pairs of each frequency b 2 pi / period, stacked for b = 0 .. 2 last.
+    """Sums over the pairs of each frequency b 2 pi / period, stacked for b = 0 ... 2 last.
 
-    `reduce(omega, vector, elevation, potential)` gets up to `TILE` pairs of one frequency at a time (some empty, of no
-    amplitude) and gives a pytree of arrays summed over them; the sums of all are added up, so it must be linear in the
-    amplitudes, and finite where omega and vector are 0: b = 0 is the set-down, and of empty pairs the vector means nothing.
-    Differences above `highest_difference` (Hz) bind nothing, as with OpenFAST's `WvHiCOffD`.
-    Memory is that of the result, also for gradients. Raises ValueError where the components are no successive harmonics.
+    `reduce(omega, vector, elevation, potential)` gets up to `TILE` pairs of one frequency at a time and returns a pytree of
+    arrays summed over them. Some of these pairs are empty and have no amplitude. `reduce` must be linear in elevation and
+    potential, and finite where omega and vector are 0. There b = 0 is the set-down; the vector of empty pairs has no
+    meaning. Memory is that of the result, also for gradients.
+
+    Args:
+        waves: First-order components on successive harmonics.
+        environment: Water depth and gravity.
+        reduce: Sum over some pairs.
+        kinds: "sum", "difference" or both.
+        highest_difference: Highest difference frequency (Hz), as OpenFAST's `WvHiCOffD`; None: all.
+
+    Returns:
+        The pytree of `reduce`, with a leading axis over b.
+
+    Raises:
+        ValueError: The components are not successive harmonics of a period.
     """
     n, (first, last) = waves.omega.size, waves.harmonics
     width = min(n, TILE)
@@ -206,9 +246,22 @@ def elevation_spectrum(
     kinds: Sequence[Kind] = KINDS,
     highest_difference: float | None = None,
 ) -> Complex[Array, " b"]:
-    """Second-order elevation at a horizontal position (m): c_b (m) of eta = Re sum c_b exp(i b 2 pi t / period).
+    """Second-order elevation at a horizontal position, by harmonic.
 
-    b = 0 .. 2 last; c_0 is the set-down. Raises ValueError where the components are no successive harmonics.
+    eta = Re sum c_b exp(i b 2 pi t / period).
+
+    Args:
+        waves: First-order components on successive harmonics.
+        environment: Water depth and gravity.
+        position: Horizontal position (m, earth axes).
+        kinds: "sum", "difference" or both.
+        highest_difference: Highest difference frequency (Hz); None: all.
+
+    Returns:
+        c_b (m) for b = 0 ... 2 last; c_0 is the set-down.
+
+    Raises:
+        ValueError: The components are not successive harmonics of a period.
     """
     there = waves.phase - jnp.asarray(position, float) @ waves.vector()  # phases move with the components: nothing per pair
     moved = Components(waves.amplitude, waves.omega, waves.wavenumber, waves.heading, there, waves.first)
@@ -216,4 +269,4 @@ def elevation_spectrum(
     def reduce(*pairs: Any) -> Complex[Array, ""]:
         return pairs[2].sum()
 
-    return fold(moved, environment, reduce, kinds, highest_difference)
+    return sum_over_pairs(moved, environment, reduce, kinds, highest_difference)

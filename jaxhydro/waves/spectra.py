@@ -1,6 +1,7 @@
-"""Wave spectra, one-sided over angular frequency: S(omega) (m2 s/rad), with m0 = integral of S = Hs^2 / 16. Pure functions.
+"""Wave spectra: Pierson-Moskowitz, JONSWAP, white noise and tables; moments and directional spreading.
 
-Arguments are checked where they are concrete; under jit or grad nothing can be raised and bad ones give what the formula gives.
+Spectra S(omega) (m² s/rad) are one-sided over angular frequency, with m0 = integral of S = Hs² / 16. All functions are pure.
+Arguments are checked unless they are traced: under jit or grad nothing can be raised.
 """
 
 import math
@@ -12,14 +13,24 @@ import numpy as np
 from jaxtyping import Array, Float
 
 Scalar = Float[Array, ""] | float
-SHARPEST = 7.0  # peak enhancement up to which the normalisation of `jonswap` holds
+MAX_ENHANCEMENT = 7.0  # peak enhancement up to which the normalisation of `jonswap` holds
 
 
 def peak_enhancement(significant_height: Scalar, peak_period: Scalar) -> Float[Array, ""]:
-    """Default gamma of a sea: 5 up to Tp / sqrt(Hs) = 3.6, exp(5.75 - 1.15 Tp / sqrt(Hs)) between, 1 above 5 (m, s).
+    """Default peak enhancement gamma (-) of a JONSWAP spectrum.
 
-    IEC 61400-3-1:2019, Annex B; DNV-RP-C205 section 3.5.5. The exponential is 5.003 at 3.6: it is cut at 5, so that there is
-    no step. Raises ValueError for Hs or Tp <= 0.
+    5 up to Tp / sqrt(Hs) = 3.6, exp(5.75 - 1.15 Tp / sqrt(Hs)) above, 1 above 5 (m, s). The exponential is 5.003 at 3.6; it
+    is cut at 5, so that there is no step.
+
+    Args:
+        significant_height: Significant wave height Hs (m).
+        peak_period: Peak period Tp (s).
+
+    Raises:
+        ValueError: Hs or Tp is not above 0.
+
+    References:
+        IEC 61400-3-1:2019, Annex B; DNV-RP-C205, section 3.5.5.
     """
     _positive("significant_height", significant_height, "m")
     _positive("peak_period", peak_period, "s")
@@ -32,9 +43,23 @@ def _enhancement(significant_height, peak_period):
 
 
 def pierson_moskowitz(omega: Float[Array, "..."], significant_height: Scalar, peak_period: Scalar) -> Float[Array, "..."]:
-    """S = 5/16 Hs^2 wp^4 omega^-5 exp(-5/4 (wp / omega)^4), wp = 2 pi / Tp: a fully developed sea (rad/s, m, s).
+    """Pierson-Moskowitz spectrum (m² s/rad) of a fully developed sea.
 
-    m0 = Hs^2 / 16 exactly. Pierson and Moskowitz 1964 as in DNV-RP-C205 section 3.5.5. Raises ValueError for Hs or Tp <= 0.
+    S = 5/16 Hs² wp⁴ omega⁻⁵ exp(-5/4 (wp / omega)⁴), wp = 2 pi / Tp. m0 is exactly Hs² / 16.
+
+    Args:
+        omega: Angular frequencies (rad/s).
+        significant_height: Significant wave height Hs (m).
+        peak_period: Peak period Tp (s).
+
+    Returns:
+        S, in the shape of `omega`.
+
+    Raises:
+        ValueError: Hs or Tp is not above 0.
+
+    References:
+        Pierson and Moskowitz (1964); DNV-RP-C205, section 3.5.5.
     """
     _positive("significant_height", significant_height, "m")
     _positive("peak_period", peak_period, "s")
@@ -53,17 +78,33 @@ def _smooth(omega, significant_height, peak_period):
 def jonswap(
     omega: Float[Array, "..."], significant_height: Scalar, peak_period: Scalar, peak_enhancement: Scalar | None = None
 ) -> Float[Array, "..."]:
-    """S = (1 - 0.287 ln gamma) gamma^exp(-(omega - wp)^2 / (2 s^2 wp^2)) times `pierson_moskowitz`, s = 0.07 up to wp, 0.09
-    above (rad/s, m, s). gamma None: `peak_enhancement(Hs, Tp)`.
+    """JONSWAP spectrum (m² s/rad).
 
-    The normalisation is that of IEC 61400-3-1:2019, Annex B, and DNV-RP-C205 section 3.5.5, the same in both: a fit, with m0
-    within -0.33 % and +0.29 % of Hs^2 / 16 for gamma from 1 to 5, exact at 1 and (to 3e-6) at 5, +0.24 % at 3.3, -0.7 % at 6
-    and -1.8 % at 7. Raises ValueError for Hs or Tp <= 0 or gamma outside 1 to 7.
+    S = (1 - 0.287 ln gamma) gamma^exp(-(omega - wp)² / (2 s² wp²)) times `pierson_moskowitz`, with s = 0.07 up to wp and
+    0.09 above.
+
+    The normalisation is a fit. m0 is within -0.33 % and +0.29 % of Hs² / 16 for gamma from 1 to 5: exact at 1 and (to 3e-6)
+    at 5, +0.24 % at 3.3. It is -0.7 % off at 6 and -1.8 % at 7.
+
+    Args:
+        omega: Angular frequencies (rad/s).
+        significant_height: Significant wave height Hs (m).
+        peak_period: Peak period Tp (s).
+        peak_enhancement: gamma (-), 1 to 7; None: the default of `peak_enhancement`.
+
+    Returns:
+        S, in the shape of `omega`.
+
+    Raises:
+        ValueError: Hs or Tp is not above 0, or gamma is not from 1 to 7.
+
+    References:
+        IEC 61400-3-1:2019, Annex B; DNV-RP-C205, section 3.5.5.
     """
     smooth = pierson_moskowitz(omega, significant_height, peak_period)
     gamma = _default_enhancement(significant_height, peak_period) if peak_enhancement is None else peak_enhancement
-    if _concrete(gamma) and not np.all((np.asarray(gamma) >= 1) & (np.asarray(gamma) <= SHARPEST)):
-        raise ValueError(f"peak_enhancement lies from 1 to {SHARPEST:g}, found {gamma}")
+    if _concrete(gamma) and not np.all((np.asarray(gamma) >= 1) & (np.asarray(gamma) <= MAX_ENHANCEMENT)):
+        raise ValueError(f"peak_enhancement lies from 1 to {MAX_ENHANCEMENT:g}, found {gamma}")
     return smooth * _peaked(jnp.asarray(omega), jnp.asarray(peak_period), jnp.asarray(gamma))
 
 
@@ -79,9 +120,21 @@ _default_enhancement = peak_enhancement  # the argument of `jonswap` has the fun
 
 
 def white_noise(omega: Float[Array, "..."], significant_height: Scalar, low: Scalar, high: Scalar) -> Float[Array, "..."]:
-    """S = Hs^2 / 16 / (high - low) from `low` to `high`, both rad/s and both included, 0 elsewhere: what RAOs are measured in.
+    """White-noise spectrum (m² s/rad) between two frequencies, for measuring RAOs.
 
-    Raises ValueError for Hs <= 0, low < 0 or high <= low.
+    S = Hs² / 16 / (high - low) from `low` to `high`, both included, and 0 elsewhere.
+
+    Args:
+        omega: Angular frequencies (rad/s).
+        significant_height: Significant wave height Hs (m).
+        low: Lowest frequency (rad/s).
+        high: Highest frequency (rad/s).
+
+    Returns:
+        S, in the shape of `omega`.
+
+    Raises:
+        ValueError: Hs is not above 0, or not 0 <= low < high.
     """
     _positive("significant_height", significant_height, "m")
     if _concrete(low) and _concrete(high) and not 0 <= float(low) < float(high):
@@ -90,9 +143,18 @@ def white_noise(omega: Float[Array, "..."], significant_height: Scalar, low: Sca
 
 
 def tabulated(omega: Float[Array, "..."], frequencies: Float[Array, " n"], values: Float[Array, " n"]) -> Float[Array, "..."]:
-    """S between `values` (m2 s/rad) at ascending `frequencies` (rad/s) by straight lines, 0 outside them.
+    """Spectrum (m² s/rad) interpolated linearly in a table, 0 outside it.
 
-    Values over hertz are to be divided by 2 pi. Raises ValueError where frequencies do not ascend or values are negative.
+    Args:
+        omega: Angular frequencies (rad/s).
+        frequencies: Ascending angular frequencies of the table (rad/s), (n,).
+        values: Spectral density (m² s/rad), (n,). Divide values over hertz by 2 pi.
+
+    Returns:
+        S, in the shape of `omega`.
+
+    Raises:
+        ValueError: Shapes differ, frequencies do not ascend from 0 or above, or values are negative.
     """
     if _concrete(frequencies) and _concrete(values):
         x, y = np.asarray(frequencies), np.asarray(values)
@@ -106,7 +168,15 @@ def tabulated(omega: Float[Array, "..."], frequencies: Float[Array, " n"], value
 
 
 class Moments(NamedTuple):
-    """Spectral moments m_n = integral of omega^n S, n = -1, 0, 1, 2, 4 (m2 (rad/s)^n), and what is named after them."""
+    """Spectral moments m_n = integral of omega^n S (m² (rad/s)^n), and periods made of them.
+
+    Attributes:
+        minus_one: m(-1).
+        zero: m0, the variance.
+        one: m1.
+        two: m2.
+        four: m4.
+    """
 
     minus_one: Float[Array, ""]
     zero: Float[Array, ""]
@@ -136,8 +206,14 @@ class Moments(NamedTuple):
 
 
 def moments(omega: Float[Array, " w"], spectrum: Float[Array, " w"]) -> Moments:
-    """Moments of values (m2 s/rad) at ascending frequencies (rad/s), by the trapezoidal rule: only what lies between the first
-    and the last. The fourth moment of an omega^-5 tail grows with the log of the last frequency: it belongs to the cutoff."""
+    """Spectral moments by the trapezoidal rule, between the first and the last frequency.
+
+    The fourth moment of an omega⁻⁵ tail grows with the logarithm of the last frequency: it depends on the cutoff.
+
+    Args:
+        omega: Ascending angular frequencies (rad/s), (w,).
+        spectrum: Spectral density (m² s/rad), (w,).
+    """
     moving = omega > 0
     inverse = jnp.where(moving, 1 / jnp.where(moving, omega, 1.0), 0.0)
     powers = (inverse, jnp.ones_like(omega), omega, omega**2, omega**4)
@@ -145,11 +221,25 @@ def moments(omega: Float[Array, " w"], spectrum: Float[Array, " w"]) -> Moments:
 
 
 def spreading(heading: Float[Array, "..."], mean: Scalar = 0.0, exponent: Scalar = 10.0) -> Float[Array, "..."]:
-    """D = Gamma(s + 1) / (2 sqrt(pi) Gamma(s + 1/2)) |cos((heading - mean) / 2)|^(2 s), per rad, over the whole circle (rad).
+    """Directional spreading D (1/rad) over the whole circle.
 
-    s: `exponent`, 0 for every direction alike; mean resultant s / (s + 1), so a standard deviation of about sqrt(2 / (s + 1))
-    rad. Longuet-Higgins, Cartwright and Smith 1963. The law of DNV-RP-C205 section 3.5.8, cos^n of the whole angle over half
-    the circle, is close to it at s = 2 n + 1. Raises ValueError for s < 0.
+    D = Gamma(s + 1) / (2 sqrt(pi) Gamma(s + 1/2)) |cos((heading - mean) / 2)|^(2 s). The mean resultant is s / (s + 1), so
+    the standard deviation is about sqrt(2 / (s + 1)) rad. DNV-RP-C205 section 3.5.8 has cos^n of the whole angle over half
+    the circle, which is close at s = 2 n + 1.
+
+    Args:
+        heading: Directions (rad).
+        mean: Mean direction (rad).
+        exponent: s (-); 0: all directions alike.
+
+    Returns:
+        D, in the shape of `heading`.
+
+    Raises:
+        ValueError: s is negative.
+
+    References:
+        Longuet-Higgins, Cartwright and Smith (1963).
     """
     if _concrete(exponent) and not float(exponent) >= 0:
         raise ValueError(f"the exponent of a spreading is not negative, found {exponent}")

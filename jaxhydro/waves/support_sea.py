@@ -1,4 +1,4 @@
-"""A sea made ready for a time integration: evaluated fast at displaced positions."""
+"""Irregular sea prepared for a time integration: fast evaluation at displaced positions."""
 
 from typing import NamedTuple
 
@@ -13,13 +13,18 @@ from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, Stretching, stretched
 from jaxhydro.waves.supports import field, surface
 
-POINTS = 8  # steps of a clock between which a sea is interpolated
+INTERPOLATION_STEPS = 8  # steps of a clock between which a sea is interpolated
 
 
 class Clock(NamedTuple):
-    """When a time integration asks for the sea: at `nodes` (shares) of `steps` steps of `step` (s) from `start` (s).
+    """Times at which a time integration asks for the sea.
 
-    The first `fine` steps are also asked for at their middle.
+    Attributes:
+        start: First time (s).
+        step: Time step (s).
+        steps: Number of steps.
+        nodes: Fractions of a step at which the sea is asked for.
+        fine: Number of first steps that are also asked for at their middle.
     """
 
     start: float
@@ -29,9 +34,15 @@ class Clock(NamedTuple):
     fine: int = 0
 
 
-class Returned(NamedTuple):
-    """What comes back of a sea: `share` (-) of it, `delay` (s) later, mirrored about the origin, which is at -`middle` (m,
-    along the waves) in a prepared sea's box; `seen` (-) of that is in the sea already, as if it had been sent."""
+class Reflection(NamedTuple):
+    """Reflected waves: the sea mirrored about the origin, later and weaker.
+
+    Attributes:
+        share: Reflection coefficient (-).
+        delay: Delay (s).
+        seen: Fraction (-) of the reflected waves that the sea already includes as if they were incident.
+        middle: Middle of the prepared sea's box (m, along the waves); the origin is at -`middle` in it.
+    """
 
     share: Float[Array, ""]
     delay: Float[Array, ""]
@@ -40,12 +51,17 @@ class Returned(NamedTuple):
 
 
 def between(place: Float[Array, "..."], total: int) -> tuple[Int[Array, "... h"], Float[Array, "... h"]]:
-    """Steps of a clock of `total`, and their weights, that say what is at places (in steps) between them (Lagrange)."""
-    base = jnp.clip(jnp.floor(place).astype(int) - POINTS // 2 + 1, 0, max(total - POINTS, 0))
-    nodes = jnp.arange(POINTS)
-    apart = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, nodes[:, None] - nodes)
+    """Steps of a clock and their weights for Lagrange interpolation between steps.
+
+    Args:
+        place: Fractional step numbers.
+        total: Number of steps of the clock.
+    """
+    base = jnp.clip(jnp.floor(place).astype(int) - INTERPOLATION_STEPS // 2 + 1, 0, max(total - INTERPOLATION_STEPS, 0))
+    nodes = jnp.arange(INTERPOLATION_STEPS)
+    apart = jnp.where(jnp.eye(INTERPOLATION_STEPS, dtype=bool), 1.0, nodes[:, None] - nodes)
     away = (place - base)[..., None, None] - nodes
-    weight = jnp.where(jnp.eye(POINTS, dtype=bool), 1.0, away / apart).prod(axis=-1)
+    weight = jnp.where(jnp.eye(INTERPOLATION_STEPS, dtype=bool), 1.0, away / apart).prod(axis=-1)
     return jnp.minimum(base[..., None] + nodes, total - 1), weight
 
 
@@ -75,14 +91,14 @@ class SupportSea(AbstractSea):
     half: float = eqx.field(static=True)  # m, of the box
     forces: int = eqx.field(static=True, default=0)
     envelope: Envelope | None = None
-    back: Returned | None = None
+    back: Reflection | None = None
     apart: bool = eqx.field(static=True, default=False)
 
     def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
-        """The same sea for an integration over `steps` steps that starts `index` steps after the clock did; beyond its end the
-        sea stands still. What its first steps ask for at their middle is interpolated between `POINTS` steps (Lagrange).
+        """The same sea for an integration over `steps` steps that starts `index` steps after the clock's start.
 
-        A wave of 20 steps is met to 1e-6 there, one of 8 to 2e-3.
+        Beyond the clock's end the sea stands still. Values at the middle of its first steps are interpolated between
+        `INTERPOLATION_STEPS` steps (Lagrange): to 1e-6 for a wave of 20 steps, to 2e-3 for one of 8.
         """
         total = self.series.shape[0]
         fine = None
@@ -136,11 +152,14 @@ class SupportSea(AbstractSea):
         return jnp.stack([here, *(jnp.where(begun, one, 0.0) for one in (back, later, then))])
 
     def families(self, rows: int) -> int:
-        """How often cylinders are excited, of the number of rows."""
+        """Number of cylinder excitations among `rows` quantities."""
         return (rows - 8) // 3 if self.apart else (rows - 6) // 2
 
     def _met(self, parts: Float[Array, "s ..."]) -> Array:
-        """What is met, of what was found of `_sets`: derivatives by the share and the delay cost no more than it does."""
+        """Sum of incident and reflected waves.
+
+        Derivatives by reflection and delay cost no more than the value.
+        """
         if self.back is None:
             return parts[0]
         late, seen = (one - jax.lax.stop_gradient(one) for one in (self.back.delay, self.back.seen))

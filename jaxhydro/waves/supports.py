@@ -1,8 +1,8 @@
-"""A few support wavenumbers in place of all components: what makes a sea cheap at displaced positions.
+"""Support wavenumbers in place of all wave components, which make a sea cheap at displaced positions.
 
 Over the box that a platform can occupy, exp(-ikx) with its profile over depth is a function of k of low numerical rank. So
-the field of every wavenumber is a combination, with weights w_r(k), of the fields of R of them, and N components collapse, once
-per sea, to R whose amplitudes are functions of time: sum over n of w_r(k_n) a_n exp(i omega_n t).
+the field of every wavenumber is a combination, with weights w_r(k), of the fields of R of them. N components then collapse,
+once per sea, to R whose amplitudes are functions of time: sum over n of w_r(k_n) a_n exp(i omega_n t).
 """
 
 import math
@@ -15,15 +15,21 @@ import numpy as np
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-POWER = 0.75  # supports are Chebyshev points in k^POWER: denser where profiles change most
+SPACING_POWER = 0.75  # supports are Chebyshev points in k^POWER: denser where profiles change most
 TOLERANCE = 1e-5  # of a free wave's largest value, that its field may be missed by in the box
-BOUND = 30.0  # times as much for bound waves shorter than all free ones
+BOUND_TOLERANCE_FACTOR = 30.0  # times as much for bound waves shorter than all free ones
 RIDGE = 1e-10  # of the largest singular value: keeps weights small without losing accuracy
-MOST = 96
+MAX_SUPPORTS = 96
 
 
 class Box(NamedTuple):
-    """Where a field is wanted: along the waves up to `half` before and behind the middle, and from z = `low` to 0 (m)."""
+    """Region in which a wave field is needed, about a middle.
+
+    Attributes:
+        half: Half length along the waves (m).
+        low: Lowest level (m); the highest is 0.
+        depth: Water depth (m).
+    """
 
     half: float
     low: float
@@ -31,9 +37,16 @@ class Box(NamedTuple):
 
     @classmethod
     def of(cls, points: Float[np.ndarray, "3 p"], heading: float, depth: float, excursion: float) -> "tuple[float, Box]":
-        """Middle (m), along waves that travel to `heading` (rad), of where points of a hull may be that moves by up to
-        `excursion` (m), and the box about it. It is a little larger, by shares of the excursion, so that hulls and
-        headings nearly alike have the same."""
+        """Middle (m) along the waves, and box about it, of a hull that may move.
+
+        The box is rounded up by fractions of the excursion, so that similar hulls and headings share one.
+
+        Args:
+            points: Extremities of the hull (m), (3, p).
+            heading: Direction that the waves travel to (rad).
+            depth: Water depth (m).
+            excursion: Distance (m) by which the hull may move.
+        """
         place = np.array([math.cos(heading), math.sin(heading)]) @ points[:2]
         half = 0.5 * np.ptp(place) + excursion
         wide, deep = 0.25 * excursion, 0.1 * excursion
@@ -43,7 +56,14 @@ class Box(NamedTuple):
 
 
 class Supports(NamedTuple):
-    """Support wavenumbers (rad/m), weights w_r(k) on an even grid of sqrt(k) from 0, and the largest error (-)."""
+    """Support wavenumbers, their weights and their error.
+
+    Attributes:
+        wavenumber: Support wavenumbers (rad/m), (r,).
+        table: Weights w_r(k) on an even grid of sqrt(k) from 0, (g, r).
+        spacing: Spacing of that grid (sqrt(rad/m)).
+        error: Largest error (-) for free waves.
+    """
 
     wavenumber: np.ndarray  # (r,)
     table: np.ndarray  # (g, r)
@@ -53,15 +73,26 @@ class Supports(NamedTuple):
 
 @lru_cache(maxsize=64)
 def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLERANCE) -> Supports:
-    """The fewest supports in a box for free waves of up to `free` (rad/m) and bound ones of up to `bound`.
+    """Fewest support wavenumbers in a box for free and bound waves.
 
-    Weights are the least-squares solution for cosh k(z+h) / cosh kh and sinh k(z+h) / sinh kh, times cos kx and sin kx, over a
-    grid on the box. Bound waves shorter than all free ones, which are low, may be missed by `BOUND` times as much. Raises
-    ValueError where `MOST` supports do not do: a box of many wavelengths.
+    Weights are the least-squares solution for cosh k(z+h) / cosh kh and sinh k(z+h) / sinh kh, times cos kx and sin kx, over
+    a grid on the box. Bound waves shorter than all free ones are low; their tolerance is `BOUND_TOLERANCE_FACTOR` times larger.
+
+    Args:
+        box: Region in which the field is needed.
+        free: Largest wavenumber of free waves (rad/m).
+        bound: Largest wavenumber of bound waves (rad/m).
+        tolerance: Error allowed, over a free wave's largest value.
+
+    Returns:
+        Wavenumbers and weights.
+
+    Raises:
+        ValueError: More than `MAX_SUPPORTS` supports would be needed: a box of many wavelengths.
     """
     highest = max(free, bound)
     count = math.ceil((0.5 * highest * box.half + 8) / 4) * 4
-    if count > MOST:  # before arrays that would fill the memory
+    if count > MAX_SUPPORTS:  # before arrays that would fill the memory
         raise ValueError(_too_short(highest, box))
     spacing = 0.05 / (box.half * math.sqrt(highest))
     grid = (spacing * np.arange(math.ceil(math.sqrt(highest) / spacing) + 3)) ** 2
@@ -69,11 +100,11 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
     x = box.half * np.sin(0.5 * np.pi * (np.arange(points) + 0.5) / points)  # denser at the edge
     z = box.low * (0.5 - 0.5 * np.cos(np.pi * (np.arange(8) + 0.5) / 8)) ** 2  # denser at the surface
     wanted = _fields(grid, x, z, box.depth)
-    allowed = np.where(grid <= free, tolerance, BOUND * tolerance)
+    allowed = np.where(grid <= free, tolerance, BOUND_TOLERANCE_FACTOR * tolerance)
     inside = grid <= highest
-    while count <= MOST:
+    while count <= MAX_SUPPORTS:
         chebyshev = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
-        k = highest * (0.5 * (1 + chebyshev)) ** (1 / POWER)
+        k = highest * (0.5 * (1 + chebyshev)) ** (1 / SPACING_POWER)
         basis = _fields(k, x, z, box.depth)
         u, s, vt = np.linalg.svd(basis, full_matrices=False)
         table = (vt.T * (s / (s**2 + (RIDGE * s[0]) ** 2))) @ (u.T @ wanted)
@@ -86,8 +117,8 @@ def supports(box: Box, free: float, bound: float = 0.0, tolerance: float = TOLER
 
 def _too_short(highest: float, box: Box) -> str:
     return (
-        f"waves as short as {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MOST} support "
-        f"wavenumbers: cut the sea off at a lower frequency"
+        f"waves as short as {2 * math.pi / highest:.3g} m in a box of {2 * box.half:.3g} m need more than {MAX_SUPPORTS} "
+        f"support wavenumbers: cut the sea off at a lower frequency"
     )
 
 
@@ -103,7 +134,7 @@ def _fields(k: np.ndarray, x: np.ndarray, z: np.ndarray, depth: float) -> np.nda
 
 
 def weights(table: Float[Array, "g r"], spacing: float, k: Float[Array, " n"]) -> Float[Array, "n r"]:
-    """w_r(k) (-) by cubic interpolation in the table, in sqrt(k): profiles change fast where kh is of order one."""
+    """Weights w_r(k) (-), (n, r), by cubic interpolation of the table in sqrt(k)."""
     place = jnp.sqrt(jnp.maximum(k, 1e-20)) / spacing
     base = jnp.clip(jnp.floor(place).astype(int) - 1, 0, table.shape[0] - 4)
     t = (place - base)[:, None]  # of the cubic through 0, 1, 2, 3

@@ -1,4 +1,4 @@
-"""Difference-frequency quadratic transfer functions, as few squared envelopes of filtered waves."""
+"""Difference-frequency quadratic transfer functions, as squared envelopes of filtered waves."""
 
 from typing import Self
 
@@ -9,7 +9,7 @@ from jaxtyping import Array, Complex, Float
 
 from jaxhydro.waves.excitation import within
 
-KEPT = 1e-6  # of the largest eigenvalue: what is less adds nothing
+MIN_EIGENVALUE = 1e-6  # of the largest eigenvalue: what is less adds nothing
 
 
 class Transfer(eqx.Module):
@@ -34,27 +34,35 @@ class Transfer(eqx.Module):
 
     @classmethod
     def of(cls, omega: Float[np.ndarray, " n"], table: Complex[np.ndarray, "6 n n"], newman: bool = False) -> Self:
-        """From T at all pairs of frequencies; of its Hermitian part. `newman`: from its diagonal alone, the drift in regular
-        waves: T_kl = (T_kk + T_ll) / 2 (Newman 1974, Second-order, slowly-varying forces on vessels in irregular waves)."""
+        """Transfer function from a table at all pairs of frequencies; its Hermitian part is used.
+
+        Args:
+            omega: Angular frequencies (rad/s), ascending, (n,).
+            table: T (N/m², N m/m²), (6, n, n).
+            newman: Use the diagonal alone, the drift in regular waves: T_kl = (T_kk + T_ll) / 2.
+
+        References:
+            Newman (1974), Second-order, slowly-varying forces on vessels in irregular waves.
+        """
         table = 0.5 * (table + np.conj(np.swapaxes(table, 1, 2)))
         if newman:
             curve = np.einsum("ikk->ik", table).real
             table = 0.5 * (curve[:, :, None] + curve[:, None, :]).astype(complex)
         value, vector = np.linalg.eigh(table)  # columns
         size = np.abs(value)
-        count = max(1, int((size > KEPT * size.max(axis=1, keepdims=True)).sum(axis=1).max()))
+        count = max(1, int((size > MIN_EIGENVALUE * size.max(axis=1, keepdims=True)).sum(axis=1).max()))
         largest = np.argsort(-size, axis=1)[:, :count]
         vector = np.take_along_axis(vector, largest[:, None, :], axis=2)
         value = np.take_along_axis(value, largest, axis=1)
         return cls(jnp.asarray(omega), jnp.asarray(value), jnp.asarray(np.swapaxes(vector, 1, 2)))
 
     def at(self, omega: Float[Array, " w"]) -> Complex[Array, "6 m w"]:
-        """The filters at other frequencies (rad/s)."""
+        """Filters at other frequencies (rad/s), (6, m, w)."""
         place, share, inside = within(self.omega, omega)
         found = (1 - share) * self.filters[..., place] + share * self.filters[..., place + 1]
         return jnp.where(inside, found, 0.0)
 
     def force(self, filtered: Complex[Array, "6 m ..."]) -> Float[Array, "6 ..."]:
-        """The force, or moment, of filtered waves."""
+        """Force (N, N m), (6, ...), of filtered waves, (6, m, ...)."""
         square = (filtered * filtered.conj()).real
         return jnp.einsum("im,im...->i...", self.eigenvalue, square)

@@ -1,7 +1,8 @@
-"""The band of a sea's first-order waves where nobody states one: one rule for records, spectra and tables of sea states.
+"""Frequency band of first-order waves where none is given.
 
-It is 0.03 to 0.3 Hz where the waves lie there. Else it is the same band at the hull's pace (`jaxhydro.scales`), where they lie
-in that. Else it is the band that holds the waves.
+One rule serves records, spectra and tables of sea states. The band is 0.03 to 0.3 Hz where the waves lie there. Otherwise it
+is the same band at the hull's pace (`jaxhydro.scales`), where they lie in that. Otherwise it is the band that holds the
+waves.
 """
 
 import math
@@ -12,17 +13,20 @@ import numpy as np
 from jaxtyping import Float
 
 LOW, CUTOFF = 0.03, 0.3  # Hz, for an ocean; over the pace of the platform for seas elsewhere
-HIGHEST = 0.55  # Hz, over the pace: the hull does not feel shorter waves, and no band derived from a sea has them
-MOST = 0.95  # least share of the waves' energy in a band that is to hold them
+MAX_FREQUENCY = 0.55  # Hz, over the pace: the hull does not feel shorter waves, and no band derived from a sea has them
+MIN_ENERGY_IN_BAND = 0.95  # least share of the waves' energy in a band that is to hold them
 PEAK_WITHIN = 0.8  # of a band's cutoff: the peak of a spectrum that the band is to hold is not above
-UNDER, BELOW = 0.05, 0.99  # shares of the waves' energy: below their slowest part, and below the cutoff
-OPEN = 0.5  # of the frequency of the slowest part: there the band begins
-WIDE = 1.5  # of the frequency below which MOST lies: the least cutoff, so that regular waves have a band
-SLOW = 0.2  # of the median frequency: what is slower is drift of a gauge or of the basin
-FEWEST = 3  # cycles in a record; what is slower is drift
-CLEAR = 0.5  # least share of a record's variance above its noise; with less there are no waves
-CELLS = 8  # of the frequencies, in the quietest of which noise is seen
-SAMPLED = 0.9  # of half the sampling frequency: the highest cutoff
+LOW_ENERGY_SHARE = 0.05  # of the waves' energy: their slowest part
+CUTOFF_ENERGY_SHARE = 0.99  # of the waves' energy: below the cutoff
+LOW_LIMIT_FACTOR = 0.5  # of the frequency of the slowest part: there the band begins
+MIN_CUTOFF_FACTOR = (
+    1.5  # of the frequency below which `MIN_ENERGY_IN_BAND` lies: the least cutoff, so that regular waves have a band
+)
+DRIFT_FREQUENCY_FACTOR = 0.2  # of the median frequency: what is slower is drift of a gauge or of the basin
+MIN_CYCLES = 3  # cycles in a record; what is slower is drift
+MIN_WAVE_SHARE = 0.5  # least share of a record's variance above its noise; with less there are no waves
+NOISE_CELLS = 8  # of the frequencies, in the quietest of which noise is seen
+NYQUIST_SHARE = 0.9  # of half the sampling frequency: the highest cutoff
 
 Band: TypeAlias = tuple[float, float]  # Hz
 
@@ -47,8 +51,8 @@ class WaveEnergy(NamedTuple):
     @property
     def band(self) -> Band:
         """The band (Hz) that holds the waves."""
-        cutoff = max(self.at(BELOW), WIDE * self.at(MOST))
-        return OPEN * self.at(UNDER), min(cutoff, self.sampled)
+        cutoff = max(self.at(CUTOFF_ENERGY_SHARE), MIN_CUTOFF_FACTOR * self.at(MIN_ENERGY_IN_BAND))
+        return LOW_LIMIT_FACTOR * self.at(LOW_ENERGY_SHARE), min(cutoff, self.sampled)
 
 
 def wave_energy(elevation: Float[np.ndarray, " n"], step: float) -> WaveEnergy | None:
@@ -62,20 +66,20 @@ def wave_energy(elevation: Float[np.ndarray, " n"], step: float) -> WaveEnergy |
     clock = np.arange(count) - 0.5 * (count - 1)
     slope = float(clock @ elevation / max(clock @ clock, 1.0))
     moving = elevation - np.mean(elevation) - slope * clock
-    if count < 8 * CELLS or not np.ptp(moving) > 1e-9 * np.abs(elevation).max():
+    if count < 8 * NOISE_CELLS or not np.ptp(moving) > 1e-9 * np.abs(elevation).max():
         return None
     power = np.abs(np.fft.rfft(moving)) ** 2
-    power[:FEWEST] = 0.0
+    power[:MIN_CYCLES] = 0.0
     frequency = np.fft.rfftfreq(count, step)
     # lines of white noise are exponentially distributed: their median is ln 2 of their mean
-    noise = min(float(np.median(cell)) for cell in np.array_split(power[FEWEST:], CELLS)) / math.log(2)
+    noise = min(float(np.median(cell)) for cell in np.array_split(power[MIN_CYCLES:], NOISE_CELLS)) / math.log(2)
     above = np.cumsum(np.where(frequency > 0, power - noise, 0.0))
-    if not above[-1] > CLEAR * power.sum():
+    if not above[-1] > MIN_WAVE_SHARE * power.sum():
         return None
     median = frequency[np.argmax(above >= 0.5 * above[-1])]
-    above -= above[np.searchsorted(frequency, SLOW * median) - 1]
-    below = np.clip(np.where(frequency < SLOW * median, 0.0, above) / above[-1], 0.0, 1.0)
-    return WaveEnergy(frequency, below, SAMPLED * 0.5 / step)
+    above -= above[np.searchsorted(frequency, DRIFT_FREQUENCY_FACTOR * median) - 1]
+    below = np.clip(np.where(frequency < DRIFT_FREQUENCY_FACTOR * median, 0.0, above) / above[-1], 0.0, 1.0)
+    return WaveEnergy(frequency, below, NYQUIST_SHARE * 0.5 / step)
 
 
 def of_records(records: Iterable[tuple[Float[np.ndarray, " n"], float]], pace: float) -> Band:
@@ -86,7 +90,9 @@ def of_records(records: Iterable[tuple[Float[np.ndarray, " n"], float]], pace: f
         pace: time over that of VolturnUS-S, by Froude.
     """
     waves = [one for one in (wave_energy(*record) for record in records) if one is not None]
-    return _chosen(lambda band: all(one.within(*band) >= MOST for one in waves), [one.band for one in waves], pace)
+    return _chosen(
+        lambda band: all(one.within(*band) >= MIN_ENERGY_IN_BAND for one in waves), [one.band for one in waves], pace
+    )
 
 
 def of_spectra(peak_periods: Sequence[float], pace: float, weights: Sequence[float] | None = None) -> Band:
@@ -105,10 +111,10 @@ def of_spectra(peak_periods: Sequence[float], pace: float, weights: Sequence[flo
 
     def holds(band: Band) -> bool:
         inside = (1 / periods >= band[0]) & (1 / periods <= PEAK_WITHIN * band[1])
-        return bool(energy[inside].sum() >= MOST * energy.sum())
+        return bool(energy[inside].sum() >= MIN_ENERGY_IN_BAND * energy.sum())
 
-    under, below = ((1.25 / -math.log(share)) ** 0.25 for share in (UNDER, BELOW))
-    return _chosen(holds, [(OPEN * under / period, below / period) for period in periods], pace)
+    under, below = ((1.25 / -math.log(share)) ** 0.25 for share in (LOW_ENERGY_SHARE, CUTOFF_ENERGY_SHARE))
+    return _chosen(holds, [(LOW_LIMIT_FACTOR * under / period, below / period) for period in periods], pace)
 
 
 def at_pace(pace: float) -> Band:
@@ -122,7 +128,7 @@ def _chosen(holds: Callable[[Band], bool], derived: Sequence[Band], pace: float)
         if holds(band):
             return band
     low = _rounded(min(low for low, _ in derived))
-    cutoff = _rounded(min(max(high for _, high in derived), HIGHEST / pace))
+    cutoff = _rounded(min(max(high for _, high in derived), MAX_FREQUENCY / pace))
     return (low, cutoff) if low < cutoff else at_pace(pace)
 
 

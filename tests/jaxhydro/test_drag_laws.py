@@ -355,7 +355,7 @@ def test_gradients_through_a_memory(method: str, monkeypatch) -> None:
     reverse = jax.jit(jax.grad(lambda x: scalar(x, "reverse")))(x)
     found = []
     for longest in (12, 10_000):
-        monkeypatch.setattr(integrate, "LONG", longest)
+        monkeypatch.setattr(integrate, "MAX_SEPARATE_STATE", longest)
         found.append(jax.jit(jax.jacfwd(lambda x: scalar(x, "forward")))(x))
     for forward in found:
         assert_allclose(forward, reverse, rtol=1e-7, atol=1e-12)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from jaxhydro.errors import SHOWN, InputError, read_yaml, validate
+from jaxhydro.errors import MAX_PRINTED_PROBLEMS, InputError, read_yaml, validate
 from jaxhydro.platform.schema import (
     Line,
     LinearSprings,
@@ -346,7 +346,7 @@ def test_every_mistake_is_told_at_once() -> None:
 def test_many_mistakes_are_counted_not_printed() -> None:
     error = told({**document(), "members": ["x"] * 100})
     assert len(error.problems) == 100
-    assert len(str(error).splitlines()) == SHOWN + 2
+    assert len(str(error).splitlines()) == MAX_PRINTED_PROBLEMS + 2
     assert str(error).endswith("and 80 more")
 
 

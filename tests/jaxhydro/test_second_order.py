@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from jaxhydro.environment import Environment
 from jaxhydro.waves import second_order
 from jaxhydro.waves.components import Components, PlaneWaves, components
-from jaxhydro.waves.second_order import elevation_spectrum, fold, transfer
+from jaxhydro.waves.second_order import elevation_spectrum, sum_over_pairs, transfer
 
 DEEP = Environment(1025.0, 200.0, 9.81)
 SHALLOW = Environment(1025.0, 30.0, 9.81)
@@ -303,7 +303,7 @@ def test_fold_is_the_sum_over_all_pairs(n: int, kinds: tuple) -> None:
     if n == 1:
         sea = eqx.tree_at(lambda sea: sea.amplitude, sea, jnp.ones(1))
     pairs = bound_waves(sea, SHALLOW, kinds)
-    folded = jax.jit(lambda sea, x: fold(sea, SHALLOW, field(x, SHALLOW), kinds))
+    folded = jax.jit(lambda sea, x: sum_over_pairs(sea, SHALLOW, field(x, SHALLOW), kinds))
     direct = jax.jit(lambda waves, x: field(x, SHALLOW)(waves.omega, waves.vector, waves.elevation, waves.potential))
     for x in (jnp.array([3.0, -7.0, -2.0]), jnp.array([-50.0, 20.0, -15.0])):
         found = folded(sea, x)
@@ -339,7 +339,7 @@ def test_gradient_with_respect_to_amplitudes() -> None:
     @jax.jit
     def loss(amplitude):
         moved = eqx.tree_at(lambda sea: sea.amplitude, sea, amplitude)
-        folded = fold(moved, SHALLOW, field(x, SHALLOW))
+        folded = sum_over_pairs(moved, SHALLOW, field(x, SHALLOW))
         return sum(part.real.sum() - 2 * part.imag.sum() for part in folded)
 
     reverse, forward = jax.grad(loss)(sea.amplitude), jax.jacfwd(loss)(sea.amplitude)

@@ -17,7 +17,7 @@ from jaxhydro.sweep.batch import Setup, prepared_for, sea_of
 from jaxhydro.sweep.cases import Plan, plan_of
 from jaxhydro.sweep.lifetime import exceedance, lifetime, weighted
 from jaxhydro.sweep.resources import bytes_of_run, chosen, supports_of
-from jaxhydro.sweep.run_statistics import equivalent_ranges, frequencies, kept_of
+from jaxhydro.sweep.run_statistics import equivalent_ranges, frequencies, run_results
 from jaxhydro.sweep.sweep_figures import exceedance_figure, scatter_figure
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.sweep_remarks import impossible, notes, shares_in_band
@@ -283,7 +283,7 @@ def test_ranges_are_those_of_even_cycles_and_of_the_standards_example() -> None:
 def test_what_is_kept_of_records_leaves_the_transient_out() -> None:
     time = np.arange(0.0, 400.0, 0.5)
     values = np.where(time < 100, 50.0, 2 * np.sin(2 * math.pi * time / 10))
-    kept = kept_of(time, 100.0, {"wave": values, "line1": 1e6 * values}, 9.0, (3.0,), 1.0)
+    kept = run_results(time, 100.0, {"wave": values, "line1": 1e6 * values}, 9.0, (3.0,), 1.0)
     assert kept.statistics[0, 1] == pytest.approx(math.sqrt(2), rel=1e-3)
     assert kept.statistics[1, 1] == pytest.approx(1e6 * math.sqrt(2), rel=1e-3)
     assert kept.density.shape == (2, len(frequencies(time[time >= 100])))

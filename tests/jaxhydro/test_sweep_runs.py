@@ -24,11 +24,11 @@ import jaxhydro as jh
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.cli import app as cli
 from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
-from jaxhydro.sweep.batch import outcome, outcomes, setup_in
+from jaxhydro.sweep.batch import run_outcome, run_outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
 from jaxhydro.sweep.local import Worker
 from jaxhydro.sweep.run_sweep import opened, prepared
-from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store, alone
+from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store, locked_folder
 from jaxhydro.sweep.sweep_remarks import shares_in_band
 from jaxhydro.waves.sea_state import state_of
 
@@ -232,7 +232,7 @@ def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatc
 
 def test_two_sweeps_do_not_write_to_one_folder(file, whole) -> None:
     before = chunks(whole)
-    with alone(whole):
+    with locked_folder(whole):
         text = command("sweep", file, "--out", whole, "--restart", status=2)
     assert "--out: expected a folder of its own" in text and "another sweep writes now" in text
     assert chunks(whole) == before
@@ -298,14 +298,14 @@ def test_runs_at_once_are_runs_one_by_one(whole, order) -> None:
     setup = setup._replace(plan=replace(setup.plan, order=order))
     runs = [setup.plan.run(number) for number in (0, 9, 16, 10, 11)]
     runs[1] = runs[1]._replace(case=runs[1].case._replace(heading=30.0))
-    for run, one in zip(runs, outcomes(setup, runs)):
-        alone = outcome(setup, run)
-        if isinstance(alone, str):
-            assert one == alone and run.number == 16
+    for run, one in zip(runs, run_outcomes(setup, runs)):
+        single = run_outcome(setup, run)
+        if isinstance(single, str):
+            assert one == single and run.number == 16
             continue
         for name in VARIABLES:
-            scale = np.nan_to_num(np.abs(getattr(alone, name))).max(axis=-1, keepdims=True) + 1e-12
-            np.testing.assert_allclose(getattr(one, name) / scale, getattr(alone, name) / scale, atol=1e-9, err_msg=name)
+            scale = np.nan_to_num(np.abs(getattr(single, name))).max(axis=-1, keepdims=True) + 1e-12
+            np.testing.assert_allclose(getattr(one, name) / scale, getattr(single, name) / scale, atol=1e-9, err_msg=name)
 
 
 # --- resuming something else
@@ -380,7 +380,7 @@ def test_a_cluster_has_its_own_workers(file, tmp_path) -> None:
 
 
 def test_a_scheduler_that_does_not_answer_leaves_nothing_behind(file, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
+    monkeypatch.setattr(cluster, "SCHEDULER_TIMEOUT", 0.5)
     words = ("sweep", file, "--out", tmp_path / "o", "--scheduler", "tcp://127.0.0.1:9")
     assert "--scheduler: expected a scheduler that answers" in command(*words, status=2)
     assert not (tmp_path / "o").exists()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import jaxhydro as jh
-from jaxhydro.dynamics.requested_sea import Asked, Record
+from jaxhydro.dynamics.requested_sea import Record, RequestedSea
 from jaxhydro.errors import validate
 from jaxhydro.sweep.cases import plan_of
 from jaxhydro.sweep.sweep_schema import Sweep
@@ -90,8 +90,8 @@ def test_spectra_by_their_peaks() -> None:
     assert of_spectra([0.5], 1.0) == (LOW, CUTOFF)  # none of them
 
 
-def asked(**what) -> Asked:
-    return Asked(
+def asked(**what) -> RequestedSea:
+    return RequestedSea(
         **{
             "hs": 2.0,
             "tp": 9.0,

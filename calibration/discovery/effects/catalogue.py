@@ -27,7 +27,7 @@ from jaxhydro.loads import (
     WaveGaugePosition,
     WaveReflection,
 )
-from jaxhydro.loads.wave_reflection import COEFFICIENT, DELAY, LATER, LATEST, SEEN
+from jaxhydro.loads.wave_reflection import COEFFICIENT, DEFAULT_DELAY, DELAY, MAX_DELAY, SEEN
 from jaxhydro.waves.dispersion import wavenumber
 
 SIZE = 27.0  # m, of a platform of 20 000 t
@@ -188,7 +188,7 @@ def _of_the_basin(known: Listed) -> None:
         "wave_reflection",
         None,
         [known.linear(COEFFICIENT, 0.02)],
-        shapes=(known.linear(DELAY, LATEST / 3, LATER),),
+        shapes=(known.linear(DELAY, MAX_DELAY / 3, DEFAULT_DELAY),),
         grid=AT_ONCE,
         places=delays,
         telling="a few regular waves that stop: what comes after them, at a row of gauges",

@@ -8,7 +8,7 @@ from calibration.discovery.effects.peaks import likeliest
 from calibration.discovery.eliminated_least_squares import weights
 from calibration.discovery.linearisations import Look
 from calibration.discovery.study import Study
-from jaxhydro.loads.wave_reflection import DELAY, LATEST, SEEN
+from jaxhydro.loads.wave_reflection import DELAY, MAX_DELAY, SEEN
 
 STEP = 0.05  # s between those that are looked at
 AT_ONCE: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0))  # the gauge did not, or did
@@ -20,7 +20,7 @@ def delays(study: Study, look: Look, slopes: np.ndarray) -> tuple[Mapping[str, f
 
     Were the platform linear that is what it does in waves that come back; which of these delays it is a refit tells.
     """
-    later = np.arange(0.0, LATEST, STEP)
+    later = np.arange(0.0, MAX_DELAY, STEP)
     weight = weights(study, look.residual) * study.used[study.row_series]
     product, power, begin = np.zeros(later.size), 0.0, sum(2 * len(cut.take) for cut in study.cuts[: -len(study.seas)])
     for record, cut in zip(study.seas, study.cuts[-len(study.seas) :]):
