@@ -17,26 +17,26 @@ import numpy as np
 from calibration.campaign.digits import local_resolution, straight_piece
 from calibration.campaign.extent_checks import extent_warnings
 from calibration.campaign.manifest import DOFS, IN_WAVES, WAVE, Manifest
-from calibration.campaign.records import Series, factors, frozen, read_series, there
+from calibration.campaign.records import Series, frozen_channels, read_series, unit_factors, valid_values
 from calibration.campaign.signals import (
     constant_stretches,
     dominant_period,
     flanks,
-    line,
     missing_code,
     resolution,
     spikes,
+    straight_line,
     wave_height,
 )
 from jaxhydro.errors import Problem
 
-REPAIRABLE = 0.02  # of a window's rows
-LEAST_SAMPLES = 20  # in a window
-GAP = 3.5  # median steps
-COARSE, TOO_COARSE = 15, 8  # samples per cycle
-TOO_COARSE_WAVES = 4  # these only drive: what is slower is worth having still
-FEW_WAVES = 20  # after the transient
-SHOWN = 5  # of one kind in one channel
+MAX_DROPPED_SHARE = 0.02  # of a window's rows
+MIN_SAMPLES = 20  # in a window
+GAP_STEPS = 3.5  # median steps
+FEW_SAMPLES_PER_CYCLE, MIN_SAMPLES_PER_CYCLE = 15, 8  # samples per cycle
+MIN_SAMPLES_PER_WAVE = 4  # these only drive: what is slower is worth having still
+MIN_WAVES = 20  # after the transient
+MAX_SHOWN = 5  # of one kind in one channel
 
 Severity = Literal["warning", "error"]
 
@@ -82,7 +82,7 @@ class _Check:
         self.time = series.time[good]
         self.values = {name: values[good] for name, values in series.values.items()}
         steps = np.diff(self.time)
-        self.step = float(np.mean(steps[steps <= GAP * np.median(steps)])) if np.any(steps > 0) else 0.0
+        self.step = float(np.mean(steps[steps <= GAP_STEPS * np.median(steps)])) if np.any(steps > 0) else 0.0
         # the rows after the transient
         self.compared = self.time >= self.time[0] + self.test.transient if len(self.time) else good[:0]
         self.driven = WAVE if self.test.kind in IN_WAVES else self.test.degree_of_freedom or ""
@@ -130,13 +130,13 @@ class _Check:
                 f"a window from {self.at(start)} to {self.at(end)}",
                 f"a window in the file's range, {self.at(first)} to {self.at(last)}",
             )
-        elif count < LEAST_SAMPLES:
-            yield self.found("error", "", None, f"{count} samples", f"{LEAST_SAMPLES} samples or more in the window")
-        elif self.test.transient > 0 and after < LEAST_SAMPLES:
+        elif count < MIN_SAMPLES:
+            yield self.found("error", "", None, f"{count} samples", f"{MIN_SAMPLES} samples or more in the window")
+        elif self.test.transient > 0 and after < MIN_SAMPLES:
             left = f"{self.at(self.test.transient)} of a record of {self.at(end - start)}, which leaves {after}"
             if missing := int((~self.series.good).sum()):
                 left = f"{left}, as {missing} of its {count} rows lack a value"
-            yield self.found("error", "", None, left, f"a transient that leaves {LEAST_SAMPLES} samples or more")
+            yield self.found("error", "", None, left, f"a transient that leaves {MIN_SAMPLES} samples or more")
 
     def units(self) -> Iterator[Finding]:
         """Does the file state the unit that the manifest does?"""
@@ -155,13 +155,13 @@ class _Check:
         zero = self.manifest.zero
         if zero is not None and zero.window is not None:
             fewest, (first, last) = min(map(len, self.series.still.values())), self.series.span
-            if fewest < LEAST_SAMPLES:
+            if fewest < MIN_SAMPLES:
                 yield self.found(
                     "error",
                     "",
                     None,
                     f"{fewest} in {list(zero.window)}, of a file from {self.at(first)} to {self.at(last)}",
-                    f"{LEAST_SAMPLES} or more samples in zero.window",
+                    f"{MIN_SAMPLES} or more samples in zero.window",
                 )
         elif zero is not None:
             rest = next(other for other in self.others if other.test.id == zero.test)
@@ -172,7 +172,7 @@ class _Check:
 
     def clock(self) -> Iterator[Finding]:
         """Do times increase, and evenly?"""
-        rows = np.flatnonzero(there(self.series.time))
+        rows = np.flatnonzero(valid_values(self.series.time))
         time = self.series.time[rows]
         steps = np.diff(time)
         if np.any(steps < 0):
@@ -190,7 +190,7 @@ class _Check:
             i = int(np.argmax(steps == 0))
             yield self.dropped(same, "time", float(time[i]), f"{same} times that repeat, the first {self.at(time[i])}")
         steps = np.diff(self.time)
-        for i in np.flatnonzero(steps > GAP * self.step)[:SHOWN]:
+        for i in np.flatnonzero(steps > GAP_STEPS * self.step)[:MAX_SHOWN]:
             yield self.found(
                 "warning",
                 "time",
@@ -207,10 +207,10 @@ class _Check:
     def missing(self) -> Iterator[Finding]:
         """Values that are not there."""
         for channel, values in {"time": self.series.time, **self.series.values}.items():
-            bad = np.flatnonzero(~there(values))
+            bad = np.flatnonzero(~valid_values(values))
             if len(bad):
                 before = self.series.time[: bad[0] + 1]
-                before = before[there(before)]
+                before = before[valid_values(before)]
                 when = float(before[-1]) if len(before) else None
                 place = "at the start" if when is None else f"the first near {self.at(when)}"
                 code = missing_code(values)
@@ -218,10 +218,14 @@ class _Check:
                 yield self.dropped(len(bad), channel, when, f"{len(bad)} values {what}, {place}")
 
     def dropped(self, count: int, channel: str, time: float | None, message: str) -> Finding:
-        if count < REPAIRABLE * len(self.series.time):
+        if count < MAX_DROPPED_SHARE * len(self.series.time):
             return self.found("warning", channel, time, f"{message}: these rows are dropped")
         return self.found(
-            "error", channel, time, message, f"fewer than {REPAIRABLE:.0%} of the {len(self.series.time)} rows to be dropped"
+            "error",
+            channel,
+            time,
+            message,
+            f"fewer than {MAX_DROPPED_SHARE:.0%} of the {len(self.series.time)} rows to be dropped",
         )
 
     def oscillation(self) -> Iterator[Finding]:
@@ -230,10 +234,10 @@ class _Check:
             return
         samples, cycles = self.period / self.step, (self.time[-1] - self.time[0]) / self.period
         message = f"{samples:.1f} samples per cycle of {self.at(self.period)}"
-        least = TOO_COARSE_WAVES if self.driven == WAVE else TOO_COARSE
+        least = MIN_SAMPLES_PER_WAVE if self.driven == WAVE else MIN_SAMPLES_PER_CYCLE
         if samples < least:
             yield self.found("error", self.driven, None, message, f"{least} samples per cycle or more")
-        elif samples < COARSE:
+        elif samples < FEW_SAMPLES_PER_CYCLE:
             yield self.found("warning", self.driven, None, f"only {message}")
         if cycles < 1.5:
             yield self.found("warning", self.driven, None, f"only {cycles:.1f} cycles of about {self.at(self.period)}")
@@ -247,12 +251,12 @@ class _Check:
             yield self.found("warning", WAVE, None, "wave_channel has no position: taken as the origin")
         name = "significant_wave_height" if irregular else "wave_height"
         stated = test.significant_wave_height if irregular else test.wave_height
-        metres = abs(factors(self.manifest, self.series.channels)[WAVE]) / self.manifest.scale
+        metres = abs(unit_factors(self.manifest, self.series.channels)[WAVE]) / self.manifest.scale
         height = wave_height(self.values[WAVE][self.compared], irregular) * metres
         if stated is not None and not 0.7 < height / stated < 1.4:
             yield self.found("warning", WAVE, None, f"{name} is stated as {stated:g} m, and recorded as {height:.3g} m")
         left = float(self.time[-1] - self.time[0]) - test.transient
-        if irregular and self.period is not None and left < FEW_WAVES * self.period:
+        if irregular and self.period is not None and left < MIN_WAVES * self.period:
             yield self.found(
                 "warning",
                 WAVE,
@@ -270,13 +274,13 @@ class _Check:
             if channel == self.driven:
                 yield self.found("error", channel, None, said, "a signal that moves")
             else:
-                left_out = ": left out" if channel in frozen(self.series) else ""
+                left_out = ": left out" if channel in frozen_channels(self.series) else ""
                 yield self.found("warning", channel, None, f"{said}{left_out}")
             return
         step = local_resolution(values)
         starts, lengths = constant_stretches(values, grain)
-        long = max(LEAST_SAMPLES, int((self.period or 0) / 3 / self.step))
-        for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:SHOWN]:
+        long = max(MIN_SAMPLES, int((self.period or 0) / 3 / self.step))
+        for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:MAX_SHOWN]:
             beside = (values[max(0, i - long) : i + 1], values[i + n - 1 : i + n + long])
             still = self.still_until() > time[i + n - 1] or self.in_zero(time[i], time[i + n - 1])
             if max(map(np.ptp, beside)) > 6 * step[i] and not still:  # else it has come to rest
@@ -333,7 +337,7 @@ class _Check:
             drift, limit = means[-third:].mean() - means[:third].mean(), 0.1 * np.abs(values - means[-1]).max()
         else:
             values = values[self.compared]
-            mean = line(self.time[self.compared], values)
+            mean = straight_line(self.time[self.compared], values)
             drift, limit = mean[-1] - mean[0], 2 * float(np.std(values - mean))
         if abs(drift) > limit + 2 * grain:
             unit = self.series.channels[channel].unit

@@ -11,7 +11,7 @@ from calibration.campaign.checks import Finding, check_records
 from calibration.campaign.manifest import IN_WAVES, Manifest, platform_source, read_manifest
 from calibration.campaign.plausible import CampaignFinding, check_plausible
 from calibration.campaign.records import Record, read_series, records_of
-from calibration.campaign.table_findings import check_tables, of_platform
+from calibration.campaign.table_findings import check_tables, platform_findings
 from calibration.campaign.wave_band import wave_band
 from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model
@@ -102,7 +102,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     except EquilibriumError as error:
         raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
     band = wave_band(manifest, model, records)
-    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model, band), *doubtful)
+    doubtful = (*platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, [*(one.problem for one in doubtful if isinstance(one, CampaignFinding)), *grave])
     return replace(campaign, findings=(*findings, *doubtful))

@@ -21,7 +21,7 @@ class PlatformFinding(Finding):
         return self.file
 
 
-def of_platform(model: Model, file: str) -> tuple[Finding, ...]:
+def platform_findings(model: Model, file: str) -> tuple[Finding, ...]:
     """The remarks on the files that a platform was read from, warnings first."""
     told = sorted(model.remarks, key=lambda remark: not remark.warning)
     return tuple(PlatformFinding("warning", file, "", "", None, remark.text) for remark in told)

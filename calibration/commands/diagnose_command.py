@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.manifest import IN_WAVES
 from calibration.commands.calibrate_command import load
 from calibration.discovery.checkpoint import FILE
@@ -13,7 +13,7 @@ from calibration.report import diagnosis_words as words
 from calibration.report import tables as calibrations
 from calibration.residuals.measured_seas import Diverged
 from calibration.results.read_diagnosis import SavedDiagnosis, read_diagnosis
-from calibration.results.result_folder import DIAGNOSIS
+from calibration.results.result_folder import DIAGNOSIS_FILE
 from calibration.results.write_calibration import NotFinite
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.cli.console import complain, progress, say, table
@@ -50,8 +50,8 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
         return False
     if not stopped:
         (out / FILE).unlink(missing_ok=True)
-    saved = read_diagnosis(out / DIAGNOSIS)
-    warned = {str(finding) for finding in grouped(campaign.findings)}
+    saved = read_diagnosis(out / DIAGNOSIS_FILE)
+    warned = {str(finding) for finding in group_findings(campaign.findings)}
     show_diagnosis(saved, [note for note in saved.notes if note not in warned])
     say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
     if stopped:

@@ -29,12 +29,12 @@ from scipy.stats import t as student
 from calibration.campaign.signals import noise_level
 from jaxhydro.dynamics.response import extremes
 
-LEAST = 3  # decrements that a fit of two numbers with an interval needs
+MIN_DECREMENTS = 3  # decrements that a fit of two numbers with an interval needs
 CONFIDENCE = 0.95
-_NAMES = ("linear", "quadratic")
+_TERMS = ("linear", "quadratic")
 
 
-class Bounded(NamedTuple):
+class EstimateWithInterval(NamedTuple):
     """An estimate with the ends of its 95 % confidence interval: floats, or arrays of one shape."""
 
     value: np.ndarray | float
@@ -89,17 +89,17 @@ class LinearQuadratic:
     two, `period` (s) the mean one. `warnings` says in words where p or q is negative.
     """
 
-    linear: Bounded
-    quadratic: Bounded
+    linear: EstimateWithInterval
+    quadratic: EstimateWithInterval
     covariance: np.ndarray
     scatter: float
     freedom: int
     period: float
     warnings: tuple[str, ...]
 
-    def damping(self, inertia: float) -> tuple[Bounded, Bounded]:
+    def damping(self, inertia: float) -> tuple[EstimateWithInterval, EstimateWithInterval]:
         """B_lin = M p (N s/m, N m s) and B_quad = M q (N s2/m2, N m s2) for inertia with added mass (kg, kg m2)."""
-        return tuple(Bounded(*(inertia * number for number in one)) for one in (self.linear, self.quadratic))  # type: ignore
+        return tuple(EstimateWithInterval(*(inertia * number for number in one)) for one in (self.linear, self.quadratic))  # type: ignore
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,7 @@ class Classical:
     fit: LinearQuadratic
     positive_fit: LinearQuadratic | None
     negative_fit: LinearQuadratic | None
-    equivalent: Bounded | None
+    equivalent: EstimateWithInterval | None
 
 
 def decrements(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[Decrements, Decrements, Decrements]:
@@ -144,8 +144,8 @@ def linear_quadratic(pairs: Decrements) -> LinearQuadratic:
     3 decrements, and where the amplitude hardly varies.
     """
     count, amplitude = len(pairs.first), pairs.amplitude
-    if count < LEAST:
-        raise ValueError(f"expected a decay with at least {LEAST} decrements, found {count}")
+    if count < MIN_DECREMENTS:
+        raise ValueError(f"expected a decay with at least {MIN_DECREMENTS} decrements, found {count}")
     duration = pairs.period * pairs.cycles
     design = np.stack([0.5 * duration, 8 / 3 * pairs.cycles * amplitude], axis=1)
     ratio = np.zeros((count, len(pairs.heights)))  # d ln(A0/A1) for a unit error of each extreme
@@ -164,16 +164,16 @@ def linear_quadratic(pairs: Decrements) -> LinearQuadratic:
     best, half = solution / scale, student.ppf(0.5 + CONFIDENCE / 2, freedom) * np.sqrt(np.diag(covariance))
     warnings = tuple(
         f"{name} damping is negative: {value:.3g}, {'within' if value + width >= 0 else 'beyond'} its uncertainty"
-        for name, value, width in zip(_NAMES, best, half)
+        for name, value, width in zip(_TERMS, best, half)
         if value < 0
     )
-    linear, quadratic = (Bounded(float(b), float(b - h), float(b + h)) for b, h in zip(best, half))
+    linear, quadratic = (EstimateWithInterval(float(b), float(b - h), float(b + h)) for b, h in zip(best, half))
     # the time of an extreme is the less certain, the lower it is
     period = float(np.average(pairs.period, weights=amplitude**2))
     return LinearQuadratic(linear, quadratic, covariance, math.sqrt(variance), freedom, period, warnings)
 
 
-def equivalent_damping(fit: LinearQuadratic, amplitude: np.ndarray | float, inertia: float) -> Bounded:
+def equivalent_damping(fit: LinearQuadratic, amplitude: np.ndarray | float, inertia: float) -> EstimateWithInterval:
     """B_eq(a) = M (p + 8/(3 pi) q w a), N s/m or N m s, w = 2 pi/T: dissipates the same energy per cycle at amplitude a.
 
     `amplitude` is in m or rad, any shape, `inertia` with added mass (kg, kg m2). The interval is that of p and q together,
@@ -183,7 +183,7 @@ def equivalent_damping(fit: LinearQuadratic, amplitude: np.ndarray | float, iner
     row = np.stack([np.ones_like(a), 16 / (3 * fit.period) * a], axis=-1)
     value = row @ np.array([fit.linear.value, fit.quadratic.value])
     width = student.ppf(0.5 + CONFIDENCE / 2, fit.freedom) * np.sqrt(np.einsum("...i,ij,...j", row, fit.covariance, row))
-    return Bounded(inertia * value, inertia * (value - width), inertia * (value + width))
+    return EstimateWithInterval(inertia * value, inertia * (value - width), inertia * (value + width))
 
 
 def classical(
@@ -203,9 +203,9 @@ def classical(
         raise ValueError("expected finite numbers and increasing times, found others")
     noise = noise_level(time, motion) if noise is None else noise
     half, *sides = decrements(time, motion, noise)
-    if skip < 0 or len(half.first) - skip < LEAST:
+    if skip < 0 or len(half.first) - skip < MIN_DECREMENTS:
         raise ValueError(
-            f"expected at least {LEAST} half cycles after the {skip} skipped, clear of noise of {noise:.3g}, "
+            f"expected at least {MIN_DECREMENTS} half cycles after the {skip} skipped, clear of noise of {noise:.3g}, "
             f"found {max(len(half.first) - skip, 0)}"
         )
     start = half.first[skip]
@@ -215,6 +215,6 @@ def classical(
         for late in [one.first >= start]
     )
     fit = linear_quadratic(half)
-    crests, troughs = (linear_quadratic(side) if len(side.first) >= LEAST else None for side in (positive, negative))
+    crests, troughs = (linear_quadratic(side) if len(side.first) >= MIN_DECREMENTS else None for side in (positive, negative))
     equivalent = None if inertia is None else equivalent_damping(fit, half.amplitude, inertia)
     return Classical(half, positive, negative, fit, crests, troughs, equivalent)

@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.fitting.decay_fit import Progress
-from calibration.fitting.law_parameters import LAWS, Law, base_of, of_law
+from calibration.fitting.law_parameters import LAWS, Law, base_label, is_law_parameter
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.identifiability.directions import Identifiability
 from calibration.residuals.measured_seas import Options, Seas, options_of, seas_of
@@ -23,7 +23,7 @@ from jaxhydro.platform.body import KeuleganCarpenter
 from jaxhydro.platform.drag_laws import drag_laws_of, parameter_label, surface_number
 from jaxhydro.waves.sea_state import SeaState
 
-CLOSE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
+HELD_OUT_TOLERANCE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class LawFit:
 
     def added(self) -> dict[str, float]:
         """Label -> value of what the law adds to coefficients."""
-        return {label: one.value for label, one in self.calibration.parameters.items() if of_law(label)}
+        return {label: one.value for label, one in self.calibration.parameters.items() if is_law_parameter(label)}
 
     def coefficient(self, label: str, state: SeaState) -> tuple[float, float]:
         """A coefficient in a sea state, and the standard deviation of its logarithm.
@@ -76,7 +76,7 @@ def _deviation(known: Identifiability, label: str, logs: Mapping[str, float]) ->
 
 
 @dataclass(frozen=True, eq=False)
-class OneSea:
+class SeaStateFit:
     """A test in irregular waves: what it is used for, its measured sea state, and the calibration to it alone."""
 
     id: str
@@ -91,7 +91,7 @@ class SeaLaws:
     the user stopped it, not `finished`, they are those that had been made."""
 
     laws: tuple[LawFit, ...]
-    seas: tuple[OneSea, ...]
+    seas: tuple[SeaStateFit, ...]
     judged_by: tuple[str, ...]
     left_out: bool
     finished: bool = True
@@ -100,11 +100,11 @@ class SeaLaws:
     def chosen(self) -> LawFit:
         """The law with the least held-out error; an earlier one that is as good to 2 % is preferred."""
         least = min(law.held_out for law in self.laws)
-        return next(law for law in self.laws if law.held_out <= (1 + CLOSE) * least)
+        return next(law for law in self.laws if law.held_out <= (1 + HELD_OUT_TOLERANCE) * least)
 
     def labels(self) -> list[str]:
         """The coefficients that any of the laws lets depend on the sea state or the motion."""
-        return list(dict.fromkeys(base_of(label) for law in self.laws for label in law.added()))
+        return list(dict.fromkeys(base_label(label) for law in self.laws for label in law.added()))
 
 
 def choose_law(
@@ -151,23 +151,23 @@ def choose_law(
         return found
 
     found: list[LawFit] = []
-    seas: list[OneSea] = []
+    seas: list[SeaStateFit] = []
     finished = False
     try:
         for name in laws:
             begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
             whole = one(name, {}, begin, name)
             if held:
-                judged = [error(whole, held)]
+                judged = [energy_error(whole, held)]
             else:
-                judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
-            found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
-        values = {k: p.value for k, p in found[0].calibration.parameters.items() if not of_law(k)}
+                judged = [energy_error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
+            found.append(LawFit(name, whole, energy_error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
+        values = {k: p.value for k, p in found[0].calibration.parameters.items() if not is_law_parameter(k)}
         for id in [*fitted, *held]:
             alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
             record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)
             state = sea_state(run, record, options.low, options.cutoff)
-            seas.append(OneSea(id, record.use, state, one(f"{id} alone", alone, values)))
+            seas.append(SeaStateFit(id, record.use, state, one(f"{id} alone", alone, values)))
         finished = True
     except KeyboardInterrupt:
         stopping()
@@ -176,7 +176,7 @@ def choose_law(
     return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held, finished)
 
 
-def error(calibration: Calibration, tests: Sequence[str]) -> float:
+def energy_error(calibration: Calibration, tests: Sequence[str]) -> float:
     """Root mean square of ln(simulated / measured energy) over the bands of tests."""
     bands = [band for test in calibration.tests if test.id in tests for row in test.bands.values() for band in row.values()]
     return error_of_energies(band.after for band in bands)

@@ -12,11 +12,19 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.fitting.decay_fit import Interrupted, Progress, labels_of, space_of
 from calibration.fitting.fit_conclusion import estimates, remarks
-from calibration.fitting.law_parameters import PLAIN, Drag, Over, of_law, reference_of, with_drag, with_laws
+from calibration.fitting.law_parameters import (
+    EXPONENT_DEVIATION,
+    Drag,
+    Over,
+    is_law_parameter,
+    reference_sea_state,
+    with_drag_law,
+    with_sea_state_laws,
+)
 from calibration.fitting.sea_descent import SeaFit
 from calibration.fitting.sea_remarks import sea_remarks
 from calibration.fitting.shooting_fit import ShootingFit
-from calibration.identifiability.directions import family
+from calibration.identifiability.directions import parameter_family
 from calibration.residuals.measured_seas import (
     Options,
     Seas,
@@ -29,7 +37,7 @@ from calibration.residuals.measured_seas import (
     with_diffraction,
 )
 from calibration.residuals.sea_errors import in_bands
-from calibration.residuals.seas import Objective, SeaProblem, pose_in_waves
+from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
 from calibration.result import BandError, Calibration, TestFit
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model
@@ -68,7 +76,7 @@ def calibrate_in_waves(
     `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of
     exponents with a prior of 0 +- 1; every test is then simulated with the coefficients of its own measured sea state. `drag`:
     free coefficients of plain drag become powers of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`; the prior of an
-    exponent is 0 +- 1), or have a share of their own in motion slower than the waves (`HighPassDrag`): see `laws.with_drag`.
+    exponent is 0 +- 1), or have a share of their own in motion slower than the waves (`HighPassDrag`): see `with_drag_law`.
     `made` are the campaign's runs and seas (`seas_of`), where they are at hand.
     Raises InputError where there is nothing to fit, Interrupted with what was reached.
     """
@@ -87,19 +95,21 @@ def calibrate_in_waves(
     moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
     labels = list(labels_of(campaign, declared, moved, free))
     if over:
-        damping = [label for label in labels if family(label) == "damping"]
-        declared = with_laws(declared, damping, over, law_reference(declared.loads) or reference_of(made, options))
+        damping = [label for label in labels if parameter_family(label) == "damping"]
+        declared = with_sea_state_laws(
+            declared, damping, over, law_reference(declared.loads) or reference_sea_state(made, options)
+        )
     added = [label for label in declared.values if is_exponent(label) and label not in labels]
     if drag is not None:
-        state = reference_of(made, options)
-        declared, of_drag = with_drag(declared, labels, drag, state, options.low)
+        state = reference_sea_state(made, options)
+        declared, of_drag = with_drag_law(declared, labels, drag, state, options.low)
         if not of_drag:
             raise InputError(source, [Problem("calibrate.free", "a coefficient of plain drag", ", ".join(labels))])
         added += of_drag
     # what a law adds that is not asked for is left out
-    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not of_law(label)}
+    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not is_law_parameter(label)}
     declared = declared.with_values(begin)
-    exponents = {label: (0.0, PLAIN) for label in added if declared.about(label).null == 0}
+    exponents = {label: (0.0, EXPONENT_DEVIATION) for label in added if declared.about(label).null == 0}
     space = space_of(campaign, [*labels, *added], declared, exponents)
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
@@ -109,7 +119,7 @@ def calibrate_in_waves(
     report("simulating the measured seas", 0, math.nan, 0.0)
 
     def pose(model: Model) -> SeaProblem:
-        return pose_in_waves(
+        return set_up_waves(
             model,
             made,
             space,

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even
+from calibration.global_search.base import AbstractSearch, Task, even_batch
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class CMAES(AbstractSearch):
     def together(self, size: int) -> int:
         if size == 1:
             raise ValueError("cma-es: expected two coefficients or more, found 1")
-        return even(self._population(size))
+        return even_batch(self._population(size))
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         import cma

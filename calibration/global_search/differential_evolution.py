@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even
+from calibration.global_search.base import AbstractSearch, Task, even_batch
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class DifferentialEvolution(AbstractSearch):
     name: ClassVar[str] = "de"
 
     def together(self, size: int) -> int:
-        return even(max(5, self.population * size))
+        return even_batch(max(5, self.population * size))
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         from scipy.optimize import differential_evolution

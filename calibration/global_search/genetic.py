@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even
+from calibration.global_search.base import AbstractSearch, Task, even_batch
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Genetic(AbstractSearch):
     needs: ClassVar[str | None] = "pymoo"
 
     def together(self, size: int) -> int:
-        return even(self.population)
+        return even_batch(self.population)
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         from pymoo.algorithms.soo.nonconvex.ga import GA

@@ -11,16 +11,16 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import Progress, prepare
-from calibration.global_search import METHODS, AbstractSearch, Budget, History, Stop, Task
-from calibration.global_search.descents import releases
+from calibration.fitting.decay_fit import Progress, prepare_fit
+from calibration.global_search import METHODS, AbstractSearch, Budget, BudgetSpent, History, Task
+from calibration.global_search.descents import fit_releases
 from calibration.global_search.objective import ranges
 from calibration.parameters.space import parameter_space
-from calibration.residuals.decays import Problem
+from calibration.residuals.decays import DecayProblem
 from jaxhydro.errors import suggest
 from jaxhydro.interrupts import stopping
 
-FACTOR = 10.0  # a coefficient without bounds is searched from a tenth to ten times of what the platform declares
+DEFAULT_FACTOR = 10.0  # a coefficient without bounds is searched from a tenth to ten times of what the platform declares
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ def search(
     seed: int = 0,
     budget: Budget = Budget(),
     free: Sequence[str] | None = None,
-    factor: float = FACTOR,
+    factor: float = DEFAULT_FACTOR,
     progress: Callable[[Progress], None] | None = None,
 ) -> Found:
     """The coefficients of least J that a global search finds for the decay records marked `fit`.
@@ -68,7 +68,7 @@ def search(
 
     `method` is "multistart" (least squares from the best of many starts), "cma-es", "ga" or "de", or one of their classes with
     its options. Population searches know nothing of releases. So the records' initial positions and rates are fitted first, by
-    least squares over the first 3 cycles whose coefficients are thrown away (`releases`), and offsets are eliminated in J;
+    least squares over the first 3 cycles whose coefficients are thrown away (`fit_releases`), and offsets are eliminated in J;
     multi-start fits them with the coefficients. The same `seed` gives the same search; only where a budget of seconds ends it
     differs. Simulations that give no number count as bad ones.
 
@@ -76,7 +76,7 @@ def search(
     bounds, SearchInterrupted (a KeyboardInterrupt) with what was reached.
     """
     chosen = _checked(method, seed, budget, factor)
-    problem, records = posed(campaign, free, factor)
+    problem, records = set_up_search(campaign, free, factor)
     task = Task(problem, records, None, budget, progress or (lambda _: None))
     return run(task, chosen, seed)
 
@@ -91,9 +91,9 @@ def run(task: Task, method: AbstractSearch, seed: int) -> Found:
     try:
         task.begin()
         if task.own is None and not method.descends:
-            task.own = releases(task)
+            task.own = fit_releases(task)
         method.run(task, np.random.default_rng(seed))
-    except Stop:
+    except BudgetSpent:
         ended = "reached" if task.best <= task.budget.objective else "budget"
     except KeyboardInterrupt:
         stopping()
@@ -111,9 +111,11 @@ def run(task: Task, method: AbstractSearch, seed: int) -> Found:
     return found
 
 
-def posed(campaign: Campaign, free: Sequence[str] | None = None, factor: float = FACTOR) -> tuple[Problem, tuple[Record, ...]]:
+def set_up_search(
+    campaign: Campaign, free: Sequence[str] | None = None, factor: float = DEFAULT_FACTOR
+) -> tuple[DecayProblem, tuple[Record, ...]]:
     """What is searched, and its records. Raises InputError where there is nothing to search, or no bounds."""
-    fit = prepare(campaign, free=free)
+    fit = prepare_fit(campaign, free=free)
     model, labels, source = fit.problem.model, fit.problem.space.labels, str(campaign.folder / "campaign.yaml")
     bounds = ranges(model, labels, dict(campaign.manifest.calibrate.bounds), factor, source)
     space = parameter_space(model, labels, bounds, None, source)
@@ -137,11 +139,11 @@ def _checked(method: str | AbstractSearch, seed: int, budget: Budget, factor: fl
         raise ValueError(f"method: expected one of {', '.join(METHODS)}, found {method!r}. {hint}".strip())
     if not chosen.descends and math.isinf(budget.seconds) and math.isinf(budget.simulations) and budget.objective <= 0:
         raise ValueError(f"budget: expected a limit, as {chosen.name} does not end of its own, found none")
-    _look_for(chosen)
+    _require_package(chosen)
     return chosen
 
 
-def _look_for(method: AbstractSearch) -> None:
+def _require_package(method: AbstractSearch) -> None:
     """Raises ValueError where the package that a method needs is not there."""
     if method.needs is not None and importlib.util.find_spec(method.needs) is None:
         install = "pip install 'jaxhydro[search]'"

@@ -12,8 +12,8 @@ from matplotlib.patches import Patch
 from calibration.discovery.diagnosis import Diagnosis, Effect
 from calibration.discovery.effects.effect_names import called
 from calibration.formatting import percent
-from calibration.plots.decay_figures import BAND_COLOURS, DECADES, HIGHEST
-from calibration.plots.search_figures import LEAST, anatomy_figure, latent_figure, scores_figure
+from calibration.plots.decay_figures import BAND_COLOURS, DECADES, MAX_FREQUENCY
+from calibration.plots.search_figures import MIN_SHOWN_GAIN, anatomy_figure, latent_figure, scores_figure
 from calibration.result import Calibration, Series, TestFit
 from calibration.vocabulary import USE
 from jaxhydro.analysis.spectral import power_spectrum
@@ -22,9 +22,9 @@ from jaxhydro.files import safe_name
 from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, WIDTH, header, stack
 from jaxhydro.units import for_people, unit_of
 
-EXCERPT = {"surge": 1200.0, "sway": 1200.0, "yaw": 1200.0}  # s of a record in waves that are shown
-SHORT = 600.0  # of the other motions
-SHADES = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
+EXCERPT_LENGTHS = {"surge": 1200.0, "sway": 1200.0, "yaw": 1200.0}  # s of a record in waves that are shown
+SHORT_EXCERPT = 600.0  # of the other motions
+BAND_NAMES = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
 
 
 def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, str, Figure]]:
@@ -43,7 +43,7 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
             name = "-".join(filter(None, ("effect", effect.effect, effect.degree_of_freedom)))
             title = called(effect.effect, effect.degree_of_freedom)
             yield f"{safe_name(name)}.png", _EFFECT.format(title=title, id=row.test.id), effect_figure(row, title)
-    if any(max(one.gain, one.refitted or 0.0) > LEAST for one in diagnosis.scores):
+    if any(max(one.gain, one.refitted or 0.0) > MIN_SHOWN_GAIN for one in diagnosis.scores):
         yield "scores.png", _SCORES, scores_figure(diagnosis)
     if diagnosis.latent:
         largest = max(diagnosis.latent, key=lambda one: one.relative)
@@ -158,7 +158,7 @@ def most_telling(rows: list[Row], effect: Effect) -> Row | None:
 def excerpt(row: Row) -> slice:
     """The samples that are shown: all of a decay; of a test in waves where most is gained."""
     time, (before, after) = row.test.time, row.residuals
-    count = int(np.searchsorted(time - time[0], EXCERPT.get(row.series.channel, SHORT)))
+    count = int(np.searchsorted(time - time[0], EXCERPT_LENGTHS.get(row.series.channel, SHORT_EXCERPT)))
     if row.test.kind == "decay" or count >= len(time):
         return slice(0, len(time))
     gained = np.concatenate([[0.0], np.cumsum(before**2 - after**2)])
@@ -203,7 +203,7 @@ def spectra_figure(test: TestFit) -> Figure:
     for ax, series in zip(axes, shown):
         channel, top, before = series.channel, 0.0, test.start.get(series.channel)
         for shade, (band, limits) in zip(BAND_COLOURS, test.bands.get(channel, {}).items()):
-            artists[SHADES.get(band, band)] = ax.axvspan(limits.low, limits.high, color=shade, lw=0, zorder=0.5)
+            artists[BAND_NAMES.get(band, band)] = ax.axvspan(limits.low, limits.high, color=shade, lw=0, zorder=0.5)
         rows = [
             ("measured", series.measured, MEASURED, 1.6),
             ("before", before, BEFORE, 1.0),
@@ -213,7 +213,7 @@ def spectra_figure(test: TestFit) -> Figure:
             if values is None:
                 continue
             found = power_spectrum(test.time, for_people(channel, values))
-            seen = (found.frequency > 0) & (found.frequency <= HIGHEST)
+            seen = (found.frequency > 0) & (found.frequency <= MAX_FREQUENCY)
             artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=size)[0]
             top = max(top, float(found.density[seen].max()))
         if top > 0:
@@ -221,7 +221,7 @@ def spectra_figure(test: TestFit) -> Figure:
             ax.set_ylim(top * 10**-DECADES, 2.5 * top)
             ax.set_yticks([10.0**n for n in range(-15, 12) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
             ax.minorticks_off()
-        ax.set_xlim(0, HIGHEST)
+        ax.set_xlim(0, MAX_FREQUENCY)
         ax.set_ylabel(f"{channel.capitalize()}\n({unit_of(channel)}²/Hz)")
     axes[-1].set_xlabel("Frequency (Hz)")
     order = ["measured", "low frequency", "before", "wave frequency", "after"]  # a legend is filled column by column

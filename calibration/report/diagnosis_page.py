@@ -9,8 +9,8 @@ from calibration.formatting import number
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
 from calibration.report.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
-from calibration.results.read_diagnosis import Found, SavedDiagnosis
-from calibration.results.result_folder import DIAGNOSIS
+from calibration.results.read_diagnosis import SavedDiagnosis, SavedEffect
+from calibration.results.result_folder import DIAGNOSIS_FILE
 from calibration.vocabulary import KINDS, USE
 
 _ANATOMY = """<p>The residual of the declared model after its coefficients are fitted, the largest first: its root mean
@@ -64,7 +64,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
     yield taken("effect-")
     yield "<h2>Error before and after</h2>"
     yield f"<p>{escape(_objectives(saved))}</p>"
-    yield table(*tables.errors(saved, str(folder / DIAGNOSIS)), 3)
+    yield table(*tables.errors(saved, str(folder / DIAGNOSIS_FILE)), 3)
     if (rows := tables.bands(saved))[1]:
         yield _BANDS
         yield table(*rows, 4)
@@ -98,7 +98,7 @@ def _measured(saved: SavedDiagnosis) -> str:
     return f"{tests}{platform}, {number(seconds / span, 2)} {unit} together at the platform file's scale ({said})."
 
 
-def _effect(saved: SavedDiagnosis, one: Found) -> Iterator[str]:
+def _effect(saved: SavedDiagnosis, one: SavedEffect) -> Iterator[str]:
     name = words.called(one.effect, one.degree_of_freedom)
     yield f"<h3>{escape(words.capital(name))}</h3>"
     sizes = "; ".join(words.size(key, value) for key, value in words.by_certainty(one.parameters))

@@ -3,13 +3,13 @@
 from calibration.discovery.effects.effect_names import called
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.formatting import number, percent, quantity, readable_unit, with_deviation
-from calibration.report.diagnosis_words import by_certainty, checked_on, determined, plain, strength
+from calibration.report.diagnosis_words import by_certainty, checked_on, determined, plain_name, strength
 from calibration.results.read_calibration import Parameter
 from calibration.results.read_diagnosis import SavedDiagnosis
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
-ORDER = list(USE)
-STILL = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
+USE_ORDER = list(USE)
+MAX_RELATIVE_ERROR = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
 VARIED = (
     f"Properties that are nearly known, fitted near their declared values (one standard deviation: mass {percent(MASS)}, "
@@ -35,7 +35,7 @@ def effects(saved: SavedDiagnosis) -> Rows:
         first = (called(one.effect, one.degree_of_freedom), strength(one.evidence), percent(one.evidence.holdout_gain))
         for i, (name, value) in enumerate(by_certainty(one.parameters)):
             said = quantity(value.value, value.standard_deviation, value.unit) if determined(value) else UNDETERMINED
-            rows.append((first[0] if i == 0 else "", plain(name), said, *(first[1:] if i == 0 else ("", ""))))
+            rows.append((first[0] if i == 0 else "", plain_name(name), said, *(first[1:] if i == 0 else ("", ""))))
     return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", f"Gain over {checked_on(saved)}"), rows
 
 
@@ -121,7 +121,7 @@ def anatomy(saved: SavedDiagnosis) -> Rows:
                 one.channel,
                 one.words,
                 f"{number(one.rms, 2)} {one.unit}",
-                percent(one.relative if (one.relative or 0.0) < STILL else None),
+                percent(one.relative if (one.relative or 0.0) < MAX_RELATIVE_ERROR else None),
                 number(one.over_noise, 2),
                 number(now.over_noise if now else None, 2),
             )
@@ -142,4 +142,4 @@ def _use(saved: SavedDiagnosis, id: str) -> str:
 
 def _order(saved: SavedDiagnosis, id: str) -> int:
     use = _use(saved, id)
-    return ORDER.index(use) if use in ORDER else len(ORDER)
+    return USE_ORDER.index(use) if use in USE_ORDER else len(USE_ORDER)

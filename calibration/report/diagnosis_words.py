@@ -6,18 +6,18 @@ from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER
 from calibration.discovery.effects.effect_names import called, capital
 from calibration.formatting import listed, number, percent, quantity
 from calibration.results.read_calibration import Parameter
-from calibration.results.read_diagnosis import Found, Grounds, SavedDiagnosis
+from calibration.results.read_diagnosis import SavedDiagnosis, SavedEffect, SavedEvidence
 from calibration.vocabulary import UNDETERMINED
 
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
 UNFINISHED = "The search did not come to its end: until then nothing was found that the declared model lacks."
 WHERE = "in the motion and at the frequencies where the error falls most"
-CLEAR = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
-SMALL = 0.25  # of the value it began from: a deviation below is small, whatever the value
+NEAR_ZERO_DEVIATIONS = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
+SMALL_DEVIATION = 0.25  # of the value it began from: a deviation below is small, whatever the value
 STRENGTHS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "positive"), (0.0, "weak"))  # Kass and Raftery 1995, table in 3.2
 
 
-def plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """A parameter's name in words: `column.exponent` is "column exponent"."""
     return name.replace(".", " ").replace("_", " ")
 
@@ -25,7 +25,7 @@ def plain(name: str) -> str:
 def determined(one: Parameter) -> bool:
     """Whether the records determine a parameter: its deviation is below its value, or small against where it began."""
     deviation = one.standard_deviation or 0.0
-    return one.identifiable and (deviation <= abs(one.value) or deviation < SMALL * abs(one.start or 0.0))
+    return one.identifiable and (deviation <= abs(one.value) or deviation < SMALL_DEVIATION * abs(one.start or 0.0))
 
 
 def by_certainty(parameters: Mapping[str, Parameter]) -> list[tuple[str, Parameter]]:
@@ -37,11 +37,11 @@ def size(name: str, one: Parameter) -> str:
     """A parameter of an effect: its name, value, deviation and unit; or that it is not determined, and what was fitted."""
     text = quantity(one.value, one.standard_deviation, one.unit)
     if not determined(one):
-        return f"{plain(name)} {UNDETERMINED}" + (f": fitted {text}" if one.identifiable else "")
+        return f"{plain_name(name)} {UNDETERMINED}" + (f": fitted {text}" if one.identifiable else "")
     more = ", at its bound" if one.at_bound else ""
-    if one.standard_deviation and abs(one.value) < CLEAR * one.standard_deviation:
-        more += f", less than {CLEAR:g} standard deviations from zero"
-    return f"{plain(name)} {text}{more}"
+    if one.standard_deviation and abs(one.value) < NEAR_ZERO_DEVIATIONS * one.standard_deviation:
+        more += f", less than {NEAR_ZERO_DEVIATIONS:g} standard deviations from zero"
+    return f"{plain_name(name)} {text}{more}"
 
 
 def checked_on(saved: SavedDiagnosis) -> str:
@@ -92,14 +92,14 @@ def change(before: float, after: float) -> str:
     return f"{word} by {percent(abs(share))} (J from {number(before, 3)} to {number(after, 3)})"
 
 
-def strength(evidence: Grounds) -> str:
+def strength(evidence: SavedEvidence) -> str:
     """The evidence's weight by BIC, in the words of Kass and Raftery."""
     if evidence.delta_bic is None:
         return "unknown"
     return next((word for limit, word in STRENGTHS if evidence.delta_bic > limit), "none")
 
 
-def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
+def sureness(saved: SavedDiagnosis, one: SavedEffect) -> list[str]:
     """How sure an effect is: sentences with their numbers."""
     evidence = one.evidence
     said = []
@@ -126,7 +126,7 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     return said
 
 
-def alternatives(one: Found) -> str:
+def alternatives(one: SavedEffect) -> str:
     """What else it could be, and the test that would tell."""
     names = listed([called(other) for other in one.indistinguishable_from])
     said = f"These records cannot tell it from {names}." if names else ""

@@ -25,7 +25,7 @@ class Stretch(NamedTuple):
     state: SeaState | None
 
 
-class Walked(NamedTuple):
+class SimulatedStretch(NamedTuple):
     """A simulated stretch, and the state that it began in; None: at rest."""
 
     stretch: Stretch
@@ -33,7 +33,7 @@ class Walked(NamedTuple):
     start: State | None
 
 
-def window(run: Run, record: Record) -> np.ndarray:
+def samples_after_transient(run: Run, record: Record) -> np.ndarray:
     """Indices into the run's clock of a test's samples after its transient."""
     at = run.samples(record)
     whole = np.arange(at[0], at[-1] + 1)
@@ -42,7 +42,7 @@ def window(run: Run, record: Record) -> np.ndarray:
 
 def sea_state(run: Run, record: Record, low: float, cutoff: float) -> SeaState:
     """The measured sea state of a test after its transient, of waves from `low` to `cutoff` (Hz)."""
-    whole = window(run, record)
+    whole = samples_after_transient(run, record)
     spectrum = power_spectrum(run.time[whole], run.wave[whole])
     inside = (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
     frequency, density = spectrum.frequency[inside], spectrum.density[inside]
@@ -65,9 +65,9 @@ def stretches(run: Run, records: Sequence[Record], model: Model, low: float, cut
     )
 
 
-def walk(
+def simulate_stretches(
     model: Model, run: Run, parts: Sequence[Stretch], sea: IrregularSea, step: float, margin: float = 0.0
-) -> Iterator[Walked]:
+) -> Iterator[SimulatedStretch]:
     """The motion of a platform that starts at rest with a run, stretch by stretch. Each begins where the one before it was; a
     load's memory begins anew. `step` and `margin` are those of `in_irregular`."""
     rest = State(equilibrium(model), jnp.zeros(6), model.rest().memory)
@@ -76,7 +76,7 @@ def walk(
         here = model if part.state is None else model.in_sea(part.state)
         times = jnp.asarray(run.time[part.begin : part.end + 1])
         found = in_irregular(here, sea, rest if start is None else start, times, step, margin=margin)
-        yield Walked(part, found, start)
+        yield SimulatedStretch(part, found, start)
         if i + 1 < len(parts):
             after = parts[i + 1].begin - part.begin
             position, rate = found.response.position[after], found.response.rate[after]

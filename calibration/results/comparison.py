@@ -6,14 +6,14 @@ from typing import Any
 
 import jaxhydro
 from calibration.campaign.signals import wave_height
-from calibration.residuals.measured_seas import Compared, Options, SeaTest
+from calibration.residuals.measured_seas import Comparison, Options, SeaTest
 from calibration.residuals.sea_errors import WELCH, amplitude, channels, in_bands
-from calibration.results.applied_calibration import Applied
+from calibration.results.applied_calibration import AppliedCalibration
 from jaxhydro.environment import DOFS
 from jaxhydro.units import for_people, unit_of
 
 
-def document(found: Compared, options: Options, about: dict[str, Any], applied: Applied | None) -> dict[str, Any]:
+def document(found: Comparison, options: Options, about: dict[str, Any], applied: AppliedCalibration | None) -> dict[str, Any]:
     """The content of comparison.json; `error` is the contract's."""
     coefficients = (
         {"source": "platform", "values": {}, "not_identifiable": [], "left_out": []}

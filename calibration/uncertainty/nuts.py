@@ -15,13 +15,13 @@ from jaxtyping import Array, Float
 from scipy.linalg import cholesky, eigh
 
 from calibration.fitting.cores import cores
-from calibration.residuals.decays import Problem, Unknowns
-from calibration.uncertainty.likelihood import LEVEL, Likelihood, coordinates
+from calibration.residuals.decays import DecayProblem, Unknowns
+from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood, coordinates
 from jaxhydro.interrupts import stop_if_asked, stopping
 
-DEEPEST = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
-LEAST = 50  # draws of every chain that are worth keeping where it is stopped
-EVERY = 0.5  # s between looks at the chains
+MAX_TREE_DEPTH = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
+MIN_DRAWS = 50  # draws of every chain that are worth keeping where it is stopped
+POLL_INTERVAL = 0.5  # s between looks at the chains
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class Samples:
         """Standard deviations (p,) of the coordinates."""
         return np.asarray(self.coordinate.reshape(-1, len(self.labels)).std(axis=0, ddof=1))
 
-    def interval(self, label: str, level: float = LEVEL) -> tuple[float, float]:
+    def interval(self, label: str, level: float = DEFAULT_LEVEL) -> tuple[float, float]:
         """Equal-tailed interval in values. Raises InputError for an unknown label."""
         mine = self.value[..., self.likelihood.index(label)].ravel()
         low, high = np.quantile(mine, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
@@ -57,7 +57,7 @@ class Samples:
 Energy = Callable[[Float[Array, " n"]], Float[Array, ""]]
 
 
-def potential(likelihood: Likelihood, scale: float) -> Energy:
+def potential_energy(likelihood: Likelihood, scale: float) -> Energy:
     """Energy of all coordinates (n,): half of `scale` times the sum of squares, and half of the prior's.
 
     Every free parameter has a normal prior in its coordinate, wide unless the manifest says otherwise, so that no Jacobian of
@@ -80,7 +80,7 @@ def potential(likelihood: Likelihood, scale: float) -> Energy:
     return energy
 
 
-def _energy(problem: Problem, unknowns: Unknowns, weight, until, mean, precision, scale):
+def _energy(problem: DecayProblem, unknowns: Unknowns, weight, until, mean, precision, scale):
     """Energy and its gradient."""
     p = len(mean)
     block = scale * jnp.einsum("rckl,rc->rkl", problem.products(unknowns, until), weight)
@@ -102,15 +102,15 @@ def sample(
 ) -> Samples:
     """Draws by the no-U-turn sampler (Hoffman and Gelman 2014, Journal of Machine Learning Research 15, 1593-1623).
 
-    The density is exp(-energy) of `potential`, the same sum of squares as the profile's, in coordinates whitened by the
+    The density is exp(-energy) of `potential_energy`, the same sum of squares as the profile's, in coordinates whitened by the
     fit's information, so that steps are long and few. Errors that are neither white nor of known size are taken into account
     as in the profile: every draw's distance from the estimate is stretched so that its covariance near it is the
     sandwich's (the open-faced sandwich, Shaby 2014, Journal of Computational and Graphical Statistics 23, 853-876, equation 7),
     along the directions that both covariances have in common. Chains run side by side, as many as there are cores;
     `progress` is told how many draws are done, and where.
 
-    Stopped (KeyboardInterrupt) it gives what there is of all chains, if that is `LEAST` draws of each. Raises ImportError where
-    numpyro is not installed.
+    Stopped (KeyboardInterrupt) it gives what there is of all chains, if that is `MIN_DRAWS` draws of each. Raises ImportError
+    where numpyro is not installed.
     """
     try:
         from numpyro.diagnostics import effective_sample_size, split_gelman_rubin
@@ -119,7 +119,7 @@ def sample(
         raise ImportError("sampling needs numpyro: pip install 'jaxhydro[nuts]'") from error
     fit, centre, scale = likelihood.fit, coordinates(likelihood.fit.unknowns), likelihood.scale()
     root, stretch = whitening(likelihood, scale)
-    energy = potential(likelihood, scale)
+    energy = potential_energy(likelihood, scale)
     away, unseen = jnp.asarray(root), jnp.asarray(np.diag(likelihood.information) <= 0).at[: len(likelihood.labels)].set(False)
 
     @jax.jit
@@ -128,11 +128,11 @@ def sample(
         # a channel that a record lacks would wander without end
         return energy(jnp.asarray(centre) + off) + 0.5 * jnp.sum(jnp.where(unseen, off, 0.0) ** 2)
 
-    kernel, key = NUTS(potential_fn=whitened, max_tree_depth=DEEPEST), jax.random.key(seed)
+    kernel, key = NUTS(potential_fn=whitened, max_tree_depth=MAX_TREE_DEPTH), jax.random.key(seed)
     start = jax.random.normal(jax.random.fold_in(key, 1), (chains, len(centre)))
     begun = [kernel.init(jax.random.fold_in(key, 2 + k), warmup, start[k], (), {}) for k in range(chains)]
     step = jax.jit(lambda state: kernel.sample(state, (), {}))
-    rows = _walked(step, begun, warmup, draws, progress)
+    rows = _run_chains(step, begun, warmup, draws, progress)
     z, lost = np.array([[at for at, _ in row] for row in rows]), sum(astray for row in rows for _, astray in row)
     shared = len(fit.problem.space.free)
     coordinate = (centre + z @ (stretch @ root).T)[..., :shared]
@@ -143,7 +143,7 @@ def sample(
     return Samples(likelihood.labels, coordinate, value, r_hat, effective, lost, seed, draws, likelihood)
 
 
-def _walked(
+def _run_chains(
     step: Callable[[Any], Any], begun: list[Any], warmup: int, draws: int, progress: Callable[[int, str], None]
 ) -> list[list[tuple[np.ndarray, bool]]]:
     """Where chains were after their warm-up, and whether a step went astray: as many draws of each as all have."""
@@ -164,7 +164,7 @@ def _walked(
         under_way = {pool.submit(walk, k) for k in range(len(begun))}
         try:
             while under_way:
-                over, under_way = wait(under_way, timeout=EVERY)
+                over, under_way = wait(under_way, timeout=POLL_INTERVAL)
                 stop_if_asked()
                 for one in over:
                     one.result()
@@ -173,7 +173,7 @@ def _walked(
             stop.set()
             stopping()
             pool.shutdown(cancel_futures=True)
-            if not isinstance(stopped, KeyboardInterrupt) or min(map(len, rows)) < LEAST:
+            if not isinstance(stopped, KeyboardInterrupt) or min(map(len, rows)) < MIN_DRAWS:
                 raise
     count = min(map(len, rows))
     return [row[:count] for row in rows]
