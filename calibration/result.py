@@ -1,4 +1,4 @@
-"""What a calibration returns, as values: parameters with their uncertainty, and every test measured against simulated."""
+"""Result of a calibration: estimates, and tests measured against simulated."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Units, scales and signs that all records of a campaign tell together: told once, with the manifest's key that explains it."""
+"""Hints on wrong units, scales and signs that all records of a campaign share."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What is wrong with the records: clocks, gaps, missing values, frozen and clipped channels, spikes, drift, windows.
+"""Data-quality checks: clocks, gaps, frozen and clipped channels, spikes, drift, windows.
 
 An error is what no fit should be built on, a warning what its reader should know. Repaired, with a warning: rows with a
 value missing and rows that repeat a time, while they are less than 2 % of the window; they are dropped. Nothing else is

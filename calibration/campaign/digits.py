@@ -1,4 +1,4 @@
-"""The digits of a recorded channel: the step of its last digit at every value, and samples drawn straight between others."""
+"""Resolution of a recorded channel, and detection of linearly interpolated samples."""
 
 from __future__ import annotations
 

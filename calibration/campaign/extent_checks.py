@@ -1,4 +1,4 @@
-"""What is told of where a record begins and ends: a model that is held or pushed, waves that go on or have not begun."""
+"""Warnings on the start and end of a record: held or pushed models, late waves."""
 
 from __future__ import annotations
 

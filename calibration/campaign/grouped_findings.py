@@ -1,4 +1,4 @@
-"""Warnings about records, each said once: equal messages on the same channel are grouped over tests.
+"""Findings about records, equal ones grouped over tests.
 
 Messages on whole records are equal when they differ by their numbers alone: "its mean drifts by -0.149 to -0.0885 m".
 """

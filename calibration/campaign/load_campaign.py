@@ -1,4 +1,4 @@
-"""A campaign as calibration takes it: manifest, platform, records and findings; whole or not at all."""
+"""Loading of a campaign: manifest, platform, records and findings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Are records of the size and pace of the platform? With a wrong unit or scale they are not, which no fit should find out."""
+"""Plausibility of records: motions and periods compared with those of the platform."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,17 +14,13 @@ from jaxhydro.dynamics.statics import characteristic_length, equilibrium, natura
 from jaxhydro.environment import DOFS
 from jaxhydro.units import for_people, unit_of
 
-UNUSUAL_PERIOD_RATIO, WRONG_PERIOD_RATIO = (
-    3.0,
-    20.0,
-)  # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
+# natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
+UNUSUAL_PERIOD_RATIO, WRONG_PERIOD_RATIO = 3.0, 20.0
 HEAVE_LIMITS = (0.5, 3.0)  # motions that are odd or wrong: of the radius of gyration
 HORIZONTAL_LIMITS = (3.0, 6.0)  # ... in surge and sway, where moorings may be slack
 ANGLE_LIMITS = (np.radians(60.0), np.radians(180.0))
-SMALLEST_RELEASE, SMALLEST_RELEASE_ANGLE = (
-    1e-3,
-    4e-3,
-)  # of the radius of gyration, rad: what nobody would release a platform from
+# of the radius of gyration, rad: what nobody would release a platform from
+SMALLEST_RELEASE, SMALLEST_RELEASE_ANGLE = 1e-3, 4e-3
 SCALE_TOLERANCE = 0.15  # of a logarithm: a ratio that is the square root of the scale
 MAX_REST_OFFSET = 0.02  # of the radius of gyration, or rad: where a platform is at rest
 STEEPNESS_LIMITS = (1 / 7, 1.0)  # height over length: beyond 1/7 no wave stands (Michell 1893, Phil. Mag. 36)

@@ -1,4 +1,4 @@
-"""Records: what each test measured, in SI at full scale, still water at zero, with its noise.
+"""Records of the tests: measured motions in SI at full scale, with their noise.
 
 `Series` is a test as it stands in its file; `Record` is what calibration works on. Recorded times are kept, jitter and
 all. Rows with a value missing and rows that repeat a time are dropped here; `checks` says so, or refuses.

@@ -1,4 +1,4 @@
-"""The free part of a decay record: from the release, or the end of a push, to the next push or to where the model is caught."""
+"""Detection of the free motion in a decay record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs in waves: the whole record of each file, and the tests that are windows of it. SI at full scale."""
+"""Runs in waves: the whole record of each file, and the tests that are windows of it."""
 
 import math
 from collections.abc import Sequence
@@ -12,9 +12,8 @@ from calibration.campaign.records import Record, unit_factors, valid_values, who
 from jaxhydro.errors import InputError, Problem
 
 MIN_SAMPLES = 20  # samples
-MAX_CLOCK_ERROR = (
-    0.2  # of a step, by which a time may miss the even clock that fits all best: rounding in a file does half of it
-)
+# of a step, by which a time may miss the even clock that fits all best: rounding in a file does half of it
+MAX_CLOCK_ERROR = 0.2
 LONGEST_GAP = 3  # samples of the wave that may be missing in a row, and are drawn straight
 
 

@@ -1,4 +1,4 @@
-"""One recorded channel: its resolution, its noise, its period, what is constant in it and what sticks out."""
+"""Analysis of one recorded channel: resolution, noise, period, spikes, constant stretches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How strips are loaded, in the words of a platform file: read from a model, given to another."""
+"""Conventions of strip loads, read from a model and applied to another."""
 
 from dataclasses import replace
 from typing import Literal

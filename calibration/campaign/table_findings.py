@@ -1,4 +1,4 @@
-"""Findings on a campaign's platform and its tables: what was read with a remark, waves that a table does not have."""
+"""Findings on the platform file, and on waves outside its hydrodynamic tables."""
 
 import math
 from collections.abc import Iterator, Sequence

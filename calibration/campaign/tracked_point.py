@@ -1,4 +1,4 @@
-"""Motions that were recorded at another point of the hull, moved to the reference point."""
+"""Transfer of motions from a tracked point of the hull to the reference point."""
 
 from collections.abc import Collection, Iterator, Mapping
 

@@ -1,4 +1,4 @@
-"""Where waves begin and end in a record, and waves in a decay, which should be in still water."""
+"""Start and end of the waves in a record, and waves in a decay record."""
 
 from __future__ import annotations
 

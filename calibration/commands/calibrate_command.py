@@ -1,4 +1,4 @@
-"""The commands on campaigns, from a folder to files and tables: calibrate, and simulate in measured waves."""
+"""Commands `calibrate`, and `simulate` in the measured waves of a campaign."""
 
 import time as clock
 from collections.abc import Callable, Mapping

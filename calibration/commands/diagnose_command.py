@@ -1,4 +1,4 @@
-"""The diagnose command, from a campaign to files and tables."""
+"""Command `diagnose`: from a campaign to result files and tables."""
 
 from dataclasses import replace
 from pathlib import Path

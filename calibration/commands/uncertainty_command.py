@@ -1,4 +1,4 @@
-"""The uncertainty command: from a campaign and a finished calibration of its decays to intervals of the parameters."""
+"""Command `uncertainty`: intervals of the parameters of a finished calibration."""
 
 import fnmatch
 from collections.abc import Iterator, Sequence

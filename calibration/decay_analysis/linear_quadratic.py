@@ -1,4 +1,4 @@
-"""Classical analysis of a free decay: logarithmic decrement, linear and quadratic damping (P-Q), equivalent damping.
+"""Decay analysis: logarithmic decrement, linear and quadratic (P-Q) damping.
 
 The law is that of one degree of freedom, x'' + p x' + q x'|x'| + w^2 x = 0, p in 1/s, q in 1/m or 1/rad. Between two
 successive extremes A0, A1 the energy w^2 (A0^2 - A1^2)/2 per unit mass is lost to damping. Along x = a cos wt that is, over

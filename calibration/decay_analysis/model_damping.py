@@ -1,4 +1,4 @@
-"""A model's damping in one motion, in the terms of a P-Q fit, and which drag coefficients it comes from.
+"""Linear and quadratic damping of a model in one motion, by drag coefficient.
 
 M x'' + B_lin x' + B_quad x'|x'| + C x = 0, so p = B_lin/M and q = B_quad/M of `classical`, M with added mass.
 """

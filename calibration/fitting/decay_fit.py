@@ -1,4 +1,4 @@
-"""Calibration: free parameters fitted to all decay records together by least squares."""
+"""Calibration to decays: least squares on all decay records together."""
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
@@ -32,9 +32,8 @@ from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
 from jaxhydro.interrupts import stopping
 
-SIDE_CHANNEL_WEIGHT = (
-    0.1  # weight of a record's other channels against the released one, on the same footing in metres of the hull
-)
+# weight of a record's other channels against the released one, both in metres of the hull
+SIDE_CHANNEL_WEIGHT = 0.1
 WINDOW_GROWTH = 2.5  # the window grows by this factor, from FIRST_WINDOW_CYCLES cycles to the whole record
 FIRST_WINDOW_CYCLES = 1.25
 STEPS_PER_PERIOD = 16  # of the shortest natural period: an error of some 1e-7 in the period
@@ -122,7 +121,7 @@ class DecayFit:
         return np.minimum(np.asarray(data.time[:, 0]) + cycles * 2 * np.pi / np.asarray(data.pace), np.asarray(self.ends))
 
     def information(self, until) -> float:
-        """How many independent `independent_observations` all records stand for."""
+        """Number of `independent_observations` in all records."""
         return float(np.sum(independent_observations(self.problem.data, until)))
 
     def cost(self, weight: np.ndarray) -> float:

@@ -1,4 +1,4 @@
-"""What a finished fit says: parameters with their uncertainty, series measured against simulated, remarks in words."""
+"""Results of a finished fit: estimates, measured and simulated series, remarks."""
 
 from __future__ import annotations
 

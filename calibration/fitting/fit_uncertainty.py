@@ -1,4 +1,4 @@
-"""What a finished fit of decays determines: the scatter of its residuals, covariance and identifiability."""
+"""Covariance and identifiability of a finished fit to decays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Calibration to tests of all kinds together: decays, tests in waves, static offsets and natural periods."""
+"""Joint calibration to decays, tests in waves, static offsets and natural periods."""
 
 import time as clock
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""A calibration to tests of all kinds together, under way: what is fitted, how it is weighed, what it knows."""
+"""State of a joint calibration: sources, errors, weights, uncertainty."""
 
 import math
 from collections.abc import Callable
@@ -28,9 +28,8 @@ MAX_ROUNDS = 6  # times that the errors of the kinds of data are estimated anew
 ERROR_TOLERANCE = 0.1  # relative change of these that is none
 TOLERANCE = 1e-4
 INITIAL_TRUST = 1.0
-CAUCHY_SCALE = (
-    2.385  # standard deviations: Cauchy's loss is then 95 % efficient on normal errors (Holland and Welsch 1977, table 1)
-)
+# standard deviations: Cauchy's loss is then 95 % efficient on normal errors (Holland and Welsch 1977, table 1)
+CAUCHY_SCALE = 2.385
 MIN_ERROR = {"waves": 0.02, "offsets": 1e-3}  # error of ln(energy), share of the held motion: below, a fit proves nothing
 
 

@@ -1,4 +1,4 @@
-"""Coefficients that depend on the sea: sea state by sea state, and as laws, of which seas held out choose one."""
+"""Choice of a law for coefficients that depend on the sea state, by held-out tests."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

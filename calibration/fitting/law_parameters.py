@@ -1,4 +1,4 @@
-"""Laws that a declared model's drag and damping coefficients are given, to be fitted with them: all begin at their null."""
+"""Laws for drag and damping coefficients, added to a model at their neutral values."""
 
 import math
 from collections.abc import Sequence

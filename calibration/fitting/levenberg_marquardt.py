@@ -1,4 +1,4 @@
-"""The optimiser: optimistix's Levenberg-Marquardt with steps that cannot run away."""
+"""Levenberg-Marquardt optimiser with limited steps, on optimistix."""
 
 import math
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""A calibration in measured waves under way: its descent in rounds, the error that weighs its prior, and what it knows."""
+"""State of a calibration in waves: rounds of descent, estimated error, identifiability."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -18,9 +18,8 @@ from jaxhydro.dynamics.model import Model
 MAX_ROUNDS = 4  # times that the model's error is estimated anew
 ERROR_TOLERANCE = 0.05  # relative change of that estimate that is none
 TOLERANCE = 1e-3  # relative decrease of the sum of squares that ends a round
-FIRST_STEP_TRUST = (
-    1.0  # trust in a descent's first step (`descend`): logarithms of energies are far from linear in those of coefficients
-)
+# trust in a descent's first step (`descend`): logarithms of energies are far from linear in those of coefficients
+FIRST_STEP_TRUST = 1.0
 
 
 def _objective(x, args):

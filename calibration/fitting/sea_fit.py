@@ -1,4 +1,4 @@
-"""Calibration in measured waves: free parameters fitted to the motions of tests in irregular and regular waves."""
+"""Calibration to the motions of tests in irregular and regular waves."""
 
 import math
 import time as clock

@@ -1,4 +1,4 @@
-"""What a calibration in waves adds in words: constants of its laws, short tests, held-out ones that it does not suit."""
+"""Remarks on a calibration in waves: constants of laws, short tests, held-out tests."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -9,9 +9,8 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.platform.drag_laws import drag_laws_of
 
-MIN_PERIODS = (
-    10.0  # natural periods: the energy of a random motion in fewer says little (its relative deviation is some 1/sqrt(n))
-)
+# natural periods: the energy of a random motion in fewer says little (its relative deviation is some 1/sqrt(n))
+MIN_PERIODS = 10.0
 WORSE_RATIO = 1.1  # of the error before, from which it is said
 
 

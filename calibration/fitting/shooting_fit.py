@@ -1,4 +1,4 @@
-"""A calibration by blocks (`shooting`) under way: its unknowns eliminated, what they know, and how far blocks do not join."""
+"""State of a calibration in waves by blocks (multiple shooting)."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -19,9 +19,8 @@ from calibration.residuals.shooting import BlockProblem, set_up_blocks, simulate
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 
-INITIAL_ERROR = (
-    0.1  # error that a fit begins with at most: what is left at first is not the model's, but that of its coefficients
-)
+# largest error that a fit begins with: at first the coefficients cause most of the residual, not the model
+INITIAL_ERROR = 0.1
 
 
 def objective(unknowns: Unknowns, args):

@@ -1,4 +1,4 @@
-"""Fitted coefficients that are off by the ratio of two units, or by a sign."""
+"""Hints on fitted coefficients that are off by a ratio of units or by a sign."""
 
 import math
 from collections.abc import Iterable, Iterator

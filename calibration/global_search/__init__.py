@@ -1,4 +1,4 @@
-"""Global searches: one file each, interchangeable. `calibration.global_search.run_search` is how they are used."""
+"""Global searches for a starting point: interchangeable methods, run by `run_search`."""
 
 from calibration.global_search.base import AbstractSearch, Budget, BudgetSpent, History, Task
 from calibration.global_search.cma_es import CMAES

@@ -1,4 +1,4 @@
-"""What all searches share: a budget, the task that counts what is spent of it, and the history that comes out."""
+"""Base of all global searches: budget, counted objective, history."""
 
 import abc
 import time as clock

@@ -1,4 +1,4 @@
-"""CMA-ES by the package `cma` of its author."""
+"""Covariance matrix adaptation (CMA-ES), by the package `cma`."""
 
 from dataclasses import dataclass
 from typing import ClassVar

@@ -1,4 +1,4 @@
-"""The package's least squares as part of a search: its iterations are counted, and its J is that of whole records."""
+"""Local least squares within a global search, with counted simulations."""
 
 import contextlib
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Differential evolution by scipy."""
+"""Differential evolution, by scipy."""
 
 from dataclasses import dataclass
 from typing import ClassVar

@@ -1,4 +1,4 @@
-"""A genetic algorithm by pymoo."""
+"""Genetic algorithm, by pymoo."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar

@@ -1,4 +1,4 @@
-"""Multi-start least squares: many starts judged cheaply, the best few calibrated."""
+"""Multi-start least squares: many starts ranked cheaply, the best few calibrated."""
 
 import math
 from dataclasses import dataclass

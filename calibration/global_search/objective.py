@@ -1,4 +1,4 @@
-"""J of points in the unit cube: what every global search minimises, many points at once."""
+"""Objective of a global search: J of many points of the unit cube at once."""
 
 import math
 from collections.abc import Mapping, Sequence

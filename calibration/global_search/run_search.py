@@ -1,4 +1,4 @@
-"""Global search over the coefficients of a campaign's decays, where it is not known where to begin."""
+"""Global search over the coefficients that a campaign's decays determine."""
 
 import importlib.util
 import math

@@ -1,4 +1,4 @@
-"""What the records of a calibration tell together and what they do not: directions, combinations, what to fix, what to test.
+"""Identifiability of the parameters: weak directions, known combinations, what to fix.
 
 Everything is local and linear, about the fitted values, in the coordinates of the fit: logarithms of positive parameters
 within their bounds. Information is that of the records alone; the fit's prior enters only where `covariance` is named.
@@ -32,16 +32,14 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.platform.drag_laws import coefficient_label
 
-Parts = tuple[
-    np.ndarray, np.ndarray, np.ndarray, np.ndarray
-]  # products, weight, variance, inflation: see `sandwich_covariance`
+# products, weight, variance, inflation: see `sandwich_covariance`
+Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
 ZERO_VARIANCE = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
 MAX_REPORTED_DIRECTIONS = 4  # weak directions in words
 MIN_VARIANCE_GAIN = 0.01  # of the others' summed variance: what takes less away is no advice
-MIN_NAMED_DEVIATION = (
-    0.5 * IDENTIFIABLE_DEVIATION
-)  # a parameter that a direction leaves uncertain by less than this is not named in it
+# a parameter that a direction leaves uncertain by less than this is not named in it
+MIN_NAMED_DEVIATION = 0.5 * IDENTIFIABLE_DEVIATION
 
 
 @dataclass(frozen=True, eq=False)

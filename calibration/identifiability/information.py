@@ -1,4 +1,4 @@
-"""Algebra of information matrices: elimination of unknowns, principal directions, collinearity."""
+"""Algebra of information matrices: elimination, principal directions, collinearity."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Spectra of residuals: how much of their variance lies where a parameter's effect on the motion lies.
+"""Spectra of residuals, for standard deviations under coloured errors.
 
 The standard deviation of an estimate rests on the scatter of its score J^T e, whose variance is that of the residual at the
 frequencies of the slope J: of a decay, near its natural frequency. White noise of the same total variance has most of it

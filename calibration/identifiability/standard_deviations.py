@@ -1,4 +1,4 @@
-"""How well the records determine each parameter: standard deviations and a verdict, from the Jacobian."""
+"""Standard deviations of the parameters: sandwich covariance from the Jacobian."""
 
 from typing import NamedTuple
 
@@ -6,9 +6,8 @@ import numpy as np
 
 from calibration.identifiability.information import pseudo_inverse
 
-ROUNDING_SHARE = (
-    1e-14  # of the largest eigenvalue of a scaled matrix: a weak prior that is all there is of a coordinate is more
-)
+# of the largest eigenvalue of a scaled matrix: a weak prior that is all there is of a coordinate is more
+ROUNDING_SHARE = 1e-14
 
 
 class Spread(NamedTuple):

@@ -1,4 +1,4 @@
-"""What is said of identifiability, as values and in words: directions, combinations that are known, what to fix."""
+"""Statements on identifiability, as values: directions, combinations, parameters to fix."""
 
 from typing import NamedTuple
 

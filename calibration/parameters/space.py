@@ -1,4 +1,4 @@
-"""Which of a model's parameters are free, between which bounds, and with which prior."""
+"""Free parameters of a model: choice, bounds, priors."""
 
 import fnmatch
 import math

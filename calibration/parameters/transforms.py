@@ -1,4 +1,4 @@
-"""Maps between a parameter's value and the unbounded coordinate that is optimised."""
+"""Transforms between a parameter's value and its unbounded coordinate."""
 
 import abc
 import math

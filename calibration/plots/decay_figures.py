@@ -1,4 +1,4 @@
-"""The figures of a calibration: every test, decay against amplitude, and the parameters."""
+"""Figures of a calibration: tests, decay against amplitude, parameters."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple

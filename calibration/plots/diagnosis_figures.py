@@ -1,4 +1,4 @@
-"""The figures of a diagnosis: errors, residuals and spectra, before what was missing is in the model and after."""
+"""Figures of a diagnosis: errors, residuals and spectra before and after."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

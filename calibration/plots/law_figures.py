@@ -1,4 +1,4 @@
-"""Coefficients against the sea state: sea by sea, and by the laws."""
+"""Figures of coefficients against the sea state."""
 
 import numpy as np
 from matplotlib.artist import Artist

@@ -1,4 +1,4 @@
-"""The figures of tests in waves: spectra with their bands, and an excerpt of the record, measured against simulated."""
+"""Figures of tests in waves: spectra with their bands, and an excerpt of the record."""
 
 from collections.abc import Iterator, Sequence
 

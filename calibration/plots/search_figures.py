@@ -1,4 +1,4 @@
-"""The figures of a diagnosis that show how it was made: scores of the candidates, and where the residual lives."""
+"""Figures of the search in a diagnosis: candidate scores, residuals, latent forces."""
 
 import numpy as np
 from matplotlib.artist import Artist

@@ -1,4 +1,4 @@
-"""A calibration as one self-contained HTML page: its result in one sentence, coefficients, tests, damping, notes, figures."""
+"""HTML page of a calibration."""
 
 from collections.abc import Iterator
 from html import escape

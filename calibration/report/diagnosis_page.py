@@ -1,4 +1,4 @@
-"""A diagnosis as one self-contained HTML page, for the one who decides what is measured next."""
+"""HTML page of a diagnosis."""
 
 from collections import Counter
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Heads and rows of the tables of a diagnosis, for the terminal and the page."""
+"""Tables of a diagnosis, for the terminal and the page."""
 
 from calibration.discovery.effects.effect_names import called
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS

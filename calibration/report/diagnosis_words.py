@@ -1,4 +1,4 @@
-"""A diagnosis in words and readable numbers, for the terminal and the page."""
+"""Sentences and readable numbers of a diagnosis, for the terminal and the page."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""The result of a calibration in one sentence: how well tests are followed, and which coefficients are determined."""
+"""Result of a calibration in one sentence."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""A sweep as one self-contained HTML page: the result in one sentence, statistics over the life, what was run, what failed."""
+"""HTML page of a sweep: extremes, statistics over the life, failed runs."""
 
 from collections.abc import Iterator
 from html import escape

@@ -1,4 +1,4 @@
-"""Tables of a campaign and of a calibration, for the terminal and the page: headings, and rows of text."""
+"""Tables of a campaign and of a calibration, for the terminal and the page."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""Intervals of a calibration's parameters as one self-contained HTML page: the result in one sentence first."""
+"""HTML page of the intervals of a calibration's parameters."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Parts of the HTML pages of reports. Text is escaped here; the pages need no script, no network and no other file.
+"""Parts of the HTML pages: frame, boxes, tables, figures.
 
 Tables fit the screen: columns wrap, and on a narrow screen a table with more than two columns shows each row as a block.
 """

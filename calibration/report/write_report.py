@@ -1,4 +1,4 @@
-"""One self-contained HTML page of what is in a result folder."""
+"""Writing of report.html for the results in a folder."""
 
 from os import PathLike
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Tests in waves cut into blocks, for `shooting`."""
+"""Tests in waves cut into blocks, for multiple shooting."""
 
 import math
 from collections.abc import Sequence

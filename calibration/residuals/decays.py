@@ -1,4 +1,4 @@
-"""Decay records against the model: residuals, their Jacobian, and what of both least squares needs.
+"""Residuals of decays: model less measured, with Jacobian products.
 
 A record's residual is model less measured at the recorded times, channel by channel. Its unknowns are the model's parameters,
 shared by all records, and its own: initial position, initial rate and sensor offset of every measured channel. Least squares

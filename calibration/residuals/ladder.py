@@ -1,4 +1,4 @@
-"""A few sizes for arrays, so that records of nearly the same length share one compiled program."""
+"""Padded array sizes, so that records of similar length share one compiled program."""
 
 SIZES_PER_OCTAVE = 4  # of an octave
 

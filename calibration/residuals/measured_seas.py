@@ -1,4 +1,4 @@
-"""Tests in measured waves: the run of each file, the sea of its wave record, and the model's motion against what was measured.
+"""Simulation of tests in their measured waves, compared with the measured motions.
 
 Windows of one file are one continuous run: its sea is made once, of the whole record, and the platform starts at rest with the
 file. Everything is SI at full scale.

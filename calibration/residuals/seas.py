@@ -1,4 +1,4 @@
-"""Tests in measured waves against the model, as residuals with their Jacobian: energies in bands, spectra, or motions.
+"""Residuals of tests in waves: energies in bands, spectra, or motions.
 
 The windows of a file are one continuous run that starts at rest with it, in the sea of its own wave record, so its motions have
 no unknowns of their own: what is fitted is the model's parameters.

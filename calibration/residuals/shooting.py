@@ -1,4 +1,4 @@
-"""Multiple shooting: tests in waves fitted by blocks, each simulated from an initial state of its own.
+"""Residuals of tests in waves by multiple shooting: blocks with own initial states.
 
 Over an hour a natural period that is slightly wrong puts slow motions out of phase: the sum of squares of the whole motion has
 many minima, and is about phase alone. In a block of a few periods the phase cannot wander. What is unknown beside the

@@ -1,4 +1,4 @@
-"""Static offsets and natural periods against the model: residuals that need no simulation."""
+"""Residuals of static offsets and of natural periods."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""A run in stretches: a model whose coefficients depend on the sea state has those of the test that is going on."""
+"""Simulation of a run test by test, with the coefficients of each test's sea state."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Values of a written calibration used in a model: its laws, its effects, and what the model has a place for."""
+"""Application of a written calibration to a model."""
 
 import math
 from dataclasses import replace

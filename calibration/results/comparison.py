@@ -1,4 +1,4 @@
-"""Errors in waves: band integrals of spectra, measured and simulated, as JSON and as tables."""
+"""Content of comparison.json: errors in waves by test, motion and band."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""A written calibration.json, or what of a diagnosis.json is a calibrated model, read back and checked."""
+"""Schema and reading of calibration.json."""
 
 import json
 from os import PathLike

@@ -1,4 +1,4 @@
-"""A written diagnosis.json, read back and checked."""
+"""Schema and reading of diagnosis.json."""
 
 from os import PathLike
 from typing import Literal

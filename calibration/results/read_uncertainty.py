@@ -1,4 +1,4 @@
-"""A written uncertainty.json, read back and checked, and its tables."""
+"""Schema and reading of uncertainty.json, and its tables."""
 
 from typing import Annotated, NamedTuple
 

@@ -1,4 +1,4 @@
-"""Folders of results: the names of what is in them, and how every kind is written."""
+"""Names of the files in a result folder, and helpers that write them."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What a calibration leaves behind: calibration.json, simulated.nc and figures, in one folder, whole or not at all."""
+"""Writing of a calibration: calibration.json, simulated.nc, figures."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""What a comparison in waves leaves behind: comparison.json, simulated.nc and figures, in one folder, whole or not at all."""
+"""Writing of a comparison in waves: comparison.json, simulated.nc, figures."""
 
 from os import PathLike
 from pathlib import Path

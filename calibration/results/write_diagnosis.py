@@ -1,4 +1,4 @@
-"""What a diagnosis leaves behind: diagnosis.json, simulated.nc and figures, in one folder, whole or not at all."""
+"""Writing of a diagnosis: diagnosis.json, simulated.nc, figures."""
 
 import math
 from collections.abc import Iterable

@@ -1,4 +1,4 @@
-"""What laws over the sea state leave behind: sea_laws.json, coefficients.csv and a figure, beside the chosen calibration."""
+"""Writing of laws over the sea state: sea_laws.json, coefficients.csv, a figure."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""What `jaxhydro uncertainty` leaves behind: uncertainty.json and figures, whole or not at all."""
+"""Writing of intervals: uncertainty.json, figures."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

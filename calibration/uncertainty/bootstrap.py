@@ -1,4 +1,4 @@
-"""Bootstrap of a calibration: repeats of tests drawn anew, or blocks of the residuals; every draw is fitted again.
+"""Bootstrap of a calibration, over repeats of tests or over blocks of residuals.
 
 The draws go through one compiled program in one process, CHUNK_SIZE of them side by side in every operation. For a body without
 members that halves the time of a refit, for a hull of hundreds of strips it is even with one after the other.

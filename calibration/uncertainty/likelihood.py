@@ -1,4 +1,4 @@
-"""A finished fit as a likelihood: its information, the scatter of its score with coloured errors, and intervals from both."""
+"""Likelihood of a finished fit, with coloured errors, and Laplace intervals."""
 
 from __future__ import annotations
 

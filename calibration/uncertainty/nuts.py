@@ -1,4 +1,4 @@
-"""NUTS: draws of all unknowns from the posterior, through numpyro (an extra: pip install jaxhydro[nuts])."""
+"""Posterior samples by NUTS, through numpyro (an extra: pip install jaxhydro[nuts])."""
 
 from __future__ import annotations
 

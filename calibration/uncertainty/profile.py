@@ -1,4 +1,4 @@
-"""Profile likelihood: how far a parameter may move if all others make the best of it."""
+"""Profile likelihood of one parameter."""
 
 from __future__ import annotations
 

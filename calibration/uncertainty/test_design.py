@@ -1,4 +1,4 @@
-"""What a further test would add to a calibration, before it is made: its information, and which of several adds most."""
+"""Expected information of a further test, and ranking of candidate tests."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
