@@ -41,8 +41,15 @@ STEPS_PER_PERIOD = 16  # of the shortest natural period: an error of some 1e-7 i
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a calibration is: what it is doing, iterations, the objective, the fraction done (0 to 1, a guess), and what the
-    objective is called."""
+    """Progress of a calibration.
+
+    Attributes:
+        stage: Name of the current stage.
+        iteration: Number of iterations so far.
+        objective: Value of the objective.
+        fraction: Estimated fraction done, 0 to 1.
+        name: Name of the objective.
+    """
 
     stage: str
     iteration: int
@@ -52,7 +59,11 @@ class Progress:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a calibration; `partial` holds what was reached, None if nothing was."""
+    """Interruption of a calibration by the user (Ctrl-C).
+
+    Attributes:
+        partial: Result that was reached; None if there is none.
+    """
 
     def __init__(self, partial: Calibration | None):
         super().__init__("stopped; nothing was written")
@@ -184,17 +195,27 @@ def calibrate(
     start: dict[str, float] | None = None,
     begin: dict[str, float] | None = None,
 ) -> Calibration:
-    """Fit the declared model's coefficients to the decay records marked `fit`, all together.
+    """Fit the baseline model's coefficients to all decay records marked `fit`.
 
-    What is minimised is the contract's J = sum of RMSE / standard deviation over the records' released degrees of freedom, by
-    least squares with weights renewed from the errors reached (so that the sum of RMSE, not of squares, is stationary). The
-    window grows from a little over one cycle to the whole record, which finds the natural periods before the phase of
-    late cycles matters. Where the fit comes down to the noise everywhere, a last pass weighs every sample by its noise, which
-    is maximum likelihood. Initial position, rate and sensor offset of every record and channel are free.
+    The objective is J, the sum of RMSE / standard deviation over the records' released degrees of freedom. It is minimised
+    by least squares, with weights renewed from the errors reached, so that the sum of RMSE is stationary. The fitted window
+    grows from a little over one cycle to the whole record: natural periods are found before the phase of late cycles
+    matters. Where the error comes down to the noise everywhere, a last pass weighs every sample by its noise (maximum
+    likelihood). Initial position, initial rate and sensor offset of every record and channel are free.
 
-    `free` are labels or patterns (the manifest's by default), `start` values in place of the platform's, where the fit begins
-    and which the vague priors are about; `begin` values where it begins, priors or not (those of a search).
-    Raises InputError where there is nothing to fit, Interrupted (a KeyboardInterrupt) with what was reached.
+    Args:
+        campaign: The campaign.
+        free: Labels or patterns of the free parameters; None for those of the manifest.
+        progress: Function that is called with the progress after every iteration.
+        start: Values in place of the platform's, by label. The fit begins there, and vague priors are centred there.
+        begin: Values where the fit begins, by label, without effect on priors. Those of a search, for example.
+
+    Returns:
+        The calibrated model, its parameters with their uncertainty, and all decay tests.
+
+    Raises:
+        InputError: If there is nothing to fit.
+        Interrupted: If the user stops the fit (a KeyboardInterrupt); it holds what was reached.
     """
     begun = clock.monotonic()
 

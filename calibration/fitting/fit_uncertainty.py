@@ -31,7 +31,15 @@ def residual_statistics(fit: DecayFit, tests: Sequence[TestFit]) -> tuple[np.nda
 
 
 def identifiability_of(fit: DecayFit, tests: Sequence[TestFit]) -> Identifiability:
-    """The statement on a finished fit; `tests` are its records as `series_of` gives them."""
+    """Identifiability of the parameters of a finished fit to decays.
+
+    Args:
+        fit: The finished fit.
+        tests: Measured and simulated series of the fit's records, as `series_of` returns them.
+
+    Returns:
+        Which parameters, and which combinations of them, the records determine.
+    """
     return uncertainty_of(fit, tests)[1]
 
 

@@ -37,16 +37,30 @@ def calibrate_jointly(
     loss: Loss = "squares",
     options: Options | None = None,
 ) -> Calibration:
-    """Fit the declared model's coefficients to all that a campaign has of some `kinds`, together.
+    """Fit the baseline model's coefficients to decays, tests in waves, static offsets and natural periods.
 
-    Decays and tests in waves as `calibrate` and `calibrate_in_waves` take them (`objective` is the latter's); static tests
-    marked `fit` with a `degree_of_freedom`, in which an unknown force holds that motion where it is, by the motions that go
-    with it; the natural periods that the manifest states. Each kind weighs by its own error, estimated from what is left of it,
-    times the `weight` of a test (see `JointFit`). The decays are fitted first, alone: the rest begins there. With `loss`
-    "cauchy" residuals beyond some standard deviations hardly count (outliers, stretches that the model cannot follow).
+    Decays and tests in waves enter as in `calibrate` and `calibrate_in_waves`. Static tests marked `fit` need a
+    `degree_of_freedom`: an unknown force holds that motion, and the motions that go with it are fitted. Natural periods are
+    those stated in the manifest. Each kind is weighed by its own error, estimated from its residuals, times the `weight` of
+    a test (see `JointFit`). The decays are fitted first, alone; the joint fit begins there.
 
-    `free`, `start` and `begin` as in `calibrate`. Raises InputError where there is nothing to fit, Interrupted with what was
-    reached.
+    Args:
+        campaign: The campaign.
+        kinds: Kinds of data to be fitted.
+        free: As in `calibrate`.
+        progress: Function that is called with the progress after every iteration.
+        start: As in `calibrate`.
+        begin: As in `calibrate`.
+        objective: Objective of tests in waves, as in `calibrate_in_waves`.
+        loss: "squares", or "cauchy", with which large residuals (outliers, stretches not followed) hardly count.
+        options: How waves are made and act, as in `calibrate_in_waves`.
+
+    Returns:
+        The calibrated model, its parameters with their uncertainty, and all tests.
+
+    Raises:
+        InputError: If there is nothing to fit.
+        Interrupted: If the user stops the fit; it holds what was reached.
     """
     begun = clock.monotonic()
     options = options_of(campaign) if options is None else options

@@ -28,8 +28,14 @@ HELD_OUT_TOLERANCE = 0.02  # of the held-out error, by which a later law has to 
 
 @dataclass(frozen=True, eq=False)
 class LawFit:
-    """A law's calibration, and the root mean square of ln(simulated / measured energy) in the bands of the fitted tests and of
-    tests that it was not fitted to."""
+    """Calibration with one law, and its errors.
+
+    Attributes:
+        name: Name of the law.
+        calibration: The calibration.
+        fitted: Root mean square of ln(simulated / measured energy) in the bands of the fitted tests.
+        held_out: The same for tests that the law was not fitted to.
+    """
 
     name: str
     calibration: Calibration
@@ -77,7 +83,14 @@ def _deviation(known: Identifiability, label: str, logs: Mapping[str, float]) ->
 
 @dataclass(frozen=True, eq=False)
 class SeaStateFit:
-    """A test in irregular waves: what it is used for, its measured sea state, and the calibration to it alone."""
+    """Calibration to one test in irregular waves.
+
+    Attributes:
+        id: Name of the test.
+        use: Use of the test: `fit`, `holdout` or `ignore`.
+        state: Measured sea state.
+        calibration: Calibration to this test alone.
+    """
 
     id: str
     use: str
@@ -87,8 +100,15 @@ class SeaStateFit:
 
 @dataclass(frozen=True, eq=False)
 class SeaLaws:
-    """Laws in the order asked for, calibrations sea by sea, and the tests that judged: held out, or left out one by one. Where
-    the user stopped it, not `finished`, they are those that had been made."""
+    """Laws over the sea state, compared on tests that they were not fitted to.
+
+    Attributes:
+        laws: Calibrations by law, in the order asked for.
+        seas: Calibrations to single sea states.
+        judged_by: Names of the tests on which the laws are compared.
+        left_out: Whether these are fitted tests left out in turn, since no test is held out.
+        finished: False where the user stopped the comparison; then only what was done is there.
+    """
 
     laws: tuple[LawFit, ...]
     seas: tuple[SeaStateFit, ...]
@@ -116,13 +136,27 @@ def choose_law(
     options: Options | None = None,
     progress: Callable[[Progress], None] | None = None,
 ) -> SeaLaws:
-    """Drag and damping coefficients sea state by sea state, as constants, as powers of the sea state, and drag as a power of
-    the Keulegan-Carpenter number or apart for slow and fast motion: `LawFit` of each.
+    """Choose a law over the sea state for drag and damping coefficients, by tests not fitted.
 
-    Every law is fitted to the tests in irregular waves marked `fit` and judged by those marked `holdout`; where none is, by the
-    fitted ones left out in turn. The energies in bands are the objective. Arguments are those of `calibrate_in_waves`; the laws
-    start where the constants ended, whose values also are the middle of the priors sea by sea. Raises InputError where there
-    are too few tests to judge, Interrupted where the user stops it before a law is fitted.
+    The laws are constants, powers of the sea state, and drag as a power of the Keulegan-Carpenter number or apart for slow
+    and fast motion. Every law is fitted to the tests in irregular waves marked `fit`. The laws are compared on the tests
+    marked `holdout`; where there is none, on the fitted ones left out in turn. Energies in bands are the objective. Other
+    laws start where the constants ended; their values are also the centre of the priors sea by sea.
+
+    Args:
+        campaign: The campaign.
+        laws: Names of the laws.
+        free: As in `calibrate_in_waves`.
+        start: As in `calibrate_in_waves`.
+        options: As in `calibrate_in_waves`.
+        progress: Function that is called with the progress after every iteration.
+
+    Returns:
+        A calibration by law, one by sea state, and the chosen law.
+
+    Raises:
+        InputError: If there are too few tests to compare laws.
+        Interrupted: If the user stops it before a law is fitted.
     """
     options = options_of(campaign) if options is None else options
     source = str(campaign.folder / "campaign.yaml")

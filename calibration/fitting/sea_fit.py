@@ -60,25 +60,40 @@ def calibrate_in_waves(
     drag: Drag | None = None,
     made: Seas | None = None,
 ) -> Calibration:
-    """Fit the declared model's coefficients to the tests in waves marked `fit`, all together, in their measured waves.
+    """Fit the baseline model's coefficients to all tests in waves marked `fit`, in their measured waves.
 
-    `objective` "bands": the logarithms of simulated over measured energy in the low and the wave-frequency band of every motion
-    that matters, which a sensor's clock and the phase of slow drift do not touch; "spectrum": the same in narrow cells of these
-    bands, up to eight of each, so that where a motion resonates and how sharply counts; "motion": simulated less measured,
-    sample by sample, over the measured standard deviation; "both", bands and motion; "blocks": the motion in blocks of three of
-    the slowest natural periods, each from an initial state of its own (multiple shooting, see `shooting`), for long tests, over
-    which a natural period that is slightly wrong puts slow motions out of phase. Of regular waves always the motion. Every free
-    parameter has a prior, a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the model's
-    own error, which is estimated from the residuals: energies in a few bands do not determine many coefficients, and say so by
-    their deviations.
+    Objectives:
+        "bands": ln(simulated / measured energy) in the low-frequency and the wave-frequency band of every motion that
+            matters. A sensor's clock and the phase of slow drift have no effect on it.
+        "spectrum": the same in up to eight narrow cells of each band. Frequency and sharpness of a resonance count.
+        "motion": simulated less measured over the measured standard deviation, sample by sample.
+        "both": bands and motion.
+        "blocks": the motion in blocks of three of the slowest natural periods, each from an initial state of its own
+            (multiple shooting, see `shooting`). For long tests, in which a slightly wrong natural period puts slow motions
+            out of phase.
 
-    `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
-    `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of
-    exponents with a prior of 0 +- 1; every test is then simulated with the coefficients of its own measured sea state. `drag`:
-    free coefficients of plain drag become powers of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`; the prior of an
-    exponent is 0 +- 1), or have a share of their own in motion slower than the waves (`HighPassDrag`): see `with_drag_law`.
-    `made` are the campaign's runs and seas (`seas_of`), where they are at hand.
-    Raises InputError where there is nothing to fit, Interrupted with what was reached.
+    In regular waves the motion is always the objective. Every free parameter has a prior: by default a factor of 4.5 about
+    where it starts. The prior is weighed against the model's own error, which is estimated from the residuals.
+
+    Args:
+        campaign: The campaign.
+        free: Labels or patterns of the free parameters; None for those of the manifest.
+        progress: Function that is called with the progress after every iteration.
+        start: Values to begin from in place of the platform's, by label.
+        objective: The objective, see above.
+        options: How waves are made and act; None for the campaign's band of frequencies and defaults otherwise.
+        over: Sea-state variables. Free drag and damping coefficients become powers of these (`SeaStateLaw`), of exponents
+            with a prior of 0 +- 1. Every test is simulated with the coefficients of its own measured sea state.
+        drag: Law for free coefficients of plain drag: a power of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`),
+            or a share of their own in motion slower than the waves (`HighPassDrag`). See `with_drag_law`.
+        made: Runs and seas of the campaign (`seas_of`), where they are at hand.
+
+    Returns:
+        The calibrated model, its parameters with their uncertainty, and all tests in waves.
+
+    Raises:
+        InputError: If there is nothing to fit.
+        Interrupted: If the user stops the fit; it holds what was reached.
     """
     begun = clock.monotonic()
     check(objective=(objective, get_args(Objective)), drag=(drag, (*get_args(Drag), None)))

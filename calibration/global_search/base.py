@@ -21,8 +21,13 @@ MAX_BATCH = 36  # points simulated at once at most: beyond, a point costs no les
 
 
 class Budget(NamedTuple):
-    """When a search ends: after so many CPU seconds of this process, compilation apart; after so many simulations of a record,
-    a part of one counting as that part; or where J comes down to `objective`. Whatever is first."""
+    """Budget of a search, which ends at the first of these limits.
+
+    Attributes:
+        seconds: CPU time of this process (s), compilation apart.
+        simulations: Number of simulations of a record; a part of one counts as that part.
+        objective: Objective J that is good enough.
+    """
 
     seconds: float = 60.0
     simulations: float = np.inf
@@ -30,7 +35,13 @@ class Budget(NamedTuple):
 
 
 class History(NamedTuple):
-    """The least J so far, whenever it became less: against simulations and CPU seconds. Its last entry is where it ended."""
+    """Lowest objective J during a search, one entry for every improvement; the last entry is the end.
+
+    Attributes:
+        simulations: Number of simulations so far.
+        seconds: CPU time so far (s).
+        objective: Lowest J so far.
+    """
 
     simulations: np.ndarray
     seconds: np.ndarray
@@ -43,7 +54,7 @@ class History(NamedTuple):
 
 
 class BudgetSpent(Exception):
-    """The budget is spent, or the objective reached. Raised by a task, not to be caught by a method."""
+    """End of a search: the budget is spent, or the objective reached. Methods must not catch it."""
 
 
 class Task:

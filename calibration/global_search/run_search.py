@@ -25,11 +25,17 @@ DEFAULT_FACTOR = 10.0  # a coefficient without bounds is searched from a tenth t
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a search came to.
+    """Result of a global search.
 
-    `values` by label, to go on from by `calibrate(campaign, start=found.values)`, and `objective`, their J over whole records
-    with the releases that it was judged with. `simulations` of a record, a part of one counting as that part; CPU `seconds`,
-    compilation apart. `ended`: "settled" of its own, "reached" the objective asked for, "budget", or "interrupted".
+    Attributes:
+        method: Name of the method.
+        seed: Seed of the random numbers.
+        values: Coefficients of the lowest J by label; continue with `calibrate(campaign, start=found.values)`.
+        objective: Their J over whole records, with the releases that the search used.
+        simulations: Number of simulations of a record; a part of one counts as that part.
+        seconds: CPU time (s), compilation apart.
+        history: Lowest J against simulations and time.
+        ended: "settled" by itself, "reached" the objective asked for, "budget" or "interrupted".
     """
 
     method: str
@@ -43,7 +49,11 @@ class Found:
 
 
 class SearchInterrupted(KeyboardInterrupt):
-    """Ctrl-C during a search; `partial` holds what was reached, None if nothing was."""
+    """Interruption of a search by the user (Ctrl-C).
+
+    Attributes:
+        partial: Result that was reached; None if there is none.
+    """
 
     def __init__(self, partial: Found | None) -> None:
         super().__init__("search interrupted")
@@ -60,20 +70,30 @@ def search(
     factor: float = DEFAULT_FACTOR,
     progress: Callable[[Progress], None] | None = None,
 ) -> Found:
-    """The coefficients of least J that a global search finds for the decay records marked `fit`.
+    """Search globally for the coefficients of lowest J for the decay records marked `fit`.
 
-    J is the contract's sum of RMSE / standard deviation over the records' released degrees of freedom. Searched are the
-    manifest's bounds, and where it has none from 1/`factor` to `factor` times of the platform's value, positive coefficients on
-    a logarithmic scale. Priors are not used, nor where in there the platform's own values lie.
+    J is the sum of RMSE / standard deviation over the records' released degrees of freedom. The search covers the
+    manifest's bounds. Where it has none, it covers 1/`factor` to `factor` times the platform's value. Positive coefficients
+    are on a logarithmic scale. Priors are not used. Population searches do not fit releases: initial positions and rates
+    are fitted first, by least squares over the first 3 cycles (`fit_releases`), and offsets are eliminated in J.
+    Multi-start fits them with the coefficients.
 
-    `method` is "multistart" (least squares from the best of many starts), "cma-es", "ga" or "de", or one of their classes with
-    its options. Population searches know nothing of releases. So the records' initial positions and rates are fitted first, by
-    least squares over the first 3 cycles whose coefficients are thrown away (`fit_releases`), and offsets are eliminated in J;
-    multi-start fits them with the coefficients. The same `seed` gives the same search; only where a budget of seconds ends it
-    differs. Simulations that give no number count as bad ones.
+    Args:
+        campaign: The campaign.
+        method: "multistart" (least squares from the best of many starts), "cma-es", "ga" or "de", or one of their classes.
+        seed: Seed of the random numbers. The same seed gives the same search, unless seconds end it.
+        budget: When the search ends.
+        free: Labels or patterns of the free parameters; None for those of the manifest.
+        factor: Factor of the range of coefficients without bounds.
+        progress: Function that is called with the progress.
 
-    Raises ValueError for a method, seed, budget or factor that is none, InputError where there is nothing to search or no
-    bounds, SearchInterrupted (a KeyboardInterrupt) with what was reached.
+    Returns:
+        The coefficients of lowest J, and the history of the search.
+
+    Raises:
+        ValueError: If the method, seed, budget or factor is invalid.
+        InputError: If there is nothing to search, or bounds are missing.
+        SearchInterrupted: If the user stops the search (a KeyboardInterrupt); it holds what was reached.
     """
     chosen = _checked(method, seed, budget, factor)
     problem, records = set_up_search(campaign, free, factor)

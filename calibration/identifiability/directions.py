@@ -44,12 +44,21 @@ MIN_NAMED_DEVIATION = 0.5 * IDENTIFIABLE_DEVIATION
 
 @dataclass(frozen=True, eq=False)
 class Identifiability:
-    """What a calibration's records determine. Rows and columns are in the order of `parameters`.
+    """What the records of a calibration determine. Rows and columns are in the order of `parameters`.
 
-    `information` (p, p) is the records' own, without prior, their own unknowns eliminated; `covariance` (p, p) the posterior
-    one, with the prior. `spectrum` are the standard deviations along `axes` (columns, unit length), best known first, inf
-    where nothing is said: 1 over the singular values of the scaled Jacobian. `fixes` go with `weak`, in order: each supposes
-    those before it. `collinear` holds all groups of two and three of one family, worst first.
+    Attributes:
+        parameters: The free parameters.
+        information: (p, p) information of the records, without prior; each record's own unknowns are eliminated.
+        covariance: (p, p) posterior covariance, with the prior.
+        source: Description of the records.
+        spectrum: (p,) standard deviations along `axes`, ascending; inf where the records say nothing.
+        axes: (p, p) principal directions, as columns of unit length.
+        correlation: (p, p) correlation matrix.
+        collinear: Collinear groups of two and three parameters of one family, worst first.
+        weak: Directions that the records do not determine.
+        fixes: Parameter to fix for each entry of `weak`; each supposes those before it.
+        untouched: Labels of parameters that the records do not respond to.
+        at_bound: Labels of parameters at a bound.
     """
 
     parameters: Parameters

@@ -38,10 +38,18 @@ Prior = tuple[Float[Array, " p"], Float[Array, " p"]]
 
 @dataclass(frozen=True, eq=False)
 class Bootstrap:
-    """Draws of the free parameters. `coordinate` (d, p), `value` (d, p) in the parameters' units, `estimate` (p,) coordinates.
+    """Bootstrap draws of the free parameters.
 
-    `groups` says what was drawn from: ids of repeats, or, of each record, its block (s). `unsettled` is how many draws had not
-    come to rest; those stay in, unless they ran away.
+    Attributes:
+        method: "repeats" or "blocks".
+        labels: Names of the p parameters.
+        coordinate: (d, p) coordinates of the draws.
+        value: (d, p) values of the draws, in the parameters' units.
+        estimate: (p,) coordinates of the fit.
+        groups: Names of repeated tests by the first one's; or length of a block (s) by record.
+        unsettled: Number of draws that had not converged; these are kept unless they diverged.
+        seed: Seed of the random numbers.
+        likelihood: Likelihood of the fit.
     """
 
     method: Literal["repeats", "blocks"]
@@ -117,11 +125,25 @@ def _steps(
 
 
 def bootstrap_repeats(likelihood: Likelihood, draws: int = 200, seed: int = 0, progress: Progress | None = None) -> Bootstrap:
-    """Bootstrap over repeats (`repeat_of` in the manifest): what differs between tests that should be alike, whatever it is.
+    """Bootstrap over repeated tests (`repeat_of` in the manifest).
 
-    Of n repeats n - 1 are drawn with replacement and weigh n / (n - 1) each, which has the right variance where there are only
-    two or three (Rao and Wu 1988, Journal of the American Statistical Association 83, 231-241, section 2). A test without
-    repeats is in every draw, so that its own scatter is not counted. Raises InputError where there are no repeats.
+    Of n repeats n - 1 are drawn with replacement, and weigh n / (n - 1) each. This has the right variance even for two or
+    three repeats. A test without repeats is in every draw, so that its own scatter is not counted.
+
+    Args:
+        likelihood: Likelihood of a finished fit.
+        draws: Number of draws.
+        seed: Seed of the random numbers.
+        progress: Function that is called with the number of draws done and asked for.
+
+    Returns:
+        The draws.
+
+    Raises:
+        InputError: If there are no repeats.
+
+    References:
+        Rao and Wu 1988, Journal of the American Statistical Association 83, 231-241, section 2.
     """
     records = likelihood.fit.records
     groups = repeats({record.id: record.test.repeat_of for record in records})
@@ -161,12 +183,24 @@ def repeats(of: dict[str, str | None]) -> dict[str, tuple[str, ...]]:
 
 
 def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, progress: Progress | None = None) -> Bootstrap:
-    """Moving blocks of the residuals (Kuensch 1989, Annals of Statistics 17, 1217-1241) on the fitted motion, fitted again.
+    """Bootstrap over moving blocks of the residuals, added to the fitted motion and fitted again.
 
-    A block is as long as the released motion's period or twice the residual's memory, and at most a third of the record; a
-    record's channels are drawn together. What the fit has taken from a residual near the decay's frequency is given back,
-    frequency by frequency, by (1 - h)^-1/2, h its leverage there (the HC2 of MacKinnon and White 1985, Journal of
-    Econometrics 29, 305-325): residuals as they are would be too quiet where it matters.
+    A block is as long as the released motion's period or twice the residual's correlation length, and at most a third of
+    the record. The channels of a record are drawn together. The fit has made residuals near the decay's frequency too
+    small: they are raised, frequency by frequency, by (1 - h)^-1/2, h the leverage there (HC2).
+
+    Args:
+        likelihood: Likelihood of a finished fit.
+        draws: Number of draws.
+        seed: Seed of the random numbers.
+        progress: Function that is called with the number of draws done and asked for.
+
+    Returns:
+        The draws.
+
+    References:
+        Kuensch 1989, Annals of Statistics 17, 1217-1241 (moving blocks). MacKinnon and White 1985, Journal of Econometrics
+        29, 305-325 (HC2).
     """
     fit = likelihood.fit
     raised, lengths = _raised(likelihood), {}

@@ -33,13 +33,21 @@ WHITE_NOISE = NoiseColour(1.0, 0.0, 0.0, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class Likelihood:
-    """A finished fit's sum of squares Q = sum w |r|^2 + the prior's, about its lowest point.
+    """Likelihood of a finished fit: sum of squares Q = sum w |r|^2 + the prior's, about its lowest point.
 
-    Rows are the shared coordinates, then every record's own. `information` (n, n) is J^T W J of the records alone, `scatter`
-    (n, n) the covariance of J^T W e, `prior` (n,) what the prior adds to the diagonal of either: `hessian` is the former with
-    it. `covariance` is the sandwich H^-1 S H^-1 with coloured errors (White 1982, theorem 3.2), `white` the same with every
-    sample counting as one. `slope` (r, c, t, k) and `residual` (r, c, t) are those at the lowest point, in m and rad.
-    `colour` is by released and measured motion, `spectra` by record and channel.
+    Rows of matrices are the shared coordinates, then every record's own; n in all.
+
+    Attributes:
+        fit: The finished fit.
+        slope: (r, c, t, k) derivatives of the residuals at the lowest point (m, rad).
+        residual: (r, c, t) residuals at the lowest point (m, rad).
+        information: (n, n) J^T W J of the records alone.
+        scatter: (n, n) covariance of J^T W e.
+        prior: What the prior adds to the diagonals of `information` and of `scatter`, (n,) each.
+        covariance: (n, n) sandwich H^-1 S H^-1 with coloured errors (White 1982, theorem 3.2).
+        white: (n, n) the same, with every sample counted as independent.
+        colour: Colour of the errors, by released and measured motion.
+        spectra: Periodogram of the residuals, by record and channel.
     """
 
     fit: DecayFit
@@ -67,7 +75,7 @@ class Likelihood:
         return self.information + np.diag(self.prior[0])
 
     def index(self, label: str) -> int:
-        """Its place among the free parameters. Raises InputError, which lists them."""
+        """Index of a parameter among the free parameters. Raises InputError, which lists them."""
         if label not in self.labels:
             known = f"a free parameter of this fit ({', '.join(self.labels)})"
             hint = shared_hint(label, self.fit.problem.model.hull.elements.shares) or suggest(label, self.labels)
@@ -94,7 +102,7 @@ class Likelihood:
         return np.sqrt(np.diag(self.white if white else self.covariance)[: len(self.labels)])
 
     def excess(self) -> dict[str, float]:
-        """How many times too small the standard deviation is that takes every sample as independent of the others."""
+        """Ratio of each standard deviation to that with every sample taken as independent."""
         ratio = self.deviation() / self.deviation(white=True)
         return {label: float(x) for label, x in zip(self.labels, ratio, strict=True)}
 
@@ -144,7 +152,15 @@ def restored_fit(
 
 
 def likelihood(campaign: Campaign, result: Calibration) -> Likelihood:
-    """The likelihood of a calibration to decays (`calibrate`). The records' releases are fitted again, from its values."""
+    """Compute the likelihood of a calibration to decays. The records' releases are fitted again.
+
+    Args:
+        campaign: The campaign.
+        result: Result of `calibrate`.
+
+    Returns:
+        The likelihood about the calibrated values.
+    """
     found = result.parameters
     fit = restored_fit(
         campaign,
@@ -173,10 +189,16 @@ def _slopes(problem: DecayProblem, unknowns: Unknowns) -> tuple[Float[Array, "r 
 
 
 def likelihood_of(fit: DecayFit) -> Likelihood:
-    """The likelihood of a finished fit (`run`).
+    """Compute the likelihood of a finished fit (`run_fit`).
 
-    The errors of a channel are taken as stationary in each record, of one colour in all records, or in all that were released
-    alike, whichever is likelier, and as independent between channels and between records.
+    The errors of a channel are stationary in each record. They have one colour in all records, or in all that were released
+    alike, whichever is likelier. They are independent between channels and between records.
+
+    Args:
+        fit: The finished fit.
+
+    Returns:
+        The likelihood about the fit.
     """
     data, weight, shared = fit.problem.data, np.asarray(fit.weight), len(fit.problem.space.free)
     slope, residual = map(np.asarray, _slopes(fit.problem, fit.unknowns))

@@ -26,11 +26,18 @@ POLL_INTERVAL = 0.5  # s between looks at the chains
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Draws of the free parameters: `coordinate` and `value` (chain, draw, p), values in the parameters' units.
+    """Posterior draws of the free parameters.
 
-    `r_hat` (p,) compares the halves of all chains with each other (1 once they agree; Gelman et al. 2013, equation 11.4),
-    `effective` (p,) is how many independent draws they stand for, `divergences` how many steps went astray. `asked`: draws of
-    a chain, of which there are fewer where it was stopped.
+    Attributes:
+        labels: Names of the p parameters.
+        coordinate: (chain, draw, p) coordinates.
+        value: (chain, draw, p) values, in the parameters' units.
+        r_hat: (p,) agreement of the halves of all chains, 1 once they agree (Gelman et al. 2013, equation 11.4).
+        effective: (p,) effective number of independent draws.
+        divergences: Number of divergent steps.
+        seed: Seed of the random numbers.
+        asked: Draws asked for in each chain; there are fewer where it was stopped.
+        likelihood: Likelihood of the fit.
     """
 
     labels: tuple[str, ...]
@@ -100,17 +107,31 @@ def sample(
     seed: int = 0,
     progress: Callable[[int, str], None] = lambda done, remark: None,
 ) -> Samples:
-    """Draws by the no-U-turn sampler (Hoffman and Gelman 2014, Journal of Machine Learning Research 15, 1593-1623).
+    """Draw from the posterior by the no-U-turn sampler (NUTS).
 
-    The density is exp(-energy) of `potential_energy`, the same sum of squares as the profile's, in coordinates whitened by the
-    fit's information, so that steps are long and few. Errors that are neither white nor of known size are taken into account
-    as in the profile: every draw's distance from the estimate is stretched so that its covariance near it is the
-    sandwich's (the open-faced sandwich, Shaby 2014, Journal of Computational and Graphical Statistics 23, 853-876, equation 7),
-    along the directions that both covariances have in common. Chains run side by side, as many as there are cores;
-    `progress` is told how many draws are done, and where.
+    The density is exp(-energy) of `potential_energy`, with the same sum of squares as the profile's. Coordinates are
+    whitened by the fit's information, so that steps are long and few. Errors that are neither white nor of known size are
+    taken into account as in the profile: every draw's distance from the estimate is stretched along the common directions
+    of both covariances, so that the draws' covariance near the estimate is the sandwich's. Chains run side by side, as many
+    as there are cores. Stopped by the user (KeyboardInterrupt) it returns the draws of all chains, if each has `MIN_DRAWS`.
 
-    Stopped (KeyboardInterrupt) it gives what there is of all chains, if that is `MIN_DRAWS` draws of each. Raises ImportError
-    where numpyro is not installed.
+    Args:
+        likelihood: Likelihood of a finished fit.
+        draws: Draws of each chain.
+        warmup: Steps of each chain that are left out.
+        chains: Number of chains.
+        seed: Seed of the random numbers.
+        progress: Function that is called with the number of draws done, and a remark.
+
+    Returns:
+        The draws.
+
+    Raises:
+        ImportError: If numpyro is not installed.
+
+    References:
+        Hoffman and Gelman 2014, Journal of Machine Learning Research 15, 1593-1623. Shaby 2014, Journal of Computational
+        and Graphical Statistics 23, 853-876, equation 7 (open-faced sandwich).
     """
     try:
         from numpyro.diagnostics import effective_sample_size, split_gelman_rubin

@@ -23,12 +23,20 @@ MAX_REFIT_SHARE = 0.01  # of the drop at the level: what a refit may leave
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Rise of -2 log likelihood along one parameter, all other unknowns refitted.
+    """Profile likelihood of one parameter: rise of -2 log likelihood, all other unknowns refitted.
 
-    `grid` (n,) are values, ascending, in `unit`, `coordinate` (n,) theirs, `drop` (n,) a chi-square of one degree of freedom:
-    the adjusted one of Kent 1982, for errors that are neither white nor of known size. `lower` and `upper` are where it
-    reaches the chi-square's `level`, None where the records do not bound the parameter on that side. `laplace` is the interval
-    of the fit's covariance. `nu` is what the drop of the sum of squares was divided by.
+    Attributes:
+        label: Name of the parameter.
+        unit: Unit of the parameter.
+        estimate: Calibrated value, in `unit`.
+        grid: (n,) values, ascending, in `unit`.
+        coordinate: (n,) coordinates of these values.
+        drop: (n,) rise of -2 log likelihood, adjusted for errors that are neither white nor of known size (Kent 1982).
+        lower: Lower end of the interval; None where the records do not bound the parameter.
+        upper: Upper end of the interval; None where the records do not bound the parameter.
+        level: Probability of the interval.
+        laplace: Interval by the fit's covariance.
+        nu: Divisor of the drop of the sum of squares.
     """
 
     label: str
@@ -101,12 +109,25 @@ class _Refit:
 
 
 def profile(likelihood: Likelihood, label: str, level: float = DEFAULT_LEVEL) -> Profile:
-    """Profile likelihood of a free parameter, from the estimate outwards on either side until the drop exceeds the level, or
-    the parameter is at the end of its range.
+    """Compute the profile likelihood of a free parameter.
 
-    drop(psi) = (min Q | psi - min Q) / nu, a chi-square of one degree of freedom (Wilks 1938, Annals of Mathematical Statistics
-    9, 60-62) once it is adjusted by nu of `Likelihood.stretch`. For a model that is linear in its unknowns the interval is
-    that of the covariance. Raises InputError for an unknown label.
+    It goes outwards from the estimate on either side, until the drop exceeds the level or the parameter's range ends. For a
+    model that is linear in its unknowns the interval is that of the covariance.
+
+    Args:
+        likelihood: Likelihood of a finished fit.
+        label: Name of the parameter.
+        level: Probability of the interval.
+
+    Returns:
+        The profile and its interval.
+
+    Raises:
+        InputError: If the label is unknown.
+
+    References:
+        Wilks 1938, Annals of Mathematical Statistics 9, 60-62: (min Q | psi - min Q) / nu is a chi-square of one degree of
+        freedom, nu by `Likelihood.stretch`.
     """
     refit = _Refit(likelihood, label, level)
     at = float(likelihood.estimate[refit.index])

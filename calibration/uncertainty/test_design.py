@@ -26,8 +26,17 @@ from jaxhydro.environment import DOFS
 
 @dataclass(frozen=True, eq=False)
 class ExpectedGain:
-    """What a further test would add: standard deviations of the coordinates `before` and `after` it (p,), `gain`, by how
-    much the logarithm of the volume of the confidence region shrinks, and what would still be weak or untouched."""
+    """What a further test would add to a calibration.
+
+    Attributes:
+        name: Name of the test.
+        parameters: The free parameters.
+        before: (p,) standard deviations of the coordinates before the test.
+        after: (p,) standard deviations of the coordinates after the test.
+        gain: Decrease of the logarithm of the confidence region's volume.
+        weak: Directions that would still not be determined.
+        untouched: Labels of parameters that no record would respond to.
+    """
 
     name: str
     parameters: Parameters
@@ -46,10 +55,21 @@ class ExpectedGain:
 
 
 def expected_information(known: Identifiability, candidate: np.ndarray, name: str = "a further test") -> ExpectedGain:
-    """What a test with the information `candidate` (p, p), its own unknowns eliminated, would add to what is `known`.
+    """Compute what a further test would add to a calibration.
 
-    The gain is 0.5 ln det(1 + C F), C the posterior covariance: Bayesian D-optimality (Chaloner and Verdinelli 1995,
-    Statistical Science 10, 273-304), finite also where the records leave a direction open.
+    The gain is 0.5 ln det(1 + C F), C the posterior covariance and F the test's information. It is finite also where the
+    records leave a direction open.
+
+    Args:
+        known: What the records determine so far.
+        candidate: (p, p) information of the test, its own unknowns eliminated.
+        name: Name of the test.
+
+    Returns:
+        Standard deviations before and after, and the gain.
+
+    References:
+        Chaloner and Verdinelli 1995, Statistical Science 10, 273-304 (Bayesian D-optimality).
     """
     candidate = within(candidate, [i for i, label in enumerate(known.parameters.labels) if label not in known.at_bound])
     values, vectors = np.linalg.eigh(known.covariance)
@@ -64,14 +84,31 @@ def expected_information(known: Identifiability, candidate: np.ndarray, name: st
 
 
 def rank_tests(known: Identifiability, candidates: Mapping[str, np.ndarray]) -> tuple[ExpectedGain, ...]:
-    """Candidate tests, name -> information, the one that adds most first."""
+    """Rank candidate tests, the one that adds most first.
+
+    Args:
+        known: What the records determine so far.
+        candidates: (p, p) information of each test, by its name.
+
+    Returns:
+        What each test would add, in order.
+    """
     found = [expected_information(known, matrix, name) for name, matrix in candidates.items()]
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
 def effective_noise(fit: DecayFit, tests: Sequence[TestFit]) -> dict[str, float]:
-    """Channel -> standard deviation (m, rad) of independent noise that would leave the parameters as uncertain as the
-    residuals of the fit do: what to expect of a further test's samples at the same rate."""
+    """Estimate the independent noise that has the effect of a fit's residuals on the parameters.
+
+    It stands for the errors of a further test's samples at the same rate.
+
+    Args:
+        fit: A finished fit.
+        tests: Measured and simulated series of its records, as `series_of` returns them.
+
+    Returns:
+        Standard deviation of the noise (m, rad), by channel.
+    """
     variance, inflation = residual_statistics(fit, tests)
     there = np.asarray(fit.problem.data.present).any(axis=-1)
     power = (variance * inflation * there).sum(axis=0) / np.maximum(there.sum(axis=0), 1)
@@ -93,12 +130,23 @@ def decay_information(
     cycles: float = 8.0,
     interval: float | None = None,
 ) -> np.ndarray:
-    """Information (p, p) on the free parameters of `space` in a free decay of `model`, its release and offsets eliminated.
+    """Compute the information of a free decay on the parameters; release and offsets are eliminated.
 
-    Released at rest `amplitude` (m, rad) off the equilibrium in `dof` and followed for so many natural periods, a sample
-    every `interval` (s; a fortieth of the period by default). `noise`, motion measured -> standard deviation (m, rad) of a
-    sample, is taken as independent from sample to sample: `effective_noise` of a fit at the same rate stands for its errors.
-    Raises ValueError where `dof` is not measured, or the model has no oscillation in it.
+    Args:
+        model: The model.
+        space: The p free parameters.
+        dof: Degree of freedom that is released, at rest.
+        amplitude: Release from the equilibrium (m, rad).
+        noise: Standard deviation of a sample (m, rad) by measured motion, independent from sample to sample.
+            `effective_noise` of a fit at the same rate stands for its errors.
+        cycles: Duration, in natural periods.
+        interval: Time between samples (s); None for a fortieth of the period.
+
+    Returns:
+        (p, p) information.
+
+    Raises:
+        ValueError: If `dof` is not measured, or the model does not oscillate in it.
     """
     if dof not in noise:
         raise ValueError(f"noise: expected one of {dof}, the motion released, found {', '.join(noise) or 'none'}")
