@@ -27,17 +27,17 @@ def extent_warnings(
         period: of the released motion or of the waves, in the unit of `time`; None where it is not clear.
     """
     if series.test.kind == "decay":
-        yield from _free(series, time)
-        yield from _still_water(series, time, values, period)
+        yield from _free_motion_warnings(series, time)
+        yield from _wave_in_decay_warnings(series, time, values, period)
     elif series.test.kind in IN_WAVES and WAVE in values and period is not None and compared.any():
-        yield from _span(series, time, values[WAVE], compared, period)
+        yield from _wave_span_warnings(series, time, values[WAVE], compared, period)
 
 
 def _at(series: Series, time: float) -> str:
     return f"{time:.6g} {series.channels['time'].unit}"
 
 
-def _free(series: Series, time: np.ndarray) -> Iterator[ExtentWarning]:
+def _free_motion_warnings(series: Series, time: np.ndarray) -> Iterator[ExtentWarning]:
     """What of a decay was left out, since the model was held or pushed."""
     free, channel = series.free, str(series.test.degree_of_freedom)
     if free is None:
@@ -55,7 +55,7 @@ def _free(series: Series, time: np.ndarray) -> Iterator[ExtentWarning]:
         yield channel, free.ended_at, f"is {what} again after {ended}: {done}"
 
 
-def _still_water(
+def _wave_in_decay_warnings(
     series: Series, time: np.ndarray, values: Mapping[str, np.ndarray], period: float | None
 ) -> Iterator[ExtentWarning]:
     """Is a decay in still water?"""
@@ -68,7 +68,9 @@ def _still_water(
         yield channel, None, f"its last third oscillates by {size} in {_at(series, left[0])}: are waves left in the basin?"
 
 
-def _span(series: Series, time: np.ndarray, wave: np.ndarray, compared: np.ndarray, period: float) -> Iterator[ExtentWarning]:
+def _wave_span_warnings(
+    series: Series, time: np.ndarray, wave: np.ndarray, compared: np.ndarray, period: float
+) -> Iterator[ExtentWarning]:
     """Do the waves begin and end in the record?"""
     transient = series.test.transient
     if series.rows[0] == 0 and transient < AVERAGING_CYCLES / 2 * period and begun_before(time, wave, period):

@@ -51,12 +51,12 @@ def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale
             CampaignFinding("warning", h.record.file, h.record.id, h.channel, None, h.message, EXPECTED_AGREEMENT)
             for h in hints
         ]
-        found += [] if zeroed else _at_rest(decays, dict(zip(DOFS, map(float, rest))), length)
+        found += [] if zeroed else _rest_findings(decays, dict(zip(DOFS, map(float, rest))), length)
     told = any(hint.channel == "time" for hint in hints)
-    return (*found, *(one for record in used for one in _of(record, length, gravity, periods, scale, told)))
+    return (*found, *(one for record in used for one in _record_findings(record, length, gravity, periods, scale, told)))
 
 
-def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
+def _rest_findings(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
     """Where nobody took a zero: do decays end where the platform floats?"""
     for name in DOFS:
         there = [float(np.mean(one.values[name][len(one.time) // 2 :])) for one in decays if name in one.values]
@@ -69,7 +69,7 @@ def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) ->
             yield Finding("warning", decays[0].file, decays[0].id, name, None, message)
 
 
-def _of(
+def _record_findings(
     record: Record, length: float, gravity: float, periods: dict[str, float], scale: float, told: bool
 ) -> Iterator[Finding]:
     """Findings on one record. `told`: that all periods are off is said of the campaign."""
@@ -83,7 +83,7 @@ def _of(
         name, own = record.degree_of_freedom, periods[record.degree_of_freedom]
         period = dominant_period(record.time, record.values[name])
         if period is not None:
-            why, by_scale = _of_time(period / own, scale)
+            why, by_scale = _period_reason(period / own, scale)
             message = f"a period of {period:.3g} s {FULL_SCALE}, the declared model's is {own:.3g} s: {why}"
             limits, ratio = (
                 (WRONG_PERIOD_RATIO if told else 1.0 if by_scale else UNUSUAL_PERIOD_RATIO, WRONG_PERIOD_RATIO),
@@ -119,7 +119,7 @@ def _of(
         )
 
 
-def _of_time(ratio: float, scale: float) -> tuple[str, bool]:
+def _period_reason(ratio: float, scale: float) -> tuple[str, bool]:
     """What may explain a measured period over the model's, and whether `scale` does."""
     if scale != 1 and abs(np.log(ratio / scale**0.5)) < SCALE_TOLERANCE:
         return f"longer by the square root of `scale`, {scale**0.5:.3g}: are the records at full scale already?", True

@@ -18,7 +18,7 @@ import pandas as pd
 from calibration.campaign.manifest import IN_WAVES, WAVE, Channel, Manifest, Test, quantity
 from calibration.campaign.release import FreeMotion, free_motion
 from calibration.campaign.signals import missing_code, noise_level, resolution
-from calibration.campaign.tracked_point import at_reference, noise_at_reference
+from calibration.campaign.tracked_point import move_to_reference, noise_moved_to_reference
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.interop.data_files import read_table
 from jaxhydro.units import SI
@@ -247,7 +247,7 @@ def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Reco
     if manifest.tracked_point is not None:
         x, y, z = manifest.tracked_point
         point = (manifest.scale * x, manifest.scale * y, manifest.scale * z)
-        values, noise = at_reference(values, point), noise_at_reference(noise, point)
+        values, noise = move_to_reference(values, point), noise_moved_to_reference(noise, point)
     x, y = (manifest.wave_channel.position if manifest.wave_channel else None) or (0.0, 0.0)
     return Record(
         id=test.id,

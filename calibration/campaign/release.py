@@ -63,7 +63,7 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     noise = noise_level(even, x)
     period = _period(x, step, noise)
     slow = ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
-    apart = np.diff(_turns(slow, 0, len(x), SLOW_MOTION_SHARE * float(np.ptp(x))))
+    apart = np.diff(_turning_points(slow, 0, len(x), SLOW_MOTION_SHARE * float(np.ptp(x))))
     if len(apart) and float(np.median(apart)) < 4 * period / step:  # the fast motion is not what was released
         period = _period(slow, step, 0.0)
     gap = float(np.diff(time).max())
@@ -101,14 +101,14 @@ def _first_decay(
     moves = after > max(PEAK_PROMINENCE * size, 0.8 * noise / STILLNESS_AMPLITUDE)
     runs = [
         run
-        for run in _runs((spread < STILLNESS_AMPLITUDE * after + noise) & moves)
+        for run in _true_stretches((spread < STILLNESS_AMPLITUDE * after + noise) & moves)
         if run[1] - run[0] + width > MIN_HOLD_DURATION * period
     ]
     begins = [0, *(last + width for _, last in runs)]
     ends = [*(max(first, 1) for first, _ in runs), len(y)]
     lasts = [*(last + width for _, last in runs), len(y)]
     for i, (begin, end, still) in enumerate(zip(begins, ends, lasts)):
-        turns = _turns(y, begin, end, max(PEAK_PROMINENCE * size, 3 * noise))
+        turns = _turning_points(y, begin, end, max(PEAK_PROMINENCE * size, 3 * noise))
         if len(turns) < MIN_PEAKS:
             continue
         peaks = y[turns[:7]]
@@ -124,17 +124,19 @@ def _first_decay(
             first = float(large[0] if large else turns[0])
         elif abs(level - rest) > 0.5 * amplitude:
             least, most = max(since, begin - cycle // 3), begin + cycle // (5 if i else 2)
-            held, left = _released(x, least, most, level - rest, cycle)
+            held, left = _find_release(x, least, most, level - rest, cycle)
             if i or (held - begin > MIN_VISIBLE_HOLD * cycle and left < MAX_HOLD_MISFIT * amplitude + 1.5 * sigma):
                 start, first = "release", held + RELEASE_DELAY * cycle
-        later = np.diff(_turns(y, still, min(still + 12 * cycle, len(y)), max(PEAK_PROMINENCE * size, 3 * noise))) / cycle
+        later = (
+            np.diff(_turning_points(y, still, min(still + 12 * cycle, len(y)), max(PEAK_PROMINENCE * size, 3 * noise))) / cycle
+        )
         pushed = len(later) > 0 and abs(float(np.median(later)) - 0.5) < HALF_PERIOD_TOLERANCE
-        stop, how = _stop(y, turns, rest, cycle, noise, end, still if pushed else None)
+        stop, how = _find_end(y, turns, rest, cycle, noise, end, still if pushed else None)
         return first, stop, start, how, held, level  # type: ignore[return-value]
     return None
 
 
-def _stop(
+def _find_end(
     y: np.ndarray, turns: np.ndarray, rest: float, cycle: int, noise: float, end: int, pushed: int | None
 ) -> tuple[float, Literal["record", "catch", "push"]]:
     """Where a free motion ends (samples) and by what."""
@@ -156,7 +158,7 @@ def _stop(
         & (before > MIN_CATCH_AMPLITUDE * 0.5 * swings.max())
     )
     still &= (np.arange(len(y)) > turns[0]) & (np.arange(len(y)) < len(y) - width)
-    for first, last in _runs(still):
+    for first, last in _true_stretches(still):
         if first >= end:
             break
         if last - first + width < MIN_HOLD_DURATION * cycle:
@@ -168,7 +170,7 @@ def _stop(
     return (float(pushed - RELEASE_DELAY * cycle), "push") if pushed is not None else (float(len(y)), "record")
 
 
-def _released(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> tuple[float, float]:
+def _find_release(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> tuple[float, float]:
     """When (samples) a held motion is let go, by least squares: level until then, and the begin of a cosine; what is left."""
     best = (np.inf, float(first))
     for at in np.arange(first, last, 0.25):
@@ -178,7 +180,7 @@ def _released(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> 
     return best[1], best[0] ** 0.5
 
 
-def _turns(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
+def _turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
     """Where a motion turns, high and low in turn."""
     part = y[begin:end]
     high, low = (signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
@@ -200,7 +202,7 @@ def _range(y: np.ndarray, width: int) -> np.ndarray:
     return high - ndimage.minimum_filter1d(y, width, origin=shift, mode="nearest")  # type: ignore[no-any-return]
 
 
-def _runs(flag: np.ndarray) -> list[tuple[int, int]]:
+def _true_stretches(flag: np.ndarray) -> list[tuple[int, int]]:
     """First and last index of every stretch that is true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flag, [False]]).astype(int)))
     return [(int(first), int(last) - 1) for first, last in zip(edges[::2], edges[1::2])]

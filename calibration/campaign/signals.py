@@ -91,7 +91,7 @@ def constant_stretches(values: np.ndarray, grain: float) -> tuple[np.ndarray, np
     return edges[:-1], np.diff(edges)
 
 
-def flanks(values: np.ndarray, starts: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+def flank_heights(values: np.ndarray, starts: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """How far the signal goes, in the time that it stays at a value, before and after that; the lesser of the two.
 
     Round a rounded peak this is at most 8 times the resolution, so much more is a peak cut off.

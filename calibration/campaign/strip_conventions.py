@@ -31,7 +31,7 @@ class StripConventions(BaseModel):
             }
         )
 
-    def given_to(self, model: Model) -> Model:
+    def applied_to(self, model: Model) -> Model:
         """The model with strips so loaded; itself where they are."""
         if self == StripConventions.of(model):
             return model

@@ -40,11 +40,11 @@ def check_tables(records: Sequence[Record], model: Model, band: tuple[float, flo
         finding
         for record in records
         if ranges and record.kind in IN_WAVES and record.wave is not None and record.use != "ignore"
-        for finding in _of_record(record, ranges, acting, band)
+        for finding in _record_findings(record, ranges, acting, band)
     )
 
 
-def _of_record(
+def _record_findings(
     record: Record, ranges: tuple[TableRange, ...], acting: tuple[TableRange, ...], limits: tuple[float, float]
 ) -> Iterator[Finding]:
     assert record.wave is not None

@@ -46,7 +46,7 @@ SEARCH_ENDINGS = {
 }
 
 
-def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.tests_counted) -> Campaign:
+def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.count_tests) -> Campaign:
     """The campaign, its warnings printed. Raises InputError, also where results would replace its own data."""
     campaign = load_campaign(path)
     for test in campaign.manifest.tests:
@@ -70,7 +70,7 @@ def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campai
         return tests or ("waves" if "decay" not in kinds and kinds & set(IN_WAVES) else "decays")
 
     used = {"decays": ("decay",), "waves": IN_WAVES, "all": ("decay", *IN_WAVES, "static")}
-    loaded = load(path, out, counted=lambda campaign: tables.tests_counted(campaign, used[kind(campaign)]))
+    loaded = load(path, out, counted=lambda campaign: tables.count_tests(campaign, used[kind(campaign)]))
     return loaded, kind(loaded)
 
 
@@ -120,7 +120,7 @@ def run(
         # what a law adds is begun from in waves only; effects found are not declared
         known = [k for k in used.values if k in declared.values or (tests == "waves" and is_law_parameter(k))]
         begin = {"start": {k: used.values[k] for k in known}}
-        _told(used._replace(values=begin["start"]), start, campaign)
+        _calibrated_values(used._replace(values=begin["start"]), start, campaign)
         if used.strips is not None:
             complain(f"warning: values are begun from, strips stay as the platform file has them: {start} has {used.strips}")
         if tests != "decays" and used.seas is not None and (said := non_default_options(used.seas)):
@@ -133,7 +133,7 @@ def run(
         with progress() as show:
             if law == "choose":
                 laws = choose_law(campaign, progress=show, **begin)
-                result = laws.chosen.calibration if laws.finished else tables.unfinished(laws.chosen.calibration)
+                result = laws.chosen.calibration if laws.finished else tables.mark_unfinished(laws.chosen.calibration)
             elif tests == "all":
                 result = calibrate_jointly(campaign, progress=show, objective=objective, loss=loss, **begin)
             elif tests == "waves":
@@ -147,7 +147,7 @@ def run(
     except Interrupted as stopped:
         if stopped.partial is None:
             raise
-        result = tables.unfinished(stopped.partial)
+        result = tables.mark_unfinished(stopped.partial)
     result = replace(result, notes=(*words, *result.notes))
     try:
         write_calibration(result, out, figures, truth)
@@ -166,7 +166,7 @@ def run(
     for note in result.notes:
         if note not in warned:
             say(f"Note: {note}")
-    say(tables.outcome(saved))
+    say(tables.outcome_sentence(saved))
     if truth is not None:
         table("Against the true coefficients", *tables.comparison_with_truth(saved))
         say(tables.agreement_with_truth(saved))
@@ -225,7 +225,7 @@ def simulate_campaign(
     if calibration is not None:
         used = apply_calibration(calibration, model, loaded.platform.name)
         model = used.model
-        _told(used, calibration, loaded)
+        _calibrated_values(used, calibration, loaded)
         if used.strips is not None:
             say(f"Strips as they were when these were found: {used.strips}")
     asked = asked or {}
@@ -257,12 +257,12 @@ def simulate_campaign(
     return True
 
 
-def _told(used: AppliedCalibration, source: Path, campaign: Campaign) -> None:
+def _calibrated_values(used: AppliedCalibration, source: Path, campaign: Campaign) -> None:
     """Which calibrated values are used, and what is to be said of them."""
     if used.campaign != campaign.manifest.name:
         complain(f"warning: {source} is a calibration of {used.campaign!r}, used for {campaign.manifest.name!r}")
     say(f"Calibrated values used: {', '.join(used.values)}")
-    if used.left:
-        say(f"Not used, the campaign has its own: {', '.join(used.left)}")
-    if used.vague:
-        complain(f"warning: the records of that calibration did not determine {', '.join(used.vague)}: they say little")
+    if used.not_used:
+        say(f"Not used, the campaign has its own: {', '.join(used.not_used)}")
+    if used.undetermined:
+        complain(f"warning: the records of that calibration did not determine {', '.join(used.undetermined)}: they say little")

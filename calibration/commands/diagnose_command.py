@@ -29,7 +29,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     from calibration.discovery.diagnose import diagnose
 
     stopped = False
-    campaign = load(path, out, lambda c: calibrations.tests_counted(c, ("decay", *IN_WAVES)))
+    campaign = load(path, out, lambda c: calibrations.count_tests(c, ("decay", *IN_WAVES)))
     try:
         with progress() as show:
             result = diagnose(campaign.model, campaign, progress=show, kept=out / FILE)
@@ -42,7 +42,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
             if (out / FILE).exists():
                 raise KeyboardInterrupt(f"stopped; the same command goes on from what was reached, which is in {out}") from None
             raise
-        result = unfinished(partial)
+        result = mark_unfinished(partial)
     try:
         write_diagnosis(result, out, figures)
     except NotFinite as error:
@@ -61,7 +61,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     return saved.converged
 
 
-def unfinished(partial: Diagnosis) -> Diagnosis:
+def mark_unfinished(partial: Diagnosis) -> Diagnosis:
     """What was reached when the user stopped the search, marked as not complete and not converged.
 
     That nothing is missing is for a whole search to say: the verdict of a stopped one is then "unexplained".
@@ -87,11 +87,11 @@ def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
         table("What was found", *rows, left=2)
     for note in notes:
         say(f"Note: {note}")
-    say(f"\n{words.verdict(saved)}", "bold")
+    say(f"\n{words.verdict_sentence(saved)}", "bold")
     for one in saved.missing.effects:
         name = words.capital(words.called(one.effect, one.degree_of_freedom))
-        say(f"{name}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
-    say(words.left_over(saved))
+        say(f"{name}: {' '.join(words.describe_certainty(saved, one))} {words.describe_alternatives(one)}")
+    say(words.describe_unexplained(saved))
     for force in saved.missing.unexplained.forces:
         say(force.words)
     if saved.next_test:

@@ -13,7 +13,13 @@ from calibration.fitting.decay_fit import Progress, run_fit
 from calibration.formatting import number
 from calibration.results.applied_calibration import unknown_values_error
 from calibration.results.read_calibration import SavedCalibration, read_as, read_saved
-from calibration.results.read_uncertainty import SavedUncertainty, interval_sentence, intervals, other_ways, summary_of
+from calibration.results.read_uncertainty import (
+    SavedUncertainty,
+    interval_sentence,
+    intervals_table,
+    other_intervals_table,
+    summary_of,
+)
 from calibration.results.result_folder import RESULT_FILE, UNCERTAINTY_FILE
 from calibration.results.write_uncertainty import Uncertainty, write_uncertainty
 from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats, repeats
@@ -58,8 +64,8 @@ def quantify(
     found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
     write_uncertainty(found, out, figures)
     written = read_as(SavedUncertainty, out / UNCERTAINTY_FILE)
-    table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals(written))
-    if (rows := other_ways(written))[1]:
+    table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals_table(written))
+    if (rows := other_intervals_table(written))[1]:
         table(f"{written.percent} intervals in other ways", *rows)
     for note in written.notes:
         say(f"Note: {note}")

@@ -44,7 +44,7 @@ def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Con
     say("calibrating to the decays", 0.01)
     run_fit(fit := prepare_fit(campaign), near=True)
     say("calibrating to the decays, strips as simpler programs take them", 0.02)
-    other = campaign.with_model(SIMPLER.given_to(model))
+    other = campaign.with_model(SIMPLER.applied_to(model))
     run_fit(again := prepare_fit(other), near=True)
     if (better := _unlikelihood(fit) - _unlikelihood(again)) < LEAST_TOGETHER:
         return Conventions(campaign, fit)

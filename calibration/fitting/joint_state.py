@@ -91,9 +91,9 @@ class JointFit:
         x,
         report: Callable,
         loss: Loss,
-        pose: Callable[[Any], SeaProblem],
+        set_up: Callable[[Any], SeaProblem],
     ) -> None:
-        self.pose = pose
+        self.set_up = set_up
         self.sources, self.decays, self.space, self.report, self.loss = sources, decays, space, report, loss
         self.mean, self.width = space.prior
         own = jnp.zeros((0, 0)) if decays is None else decays.unknowns.own
@@ -181,7 +181,7 @@ class JointFit:
             if not bool(self.inside):
                 assert self.sources.waves is not None
                 model = self.space.model(self.sources.waves.model, self.unknowns.shared)
-                self.sources, self.converged = self.sources._replace(waves=self.pose(model)), False
+                self.sources, self.converged = self.sources._replace(waves=self.set_up(model)), False
                 self.errors = self.estimate()
             self.weights = self.weigh()
             changes = [np.abs(np.log(self.errors[kind].variance / before[kind].variance)).max() for kind in self.errors]

@@ -177,7 +177,7 @@ def choose_law(
                 stage = f"{done + 1} of {count}, {name}: {now.stage}"
                 progress(replace(now, stage=stage, fraction=(done + now.fraction) / count))
 
-        used, seas = with_uses(campaign, made, uses)
+        used, seas = with_test_uses(campaign, made, uses)
         found = calibrate_in_waves(
             used, free=free, start=begin, options=options, over=over, drag=drag, made=seas, progress=report
         )
@@ -216,7 +216,7 @@ def energy_error(calibration: Calibration, tests: Sequence[str]) -> float:
     return error_of_energies(band.after for band in bands)
 
 
-def with_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:
+def with_test_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:
     """The campaign and its runs with tests used otherwise, id -> use; runs without a test left are left out."""
 
     def changed(records: Sequence[Any]) -> tuple[Any, ...]:

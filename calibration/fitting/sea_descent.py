@@ -33,15 +33,15 @@ class SeaFit:
     """One calibration in waves under way. The prior of every parameter weighs as one observation beside the tests' own, whose
     error is that of the model: it is estimated from what is left of them, and the fit made anew, until both agree."""
 
-    def __init__(self, pose: Callable[[Model], Any], declared: Model, report: Callable[..., None]) -> None:
-        self.pose, self.report = pose, report
-        self.problem = problem = pose(declared)
+    def __init__(self, set_up: Callable[[Model], Any], declared: Model, report: Callable[..., None]) -> None:
+        self.set_up, self.report = set_up, report
+        self.problem = problem = set_up(declared)
         self.mean, self.width = problem.space.prior
         self.unknowns, self.products = self.begin(), np.zeros(0)
         self.iterations, self.converged = 0, False
         self.history: list[float] = []
         self.groups: list[np.ndarray] = []
-        self.error, _ = self.left()
+        self.error, _ = self.residual_rms()
 
     def begin(self) -> Any:
         """The unknowns that a descent starts from."""
@@ -66,7 +66,7 @@ class SeaFit:
         """What is left of all observations, from the `products`."""
         return float(self.products[:, -1, -1].sum())
 
-    def left(self) -> tuple[float, bool]:
+    def residual_rms(self) -> tuple[float, bool]:
         """Root mean square of what is left of an observation, and whether the sea reaches as far as the hull goes."""
         groups, inside = residuals_and_reach(self.problem, self.x)
         self.groups = [np.asarray(group) for group in groups]
@@ -82,11 +82,11 @@ class SeaFit:
                 share = (number + min(1.0, i / 10)) / MAX_ROUNDS
                 self.report(f"round {number + 1} in waves", self.iterations, self.history[-1], share)
             before = self.error
-            self.error, inside = self.left()
+            self.error, inside = self.residual_rms()
             if not inside:
-                self.problem = self.pose(self.problem.space.model(self.problem.model, self.x))
+                self.problem = self.set_up(self.problem.space.model(self.problem.model, self.x))
                 self.converged = False
-                self.error, _ = self.left()
+                self.error, _ = self.residual_rms()
             if self.converged and abs(self.error / before - 1) < ERROR_TOLERANCE:
                 return
 

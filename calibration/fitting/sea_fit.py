@@ -133,7 +133,7 @@ def calibrate_in_waves(
 
     report("simulating the measured seas", 0, math.nan, 0.0)
 
-    def pose(model: Model) -> SeaProblem:
+    def set_up(model: Model) -> SeaProblem:
         return set_up_waves(
             model,
             made,
@@ -145,7 +145,7 @@ def calibrate_in_waves(
             objective=objective,
         )
 
-    fit = (ShootingFit if objective == "blocks" else SeaFit)(pose, declared, report)
+    fit = (ShootingFit if objective == "blocks" else SeaFit)(set_up, declared, report)
     try:
         fit.run()
     except KeyboardInterrupt:

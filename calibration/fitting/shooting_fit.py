@@ -36,11 +36,11 @@ class ShootingFit(SeaFit):
 
     problem: BlockProblem
 
-    def __init__(self, pose: Callable[[Model], SeaProblem], declared: Model, report: Callable[..., None]) -> None:
+    def __init__(self, set_up: Callable[[Model], SeaProblem], declared: Model, report: Callable[..., None]) -> None:
         self.period = 0.0
 
         def cut(model: Model) -> BlockProblem:
-            sea = pose(model)
+            sea = set_up(model)
             self.period = self.period or slowest(sea)  # as many blocks each time
             return set_up_blocks(sea, self.period)
 
@@ -79,7 +79,7 @@ class ShootingFit(SeaFit):
     def squares(self) -> float:
         return float(self.products[:, :-1, -1, -1].sum())
 
-    def left(self) -> tuple[float, bool]:
+    def residual_rms(self) -> tuple[float, bool]:
         self.shot = simulate_blocks(self.problem, self.unknowns)
         residual, piece = np.asarray(self.shot.residual), np.asarray(self.problem.piece)
         present = np.concatenate(

@@ -88,11 +88,11 @@ class Task:
 
     @property
     def seconds(self) -> float:
-        """CPU time (s) since it began, less what was spent `apart`."""
+        """CPU time (s) since it began, less what was spent `untimed`."""
         return clock.process_time() - self._begun
 
     @contextmanager
-    def apart(self) -> Iterator[None]:
+    def untimed(self) -> Iterator[None]:
         """What is done within does not count as time."""
         before = clock.process_time()
         try:
@@ -117,7 +117,7 @@ class Task:
             return np.asarray(objectives(self.problem, own, self.weight, jnp.asarray(until), full))[: len(points)]
 
         if batch not in self._compiled:
-            with self.apart():
+            with self.untimed():
                 run(x[:1])
             self._compiled.add(batch)
         found = np.full(len(x), FAILED_OBJECTIVE)
@@ -175,7 +175,7 @@ class AbstractSearch(abc.ABC):
                 raise ValueError(f"{self.name}: expected {option.name} above 0, found {value!r}")
 
     @abc.abstractmethod
-    def together(self, size: int) -> int:
+    def batch_size(self, size: int) -> int:
         """How many points it asks for at once, of `size` coefficients."""
 
     @abc.abstractmethod

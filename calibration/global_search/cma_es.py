@@ -22,7 +22,7 @@ class CMAES(AbstractSearch):
     def _population(self, size: int) -> int:
         return 4 + int(3 * np.log(size))  # arXiv:1604.00772, eq. 48
 
-    def together(self, size: int) -> int:
+    def batch_size(self, size: int) -> int:
         if size == 1:
             raise ValueError("cma-es: expected two coefficients or more, found 1")
         return even_batch(self._population(size))

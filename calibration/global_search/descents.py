@@ -27,7 +27,7 @@ class WindowedFit(DecayFit):
         return super().minimise(stage, weight, until, *rest, **named)
 
     @property
-    def each(self) -> int:
+    def simulations_per_iteration(self) -> int:
         """Simulations that a whole iteration counts as: of every record one, and one for each of its unknowns, as finite
         differences would take; forward mode takes less time than that."""
         unknowns = self.unknowns
@@ -61,7 +61,7 @@ def compile_fit(task: Task) -> None:
     def stop(*_) -> None:
         raise BudgetSpent
 
-    with task.apart():
+    with task.untimed():
         fit = fit_from(task.problem, task.records, np.asarray(task.problem.space.start), stop)
         with contextlib.suppress(BudgetSpent):
             short_fit(fit, task.begins + 1e-3 * (fit.window(FIRST_WINDOW_CYCLES) - task.begins))
@@ -81,7 +81,7 @@ def fit_releases(task: Task) -> Float[Array, "r 3*c"]:
     compile_fit(task)
 
     def report(*_) -> None:
-        task.simulations += fit.each * fit.part
+        task.simulations += fit.simulations_per_iteration * fit.part
         task.check()
 
     fit = fit_from(task.problem, task.records, x[0], report)
@@ -100,7 +100,7 @@ def descend(task: Task, x: np.ndarray, name: str) -> None:
 
     def report(stage: str, *_) -> None:
         task.stage = f"{name}: {stage}"
-        task.simulations += fit.each * fit.part
+        task.simulations += fit.simulations_per_iteration * fit.part
         if task.simulate(np.asarray(fit.unknowns.shared)[None], fit.unknowns.own)[0] >= FAILED_OBJECTIVE:
             raise _Diverged
 

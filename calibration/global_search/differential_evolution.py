@@ -17,7 +17,7 @@ class DifferentialEvolution(AbstractSearch):
     population: int = 15
     name: ClassVar[str] = "de"
 
-    def together(self, size: int) -> int:
+    def batch_size(self, size: int) -> int:
         return even_batch(max(5, self.population * size))
 
     def run(self, task: Task, random: np.random.Generator) -> None:

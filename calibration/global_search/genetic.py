@@ -18,7 +18,7 @@ class Genetic(AbstractSearch):
     name: ClassVar[str] = "ga"
     needs: ClassVar[str | None] = "pymoo"
 
-    def together(self, size: int) -> int:
+    def batch_size(self, size: int) -> int:
         return even_batch(self.population)
 
     def run(self, task: Task, random: np.random.Generator) -> None:

@@ -28,7 +28,7 @@ class MultiStart(AbstractSearch):
     name: ClassVar[str] = "multistart"
     descends: ClassVar[bool] = True
 
-    def together(self, size: int) -> int:
+    def batch_size(self, size: int) -> int:
         return even_batch(self.starts)
 
     def run(self, task: Task, random: np.random.Generator) -> None:

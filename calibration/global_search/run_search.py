@@ -107,7 +107,7 @@ def run(task: Task, method: AbstractSearch, seed: int) -> Found:
     Raises ValueError where the budget is too small for anything, SearchInterrupted with what was reached.
     """
     ended: Literal["settled", "reached", "budget", "interrupted"] = "settled"
-    task.batch = method.together(task.size)
+    task.batch = method.batch_size(task.size)
     try:
         task.begin()
         if task.own is None and not method.descends:

@@ -18,12 +18,12 @@ from calibration.formatting import listed, number, percent
 from calibration.identifiability.information import (
     IDENTIFIABLE_DEVIATION,
     collinearity,
-    deviations,
+    deviations_of,
     principal_directions,
     pseudo_inverse,
     shared_information,
+    submatrix,
     varimax,
-    within,
 )
 from calibration.identifiability.standard_deviations import Spread, sandwich_covariance
 from calibration.identifiability.statements import Collinear, Combination, Direction, Fix, Parameters
@@ -33,7 +33,7 @@ from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.platform.drag_laws import coefficient_label
 
 # products, weight, variance, inflation: see `sandwich_covariance`
-Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+WeightedProducts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
 ZERO_VARIANCE = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
 MAX_REPORTED_DIRECTIONS = 4  # weak directions in words
@@ -126,7 +126,7 @@ def identifiability(
     """The statement on parameters with the records' `information` and the posterior `covariance` of their coordinates."""
     labels, d = parameters.labels, np.sqrt(np.diag(covariance))
     active, untouched = active_parameters(parameters, information, at_bound)
-    spectrum, axes = principal_directions(within(information, active))
+    spectrum, axes = principal_directions(submatrix(information, active))
     groups = [
         Collinear(tuple(labels[i] for i in g), collinearity(information[np.ix_(g, g)]))
         for size in (2, 3)
@@ -136,7 +136,7 @@ def identifiability(
     weak = weak_directions(parameters, information, active)
     # what no record responds to is as wide as its prior whatever is fixed, and no measure of anything
     fixes: list[Fix] = []
-    left = within(covariance, active)
+    left = submatrix(covariance, active)
     for direction in weak:
         open_ = [label for label in direction.movement if label not in {fix.label for fix in fixes}]
         fix, left = _best_fix(labels, left, open_ or list(direction.movement))
@@ -168,7 +168,7 @@ def weak_directions(parameters: Parameters, information: np.ndarray, active: Seq
     deviation, axes = principal_directions(core)
     blind = deviation > VAGUE_DEVIATION
     axes[:, blind] = varimax(axes[:, blind])
-    deviation = deviations(np.einsum("ik,ij,jk->k", axes, core, axes), np.abs(core).max(initial=0.0))
+    deviation = deviations_of(np.einsum("ik,ij,jk->k", axes, core, axes), np.abs(core).max(initial=0.0))
     order = [int(k) for k in np.argsort(-deviation, kind="stable") if deviation[k] > IDENTIFIABLE_DEVIATION]
     reach = np.abs(axes) * np.minimum(deviation, VAGUE_DEVIATION)
     named = [[int(i) for i in np.flatnonzero(reach[:, k] >= min(MIN_NAMED_DEVIATION, reach[:, k].max()))] for k in order]
@@ -187,7 +187,13 @@ def weak_directions(parameters: Parameters, information: np.ndarray, active: Seq
 
 
 def identifiability_at(
-    space: ParameterSpace, model: Model, x: np.ndarray, parts: Parts, ridge: np.ndarray, width: np.ndarray, source: str
+    space: ParameterSpace,
+    model: Model,
+    x: np.ndarray,
+    parts: WeightedProducts,
+    ridge: np.ndarray,
+    width: np.ndarray,
+    source: str,
 ) -> tuple[Spread, Identifiability]:
     """Covariance and statement at coordinates (p,); `parts`, `ridge` and `width` are the arguments of `sandwich_covariance`."""
     found = sandwich_covariance(*parts, ridge, width)

@@ -30,7 +30,7 @@ def shared_information(
 def principal_directions(information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Standard deviations along the principal directions, ascending, and these as columns."""
     values, axes = np.linalg.eigh(information)
-    return deviations(values[::-1], values.max(initial=0.0)), axes[:, ::-1]
+    return deviations_of(values[::-1], values.max(initial=0.0)), axes[:, ::-1]
 
 
 def collinearity(information: np.ndarray) -> float:
@@ -41,7 +41,7 @@ def collinearity(information: np.ndarray) -> float:
     return float(1 / np.sqrt(least)) if least > 1e-14 else np.inf
 
 
-def within(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
+def submatrix(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
     """The matrix with all but some rows and columns zero."""
     mask = np.isin(np.arange(len(matrix)), list(keep))
     return np.where(np.outer(mask, mask), matrix, 0.0)
@@ -56,7 +56,7 @@ def pseudo_inverse(matrix: np.ndarray, rcond: float = 1e-13) -> np.ndarray:
     return np.linalg.pinv(matrix * both, rcond=rcond, hermitian=True) * both
 
 
-def deviations(values: np.ndarray, largest: float) -> np.ndarray:
+def deviations_of(values: np.ndarray, largest: float) -> np.ndarray:
     """1 / sqrt of information; inf for what is no more than rounding."""
     there = values > 16 * np.finfo(float).eps * len(values) * largest
     return np.where(there, 1 / np.sqrt(np.where(there, values, 1.0)), np.inf)

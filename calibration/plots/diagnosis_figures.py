@@ -37,7 +37,7 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
         yield "anatomy.png", _ANATOMY, anatomy_figure(diagnosis.anatomy_before, diagnosis.anatomy_after)
     shown: set[tuple[str, str]] = set()
     for effect in diagnosis.effects:
-        row = most_telling([row for row in rows if (row.test.id, row.series.channel) not in shown], effect)
+        row = clearest_row([row for row in rows if (row.test.id, row.series.channel) not in shown], effect)
         if row is not None:
             shown.add((row.test.id, row.series.channel))
             name = "-".join(filter(None, ("effect", effect.effect, effect.degree_of_freedom)))
@@ -49,7 +49,7 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
         largest = max(diagnosis.latent, key=lambda one: one.relative)
         yield "latent-force.png", _LATENT.format(motion=largest.motion, id=largest.shown.test), latent_figure(largest)
     for test in compared.tests:
-        if test.kind == "irregular" and spectral(test):
+        if test.kind == "irregular" and series_with_spectra(test):
             yield f"spectra-{safe_name(test.id)}.png", _SPECTRA.format(id=test.id), spectra_figure(test)
 
 
@@ -70,7 +70,7 @@ _LATENT = (
 _SPECTRA = "Test {id}: spectra of the motions, measured and simulated without what was missing and with it; bands shaded."
 
 
-class Row(NamedTuple):
+class MotionRow(NamedTuple):
     """One motion of one test that counts, and its simulation before."""
 
     test: TestFit
@@ -90,17 +90,17 @@ class Row(NamedTuple):
         return first, second
 
 
-def compared_series(compared: Calibration) -> list[Row]:
+def compared_series(compared: Calibration) -> list[MotionRow]:
     """The motions that count in J, or of a test without any the main one; fitted tests first."""
     rows = []
     for use in USE:
         for test in compared.tests:
             counted = [s for s in test.series if s.scored] or ([test.main] if test.series else [])
-            rows += [Row(test, s, test.start[s.channel]) for s in counted if test.use == use and s.channel in test.start]
+            rows += [MotionRow(test, s, test.start[s.channel]) for s in counted if test.use == use and s.channel in test.start]
     return [row for row in rows if np.isfinite(row.errors).all()]
 
 
-def before_after_figure(rows: list[Row]) -> Figure:
+def before_after_figure(rows: list[MotionRow]) -> Figure:
     """Two bars for every motion of every test, held-out tests apart."""
     places, labels, heads, at = [], [], [], 0.0
     for i, row in enumerate(rows):
@@ -143,10 +143,10 @@ def _shortened(text: str, most: int = 18) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
-def most_telling(rows: list[Row], effect: Effect) -> Row | None:
+def clearest_row(rows: list[MotionRow], effect: Effect) -> MotionRow | None:
     """Where the effect shows best: the largest fall of the error, in its own motion if that falls anywhere."""
 
-    def fall(row: Row) -> float:
+    def fall(row: MotionRow) -> float:
         before, after = row.errors
         return before - after
 
@@ -155,7 +155,7 @@ def most_telling(rows: list[Row], effect: Effect) -> Row | None:
     return max(mine or falling, key=fall, default=None)
 
 
-def excerpt(row: Row) -> slice:
+def excerpt(row: MotionRow) -> slice:
     """The samples that are shown: all of a decay; of a test in waves where most is gained."""
     time, (before, after) = row.test.time, row.residuals
     count = int(np.searchsorted(time - time[0], EXCERPT_LENGTHS.get(row.series.channel, SHORT_EXCERPT)))
@@ -166,7 +166,7 @@ def excerpt(row: Row) -> slice:
     return slice(begin, begin + count)
 
 
-def effect_figure(row: Row, title: str) -> Figure:
+def effect_figure(row: MotionRow, title: str) -> Figure:
     """The measured motion, and below it what is left before and after on one scale."""
     name, seen = row.series.channel, excerpt(row)
     time = row.test.time[seen] - row.test.time[0]
@@ -189,7 +189,7 @@ def effect_figure(row: Row, title: str) -> Figure:
     return figure
 
 
-def spectral(test: TestFit) -> list[Series]:
+def series_with_spectra(test: TestFit) -> list[Series]:
     """The motions whose spectra are shown: those with bands, or surge, heave and pitch."""
     names = [dof for dof in DOFS if dof in test.bands] or ["surge", "heave", "pitch"]
     return [series for series in test.series if series.channel in names]
@@ -197,7 +197,7 @@ def spectral(test: TestFit) -> list[Series]:
 
 def spectra_figure(test: TestFit) -> Figure:
     """Densities measured, before and after; the bands of slow motion and of waves shaded."""
-    shown = spectral(test)
+    shown = series_with_spectra(test)
     figure, axes = stack([1.1] * len(shown))
     artists: dict[str, Artist] = {}
     for ax, series in zip(axes, shown):

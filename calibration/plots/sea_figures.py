@@ -24,9 +24,9 @@ def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
     """File name, caption and figure, one after the other. Call within `jaxhydro.plot.style()`."""
     for test in tests:
         name = safe_name(test.fit.id)
-        yield f"spectra-{name}.png", f"Test {test.fit.id}: spectra, measured and simulated; bands shaded.", spectra(test)
+        yield f"spectra-{name}.png", f"Test {test.fit.id}: spectra, measured and simulated; bands shaded.", spectra_figure(test)
         caption = f"Test {test.fit.id}: {EXCERPT_LENGTH:g} s about the highest crest, measured and simulated."
-        yield f"excerpt-{name}.png", caption, excerpt(test)
+        yield f"excerpt-{name}.png", caption, excerpt_figure(test)
 
 
 def _title(test: SeaTest) -> str:
@@ -36,7 +36,7 @@ def _title(test: SeaTest) -> str:
     return f"{test.fit.id}: {height}, Tp {number(test.peak_period, 3)} s"
 
 
-def spectra(test: SeaTest, names: Sequence[str] | None = None, title: str | None = None) -> Figure:
+def spectra_figure(test: SeaTest, names: Sequence[str] | None = None, title: str | None = None) -> Figure:
     """Densities of the wave and of what moves."""
     both, highest = channels(test), max(MAX_FREQUENCY, 2.5 / test.peak_period)
     shown = ["wave", *moving(test)] if names is None else list(names)
@@ -65,7 +65,7 @@ def spectra(test: SeaTest, names: Sequence[str] | None = None, title: str | None
     return figure
 
 
-def excerpt(test: SeaTest) -> Figure:
+def excerpt_figure(test: SeaTest) -> Figure:
     """Part of the record, about the wave's highest crest."""
     both, time = channels(test), test.fit.time
     crest, width = float(time[np.argmax(test.wave)]), min(EXCERPT_LENGTH, float(time[-1] - time[0]))

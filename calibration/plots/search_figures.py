@@ -22,7 +22,7 @@ COLOURS = "YlOrRd"
 EXCERPT_LENGTH = 600.0  # s of a latent force in waves
 
 
-def chosen(diagnosis: Diagnosis) -> dict[int, Score]:
+def chosen_effects(diagnosis: Diagnosis) -> dict[int, Score]:
     """What each round took into the model: of the effects found, the round that was the last to score it."""
     found = {(effect.effect, effect.degree_of_freedom) for effect in diagnosis.effects}
     last = {(score.effect, score.degree_of_freedom): score for score in sorted(diagnosis.scores, key=lambda one: one.round)}
@@ -32,7 +32,7 @@ def chosen(diagnosis: Diagnosis) -> dict[int, Score]:
 
 def scores_figure(diagnosis: Diagnosis) -> Figure:
     """A panel for every round: candidates by what they gain at first order, those refitted with a dot."""
-    took = chosen(diagnosis)
+    took = chosen_effects(diagnosis)
     rounds = {n: _best(diagnosis, n, took.get(n)) for n in sorted({score.round for score in diagnosis.scores})}
     heights = [0.165 * len(rows) + 0.1 for rows in rounds.values()]
     figure = Figure(figsize=(WIDTH, sum(heights) + 0.27 * len(heights) + 0.8), layout="constrained")

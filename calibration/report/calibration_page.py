@@ -57,7 +57,7 @@ def _parts(saved: SavedCalibration, folder: Path, source: str) -> Iterator[str]:
 
 def _how(saved: SavedCalibration) -> str:
     """The objective, and how it was reached."""
-    said = f"{tables.outcome(saved)}."
+    said = f"{tables.outcome_sentence(saved)}."
     if any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values()):
         said += " Tests in waves are fitted by the objective that was asked for, by default energy in bands."
     return said

@@ -17,7 +17,7 @@ CLASSICAL = "Classical analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0
 AGREEMENT_DEVIATIONS = 2.0  # standard deviations within which a value agrees with the true one
 
 
-def tests_counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
+def count_tests(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
     """How many tests there are of each use, and how many of other kinds are left out."""
     tests = campaign.manifest.tests
     count = Counter(USE[t.use] if t.use == "ignore" or t.kind in kinds else f"left out ({t.kind})" for t in tests)
@@ -36,13 +36,13 @@ def findings(found: Iterable[Finding]) -> Rows:
 def parameters(saved: SavedCalibration) -> Rows:
     """Meaning, start, value and standard deviation of every coefficient."""
     rows = [
-        (label, one.meaning, number(one.start, 3), value_of(one), readable_unit(one.unit))
+        (label, one.meaning, number(one.start, 3), value_text(one), readable_unit(one.unit))
         for label, one in saved.baseline.parameters.items()
     ]
     return ("Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit"), rows
 
 
-def value_of(one: Parameter) -> str:
+def value_text(one: Parameter) -> str:
     """A calibrated value with its standard deviation, or what it is instead."""
     text = with_deviation(one.value, one.standard_deviation) if one.identifiable else UNDETERMINED
     return f"{text}, at its bound" if one.at_bound else text
@@ -120,7 +120,7 @@ def _signed(ratio: float | None) -> str:
     return f"{whole:+d} %" if (whole := round(100 * ratio)) else "0 %"
 
 
-def outcome(saved: SavedCalibration) -> str:
+def outcome_sentence(saved: SavedCalibration) -> str:
     """One line: the objective and how it was reached. Of tests in waves J is no objective: they are fitted by others."""
     fitted = saved.baseline
     in_waves = any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values())
@@ -146,7 +146,7 @@ def comparison_with_truth(saved: SavedCalibration) -> Rows:
         if one.identifiable:
             away = deviations_away(one, true)
             sizes = (percent((one.value - true) / true) if true else "–", "–" if away is None else f"{away:+.1f} sd")
-        rows.append((label, number(true, 3), value_of(one), readable_unit(one.unit), *sizes))
+        rows.append((label, number(true, 3), value_text(one), readable_unit(one.unit), *sizes))
     return ("Parameter", "True", "Calibrated ± 1 sd", "Unit", "Off by", "Off by, in sd"), rows
 
 
@@ -167,6 +167,6 @@ def agreement_with_truth(saved: SavedCalibration) -> str:
     return f"{near} of {len(away)} coefficients lie within {limit} of the true values{farthest}."
 
 
-def unfinished(partial: Calibration) -> Calibration:
+def mark_unfinished(partial: Calibration) -> Calibration:
     """What was reached when the user stopped the fit, marked as not converged."""
     return replace(partial, converged=False, notes=("stopped by the user before it converged", *partial.notes))

@@ -8,8 +8,8 @@ from calibration.results.read_uncertainty import (
     INTERVAL_METHODS,
     SavedUncertainty,
     interval_sentence,
-    intervals,
-    other_ways,
+    intervals_table,
+    other_intervals_table,
     summary_of,
 )
 
@@ -42,7 +42,7 @@ def _parts(saved: SavedUncertainty, folder: Path) -> Iterator[str]:
     yield "<h2>Parameters</h2>"
     yield _parameters(saved)
     yield _INTERVALS
-    heads, rows = other_ways(saved)
+    heads, rows = other_intervals_table(saved)
     if rows:
         yield f"<h2>{saved.percent} intervals in other ways</h2>"
         yield listed(f"{INTERVAL_METHODS[way]}: {_how(saved, way)}." for way in saved.ways())
@@ -64,7 +64,7 @@ def _calibrated(saved: SavedUncertainty) -> Iterator[str]:
 
 
 def _parameters(saved: SavedUncertainty) -> str:
-    (first, *heads, _), found = intervals(saved)
+    (first, *heads, _), found = intervals_table(saved)
     several = list(saved.parameters.values())
     rows = [
         (label, "; ".join(filter(None, (one.meaning, flag))), *row)

@@ -19,7 +19,7 @@ from calibration.campaign.manifest import WAVE
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run, runs
 from calibration.campaign.wave_band import wave_band
-from calibration.residuals.stretches import samples_after_transient, simulate_stretches, stretches
+from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.choices import check
@@ -204,9 +204,9 @@ def compare(
     for run, one in made:
         waves = one.sea.components
         say(f"{run.file}: {waves.omega.size} waves of {run.time[-1] - run.time[0]:.0f} s, order {options.order}; simulating")
-        parts = stretches(run, run.records, model, options.low, options.cutoff)
+        parts = run_segments(run, run.records, model, options.low, options.cutoff)
         try:
-            for part, found_there, _ in simulate_stretches(model, run, parts, one.sea, step):
+            for part, found_there, _ in simulate_segments(model, run, parts, one.sea, step):
                 motion = np.full((len(run.time), 6), np.nan)
                 times = run.time[: part.end + 1]
                 readings = _observed(model, found_there.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)

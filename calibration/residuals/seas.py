@@ -21,7 +21,7 @@ from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import group_products
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, peak_period
 from calibration.residuals.sea_errors import bands_of
-from calibration.residuals.stretches import samples_after_transient, simulate_stretches, stretches
+from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
 from jaxhydro.dynamics.integrate import integrate
 from jaxhydro.dynamics.model import Model, State
@@ -137,9 +137,9 @@ class SeaProblem(eqx.Module):
         """In one group ln(simulated / measured energy) by test, motion and band or cell of one; in others, motion by motion,
         simulated less measured over the measured standard deviation and the root of the number of samples, each about its
         mean."""
-        return self.look(x)[0]
+        return self.residuals_and_reach(x)[0]
 
-    def look(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
+    def residuals_and_reach(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
         """`residuals`, and whether the hull stays in the box that every sea was prepared for: beyond, its flow is wrong."""
         energies, motions = [], []
         found = self.motions(x)
@@ -162,8 +162,8 @@ class SeaProblem(eqx.Module):
 
 @eqx.filter_jit
 def residuals_and_reach(problem: SeaProblem, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
-    """`SeaProblem.look`, compiled."""
-    return problem.look(x)
+    """`SeaProblem.residuals_and_reach`, compiled."""
+    return problem.residuals_and_reach(x)
 
 
 def set_up_waves(
@@ -180,14 +180,14 @@ def set_up_waves(
     """The fixed part of a calibration of `model` to the tests marked `fit` of runs; `step` (s) is the largest time step."""
     found = []
     for run, sea in made:
-        parts = stretches(run, run.records, model, options.low, options.cutoff)
+        parts = run_segments(run, run.records, model, options.low, options.cutoff)
         fitted = [[record for record in part.records if record.use == "fit"] for part in parts]
         last = max((i for i, records in enumerate(fitted) if records), default=-1)
         if len(parts) == 1 and last == 0:  # no further than what is fitted
             parts = (parts[0]._replace(end=max(int(run.samples(record)[-1]) for record in fitted[0])),)
         margin = SEA_MARGIN * float(model.size)
         for (part, taken, start), records in zip(
-            simulate_stretches(model, run, parts[: last + 1], sea.sea, step, margin), fitted
+            simulate_segments(model, run, parts[: last + 1], sea.sea, step, margin), fitted
         ):
             if records:
                 pieces = tuple(piece for r in records for piece in _pieces(run, r, scale, part.begin, objective == "spectrum"))

@@ -111,7 +111,7 @@ class BlockProblem(eqx.Module):
         readings = observe(model, grid, block.times, base, in_waves=True)[:, dofs]
         return (readings + constant).T, grid, constant
 
-    def shoot(self, unknowns: Unknowns) -> BlockResiduals:
+    def block_residuals(self, unknowns: Unknowns) -> BlockResiduals:
         """All blocks."""
         x, constants = jnp.split(unknowns.shared, [len(self.space.free)])
 
@@ -169,8 +169,8 @@ def _of_pair(one: Callable[[Array, Blocks, SeaRun], Any], run: SeaRun, pair: tup
 
 @eqx.filter_jit
 def simulate_blocks(problem: BlockProblem, unknowns: Unknowns) -> BlockResiduals:
-    """`BlockProblem.shoot`, compiled."""
-    return problem.shoot(unknowns)
+    """`BlockProblem.block_residuals`, compiled."""
+    return problem.block_residuals(unknowns)
 
 
 def set_up_blocks(sea: SeaProblem, period: float) -> BlockProblem:

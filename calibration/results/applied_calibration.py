@@ -40,8 +40,8 @@ class AppliedCalibration(NamedTuple):
 
     model: Model
     values: dict[str, float]
-    vague: tuple[str, ...]
-    left: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    not_used: tuple[str, ...]
     reference: SeaState | None
     campaign: str
     platform: str
@@ -57,7 +57,7 @@ def apply_calibration(path: str | PathLike[str], model: Model, platform: str, ev
     Raises InputError for a file that is none, for values that the model has no place for, and for those that cannot be.
     """
     saved = read_saved(path)
-    declared = model if saved.strips is None else saved.strips.given_to(model)
+    declared = model if saved.strips is None else saved.strips.applied_to(model)
     strips = (
         saved.strips if StripConventions.of(declared) != StripConventions.of(model) else None
     )  # without drag there is no speed of it
@@ -74,13 +74,13 @@ def apply_calibration(path: str | PathLike[str], model: Model, platform: str, ev
         if not about.lower - slack <= value <= about.upper + slack:
             expected = f"a number between {about.lower:g} and {about.upper:g}"
             raise file_error(Path(path), expected, f"{value:g}", f"{saved.key}.parameters.{label}.value")
-    vague = tuple(label for label in values if not saved.best.parameters[label].identifiable)
-    left = tuple(label for label in saved.values() if label not in values)
+    undetermined = tuple(label for label in values if not saved.best.parameters[label].identifiable)
+    not_used = tuple(label for label in saved.values() if label not in values)
     reference = _reference(saved) if any(map(is_exponent, values)) else None
     model = model.at_values(values)
     of_file = (saved.campaign, saved.platform, saved.best.converged, strips)
     seas = None if saved.seas is None else saved.seas.options()
-    return AppliedCalibration(model, values, vague, left, reference, *of_file, seas)
+    return AppliedCalibration(model, values, undetermined, not_used, reference, *of_file, seas)
 
 
 def unknown_values_error(

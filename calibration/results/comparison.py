@@ -21,8 +21,8 @@ def document(found: Comparison, options: Options, about: dict[str, Any], applied
         else {
             "source": f"calibration of {applied.campaign}",
             "values": applied.values,
-            "not_identifiable": list(applied.vague),
-            "left_out": list(applied.left),
+            "not_identifiable": list(applied.undetermined),
+            "left_out": list(applied.not_used),
             **({} if applied.strips is None else {"strips": applied.strips.model_dump()}),
         }
     )

@@ -104,7 +104,7 @@ def interval_sentence(summary: IntervalSummary) -> str:
     return f"{said}; {UNDETERMINED}: {listed(rest)}." if rest else f"{said}."
 
 
-def intervals(saved: SavedUncertainty) -> Rows:
+def intervals_table(saved: SavedUncertainty) -> Rows:
     """Value, Laplace interval, and how much too small it would be as if errors were white."""
     rows = []
     for label, one in saved.parameters.items():
@@ -116,7 +116,7 @@ def intervals(saved: SavedUncertainty) -> Rows:
     return ("Parameter", "Value", f"{saved.percent} interval", "Unit", "Width over white-noise width", "Remark"), rows
 
 
-def other_ways(saved: SavedUncertainty) -> Rows:
+def other_intervals_table(saved: SavedUncertainty) -> Rows:
     """The Laplace interval beside those found in other ways; no rows where none was asked for."""
     there = saved.ways()
     rows = []

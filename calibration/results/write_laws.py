@@ -29,7 +29,7 @@ def _draw(found: SeaLaws, folder: Path) -> None:
 
     with style():
         for label in found.labels():
-            save(sea_laws_plot.coefficient(found, label), folder / f"sea-law-{safe_name(label)}.png")
+            save(sea_laws_plot.coefficient_figure(found, label), folder / f"sea-law-{safe_name(label)}.png")
 
 
 def document(found: SeaLaws) -> dict[str, Any]:

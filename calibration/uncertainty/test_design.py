@@ -13,7 +13,7 @@ from calibration.fitting.decay_fit import STEPS_PER_PERIOD, DecayFit
 from calibration.fitting.fit_uncertainty import residual_statistics
 from calibration.formatting import listed, percent
 from calibration.identifiability.directions import Identifiability, active_parameters, weak_directions
-from calibration.identifiability.information import shared_information, within
+from calibration.identifiability.information import shared_information, submatrix
 from calibration.identifiability.statements import Direction, Parameters
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, Unknowns, gather_decays
@@ -71,7 +71,7 @@ def expected_information(known: Identifiability, candidate: np.ndarray, name: st
     References:
         Chaloner and Verdinelli 1995, Statistical Science 10, 273-304 (Bayesian D-optimality).
     """
-    candidate = within(candidate, [i for i, label in enumerate(known.parameters.labels) if label not in known.at_bound])
+    candidate = submatrix(candidate, [i for i, label in enumerate(known.parameters.labels) if label not in known.at_bound])
     values, vectors = np.linalg.eigh(known.covariance)
     root = vectors * np.sqrt(np.maximum(values, 0)) @ vectors.T
     ratio = np.eye(len(root)) + root @ candidate @ root

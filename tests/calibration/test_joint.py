@@ -18,7 +18,7 @@ from calibration.parameters.space import parameter_space
 from calibration.residuals.decays import cauchy_residual
 from calibration.residuals.measured_seas import seas_of, with_diffraction
 from calibration.residuals.static import natural_period, set_up_offsets, set_up_periods
-from calibration.residuals.stretches import simulate_stretches, stretches
+from calibration.residuals.stretches import run_segments, simulate_segments
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
@@ -85,11 +85,11 @@ def campaign(tmp_path_factory):
     write("sea.csv", time, np.tile(rest, (len(time), 1)) + np.sin(time)[:, None], wave)
     first = load_campaign(folder)
     ((run, sea),) = seas_of(first, environment, OPTIONS)
-    (part,) = stretches(run, run.records, model, OPTIONS.low, OPTIONS.cutoff)
+    (part,) = run_segments(run, run.records, model, OPTIONS.low, OPTIONS.cutoff)
     write(
         "sea.csv",
         time,
-        np.asarray(next(iter(simulate_stretches(model, run, (part,), sea.sea, 0.25))).found.response.position),
+        np.asarray(next(iter(simulate_segments(model, run, (part,), sea.sea, 0.25))).simulation.response.position),
         wave,
     )
     return load_campaign(folder)

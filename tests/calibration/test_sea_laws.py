@@ -12,7 +12,7 @@ from test_seas import HULL
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
 from calibration.fitting.decay_fit import Interrupted, Progress
-from calibration.fitting.law_choice import LawFit, SeaLaws, choose_law, energy_error, with_uses
+from calibration.fitting.law_choice import LawFit, SeaLaws, choose_law, energy_error, with_test_uses
 from calibration.fitting.law_parameters import (
     base_label,
     is_law_parameter,
@@ -22,7 +22,7 @@ from calibration.fitting.law_parameters import (
 )
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
-from calibration.residuals.stretches import sea_state, simulate_stretches, stretches
+from calibration.residuals.stretches import run_segments, sea_state, simulate_segments
 from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_calibration import write_calibration
 from calibration.results.write_laws import document as document_of_laws
@@ -103,8 +103,8 @@ def campaign(tmp_path_factory):
     true = with_sea_state_laws(model, LABELS, ("significant_height",), reference_sea_state(made, OPTIONS)).with_values(TRUE)
     ((run, sea),) = made
     motion = np.zeros((len(time), 6))
-    for part, found, _ in simulate_stretches(
-        true, run, stretches(run, run.records, true, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
+    for part, found, _ in simulate_segments(
+        true, run, run_segments(run, run.records, true, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
     ):
         motion[part.begin : part.end + 1] = np.asarray(found.response.position)
     motion -= np.asarray(jh.equilibrium(model))
@@ -123,18 +123,18 @@ def test_stretches_of_a_run(campaign, made) -> None:
     ((run, sea),) = made
     model = with_diffraction(build(campaign.platform), OPTIONS)
     options = (OPTIONS.low, OPTIONS.cutoff)
-    (whole,) = stretches(run, run.records, model, *options)
+    (whole,) = run_segments(run, run.records, model, *options)
     assert whole.state is None and [r.id for r in whole.records] == ["sea-1", "sea-2", "sea-3"]
     law = with_sea_state_laws(model, LABELS, ("significant_height", "peak_period"), reference_sea_state(made, OPTIONS))
-    parts = stretches(run, run.records, law, *options)
+    parts = run_segments(run, run.records, law, *options)
     assert [part.begin for part in parts] == [0, 800, 1600] and parts[1].end >= parts[2].begin
     for i, part in enumerate(parts):
         seen = run.wave[int((i * LENGTH + 80) / STEP) : int((i + 1) * LENGTH / STEP)]
         assert part.state.significant_height == pytest.approx(4 * np.std(seen), rel=0.02)
         assert part.state.peak_period == pytest.approx(10.0, rel=0.15)  # 32 waves
         assert part.state == sea_state(run, part.records[0], *options)
-    one = next(iter(simulate_stretches(model, run, (whole,), sea.sea, 0.25))).found.response.position
-    for part, found, start in simulate_stretches(law, run, parts, sea.sea, 0.25):
+    one = next(iter(simulate_segments(model, run, (whole,), sea.sea, 0.25))).simulation.response.position
+    for part, found, start in simulate_segments(law, run, parts, sea.sea, 0.25):
         assert (start is None) == (part.begin == 0)
         there = np.asarray(one[part.begin : part.end + 1])
         assert_allclose(np.asarray(found.response.position), there, atol=2e-3 * np.abs(there).max())
@@ -423,11 +423,11 @@ def test_words(found) -> None:
 
 
 def test_messages(campaign, made) -> None:
-    fewer, seas = with_uses(campaign, made, {"sea-1": "ignore"})
+    fewer, seas = with_test_uses(campaign, made, {"sea-1": "ignore"})
     assert [r.id for run, _ in seas for r in run.records] == ["sea-2", "sea-3"]
     with pytest.raises(InputError, match="1 and 1"):
         choose_law(fewer, laws=("constant",), options=OPTIONS)
-    none, seas = with_uses(campaign, made, dict.fromkeys(("sea-1", "sea-2", "sea-3"), "ignore"))
+    none, seas = with_test_uses(campaign, made, dict.fromkeys(("sea-1", "sea-2", "sea-3"), "ignore"))
     assert seas == ()
     with pytest.raises(InputError, match="at least one test in waves"):
         calibrate_in_waves(replace(none), options=OPTIONS)

@@ -193,7 +193,7 @@ def test_ranges_keep_to_what_is_given_and_what_is_physical(campaign: Campaign) -
 
 def test_batches_are_even() -> None:
     assert [even_batch(n) for n in (1, 11, 36, 45, 64, 99, 165)] == [1, 11, 36, 23, 32, 33, 33]
-    found = {name: method().together(11) for name, method in METHODS.items()}
+    found = {name: method().batch_size(11) for name, method in METHODS.items()}
     assert found == {"multistart": 32, "cma-es": 11, "ga": 33, "de": 33}
 
 

@@ -270,10 +270,10 @@ def test_values_of_another_campaign(tmp_path):
     """Hull and damping are taken, its mooring is not; what its records did not determine is named."""
     model = load_model(HULL)
     used = apply_calibration(saved(tmp_path), model, "this hull")
-    assert used.values == {"column.Ca_t": 1.4} and used.left == ("mooring.line1.stiffness",)
-    assert used.vague == ("column.Ca_t",) and float(used.model.values["column.Ca_t"]) == 1.4
+    assert used.values == {"column.Ca_t": 1.4} and used.not_used == ("mooring.line1.stiffness",)
+    assert used.undetermined == ("column.Ca_t",) and float(used.model.values["column.Ca_t"]) == 1.4
     assert used.model.values["mooring.line1.stiffness"] == model.values["mooring.line1.stiffness"]
-    assert not apply_calibration(saved(tmp_path), model, "another hull").left
+    assert not apply_calibration(saved(tmp_path), model, "another hull").not_used
     with pytest.raises(InputError, match=r"hul\.Ca_t"):
         apply_calibration(saved(tmp_path, **{"hul.Ca_t": 1.0}), model, "this hull")
 

@@ -18,7 +18,7 @@ from calibration.residuals.decays import Unknowns
 from calibration.residuals.measured_seas import Options, seas_of, with_diffraction
 from calibration.residuals.seas import set_up_waves
 from calibration.residuals.shooting import simulate_blocks
-from calibration.residuals.stretches import simulate_stretches, stretches
+from calibration.residuals.stretches import run_segments, simulate_segments
 from jaxhydro.dynamics.integrate import clock
 from jaxhydro.errors import InputError
 from jaxhydro.platform.build import build
@@ -77,8 +77,8 @@ def campaign(tmp_path_factory):
     first = load_campaign(folder)
     model = with_diffraction(build(first.platform), OPTIONS)
     ((run, sea),) = seas_of(first, model.environment, OPTIONS)
-    ((_, found, _),) = simulate_stretches(
-        model, run, stretches(run, run.records, model, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
+    ((_, found, _),) = simulate_segments(
+        model, run, run_segments(run, run.records, model, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
     )
     write(*np.asarray(found.response.position)[:, [0, 2]].T)
     return load_campaign(folder)
@@ -120,7 +120,7 @@ def test_blocks_of_the_truth_are_the_record(campaign, seas) -> None:
     own = true_states(fit)
     assert np.abs(own).max() < 0.7 and np.median(np.abs(own)) < 0.1
     fit.unknowns = Unknowns(fit.unknowns.shared, own)
-    error, inside = fit.left()
+    error, inside = fit.residual_rms()
     assert inside and error < 1e-3 and max(fit.jumps.values()) < 2e-3
     assert list(fit.jumps) == list(DOFS)
     for i, group in enumerate(fit.groups):
@@ -154,7 +154,7 @@ def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
     assert len(dense) == 2 + 2 + at.own.size
     assert_allclose(found, dense, rtol=1e-5, atol=1e-6)
     fit.unknowns, fit.products = at, np.asarray(objective(at, args)[1])
-    fit.left()
+    fit.residual_rms()
     deviation = fit.identifiability()[0].deviation()
     priors = np.concatenate([np.asarray(ridge) ** 2, np.repeat(np.asarray(weight)[:, -1], 4)])  # what they add to the matrix
     width = np.concatenate([fit.width, np.ones(len(dense) - 2)])

@@ -176,7 +176,7 @@ def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: P
     assert float(used.model.values[FORCE]) == 81000.0 and float(used.model.values["column.Ca_t"]) == 1.5
     assert len(used.model.loads) == len(model.loads) + 2 and read_saved(tmp_path).key == "augmented"
     elsewhere = apply_calibration(path, model, "another")
-    assert elsewhere.left == ("mass_properties.mass",) and FORCE in elsewhere.values
+    assert elsewhere.not_used == ("mass_properties.mass",) and FORCE in elsewhere.values
     found = cli._model(str(DEMO / "platform.yaml"), path, None, None)
     assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
 
@@ -199,7 +199,7 @@ def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis,
     )
     assert (
         apply_calibration(path, used.model, "VolturnUS-S").strips is None
-        and StripConventions.of(DEFAULT_STRIPS.given_to(used.model)) == DEFAULT_STRIPS
+        and StripConventions.of(DEFAULT_STRIPS.applied_to(used.model)) == DEFAULT_STRIPS
     )
     assert StripConventions.of(cli._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
     assert "directions: earth, drag_speed: component, centripetal: false" in capsys.readouterr().out
