@@ -18,12 +18,12 @@ import numpy as np
 
 from benchmarks.bench_timing import Row, contest, times
 from calibration.campaign.load_campaign import load_campaign
-from calibration.fitting.decay_fit import Fit, run
+from calibration.fitting.decay_fit import DecayFit, run_fit
 from calibration.global_search import METHODS, Budget, Task
 from calibration.global_search.descents import WindowedFit
-from calibration.global_search.run_search import Found, posed
+from calibration.global_search.run_search import Found, set_up_search
 from calibration.global_search.run_search import run as search
-from calibration.residuals.decays import Problem, Unknowns, first_guess
+from calibration.residuals.decays import DecayProblem, Unknowns, first_guess
 
 CAMPAIGN = Path(__file__).resolve().parents[1] / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 FACTOR = 10.0  # every coefficient is searched from a tenth to ten times of what the platform declares
@@ -38,14 +38,14 @@ class Descent(NamedTuple):
     records' iterations it simulated. `near` is its first iteration whose J over whole records is within a hundredth of the
     last, and the CPU seconds and the whole iterations up to there."""
 
-    fit: Fit
+    fit: DecayFit
     seconds: float
     whole: tuple[float, ...]
     simulated: float
     near: tuple[int, float, float]
 
 
-def descend(problem: Problem, records) -> Descent:
+def descend(problem: DecayProblem, records) -> Descent:
     """All stages of jaxhydro's calibration of these records."""
     marks: list[tuple[str, float, float, float]] = []
 
@@ -54,7 +54,7 @@ def descend(problem: Problem, records) -> Descent:
 
     fit = WindowedFit(problem, records, Unknowns(problem.space.start, first_guess(records, problem.data)), mark)
     begun = time.process_time()
-    run(fit)
+    run_fit(fit)
     seconds = time.process_time() - begun
     stages, ends, objectives, parts = zip(*marks, strict=True)
     late = [not stage.startswith("first") for stage in stages]
@@ -68,7 +68,7 @@ def measure(budget: float, quick: bool, searches: Sequence[str] = tuple(SEARCHES
     """Least squares, then each population search until within a hundredth of its J, or `budget` seconds of CPU."""
     campaign = load_campaign(CAMPAIGN)
     some = tuple(record for record in campaign.records if record.id == "heave-1" or not quick)
-    problem, records = posed(dataclasses.replace(campaign, records=some), factor=FACTOR)
+    problem, records = set_up_search(dataclasses.replace(campaign, records=some), factor=FACTOR)
 
     first = descend(problem, records)
     again = first if quick else descend(problem, records)

@@ -1,5 +1,8 @@
-"""Fits a jaxhydro model to measurements: `load_campaign`, then `calibrate`, `calibrate_in_waves`, or `search` first; and
-finds what the model lacks: `diagnose`."""
+"""Calibration of a model to measurements, and diagnosis of what the model lacks.
+
+Load a campaign with `load_campaign`. Fit it with `calibrate` or `calibrate_in_waves`; `search` finds a starting point first.
+`diagnose` finds effects that the model lacks.
+"""
 
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.decay_analysis.linear_quadratic import classical, equivalent_damping

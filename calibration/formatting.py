@@ -1,4 +1,4 @@
-"""Numbers as people read them."""
+"""Numbers and units as readable text."""
 
 import math
 import re

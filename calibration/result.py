@@ -1,4 +1,4 @@
-"""What a calibration returns, as values: parameters with their uncertainty, and every test measured against simulated."""
+"""Result of a calibration: estimates, and tests measured against simulated."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -14,7 +14,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """A calibrated parameter. `standard_deviation` is None where the records do not determine it (`identifiable` False)."""
+    """A calibrated parameter and its uncertainty.
+
+    Attributes:
+        label: Name of the parameter, such as `column.Cd_t`.
+        value: Calibrated value, in `unit`.
+        standard_deviation: Standard deviation in `unit`; None where the records do not determine the parameter.
+        unit: Unit of the parameter.
+        meaning: Description of the parameter.
+        start: Value where the fit began, in `unit`.
+        at_bound: Whether the value is at one of its bounds.
+        identifiable: Whether the records determine the parameter.
+    """
 
     label: str
     value: float
@@ -28,8 +39,16 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """One channel of one test: measured and simulated at the recorded times, SI, still water at zero, sensor offset taken
-    off the measured one. `scored`: it counts in the objective (a decay's own degree of freedom does; the others are shown)."""
+    """Measured and simulated motion of one channel of one test, in SI units, zero in still water.
+
+    Attributes:
+        channel: Degree of freedom, such as `surge`.
+        measured: (n,) measured motion less the sensor offset (m, rad).
+        simulated: (n,) simulated motion at the recorded times (m, rad).
+        offset: Sensor offset, taken off `measured` (m, rad).
+        noise: Standard deviation of the measurement noise (m, rad).
+        scored: Whether the series counts in the objective; of a decay, only its own degree of freedom does.
+    """
 
     channel: str
     measured: np.ndarray
@@ -40,7 +59,7 @@ class Series:
 
     @property
     def rmse(self) -> float:
-        """Root mean square of measured less simulated (m, rad)."""
+        """Root mean square of simulated less measured (m, rad)."""
         return float(np.sqrt(np.mean((self.measured - self.simulated) ** 2)))
 
     @property
@@ -55,7 +74,14 @@ def error_of_energies(errors: Iterable[float]) -> float:
 
 
 class BandError(NamedTuple):
-    """(simulated - measured) / measured energy in a band of a motion's spectrum, after and before calibration; limits in Hz."""
+    """Relative error of the energy in a band of a motion's spectrum, (simulated - measured) / measured.
+
+    Attributes:
+        after: Error after calibration.
+        before: Error before calibration.
+        low: Lower limit of the band (Hz).
+        high: Upper limit of the band (Hz).
+    """
 
     after: float
     before: float
@@ -65,7 +91,19 @@ class BandError(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class TestFit:
-    """One test: its records against the model's motion. `start` is the model's motion before calibration, by channel."""
+    """Measured and simulated motions of one test.
+
+    Attributes:
+        id: Name of the test.
+        use: Use of the test: `fit`, `holdout` or `ignore`.
+        kind: Kind of the test, such as `decay` or `irregular`.
+        degree_of_freedom: Degree of freedom that was released; None for tests in waves.
+        time: (n,) recorded times (s).
+        series: Measured and simulated motion, one entry per channel.
+        start: Motion of the model before calibration (m, rad), by channel.
+        file: Path of the data file.
+        bands: Errors of energy, by channel and band.
+    """
 
     id: str
     use: str
@@ -85,11 +123,20 @@ class TestFit:
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """A calibrated model and how well it follows its campaign.
+    """A calibrated model, and how well it follows the campaign.
 
-    `objective` is J = sum of RMSE over standard deviation over the scored series of the tests of one use; None where there
-    are none. `history` is J at each accepted iteration. `notes` are findings in words, `identifiability` the numbers of what
-    the fitted records determine.
+    Attributes:
+        campaign: Name of the campaign.
+        model: The calibrated model.
+        parameters: Calibrated parameters, by label.
+        tests: Measured and simulated motions, one entry per test.
+        converged: Whether the fit converged and followed its records.
+        iterations: Number of iterations.
+        seconds: Duration of the calibration (s).
+        history: Objective at each accepted iteration.
+        notes: Findings in words.
+        platform: Name of the platform.
+        identifiability: What the fitted records determine; None where it was not computed.
     """
 
     campaign: str
@@ -105,7 +152,15 @@ class Calibration:
     identifiability: "Identifiability | None" = None
 
     def objective(self, use: str, channel: str | None = None) -> float | None:
-        """J over the tests of one use (fit, holdout): of all motions that are scored, or what one of them has in it."""
+        """Objective J: sum of RMSE over standard deviation, over the scored series of the tests of one use.
+
+        Args:
+            use: Use of the tests: `fit` or `holdout`.
+            channel: Degree of freedom to which the sum is limited; None for all.
+
+        Returns:
+            The objective, or None where there is no such series.
+        """
         scored = [s for test in self.tests if test.use == use for s in test.series if s.scored]
         parts = [s.relative for s in scored if channel in (None, s.channel)]
         return float(sum(parts)) if parts else None

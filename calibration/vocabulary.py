@@ -1,4 +1,4 @@
-"""Words that tables, pages and figures share."""
+"""Words shared by tables, pages and figures."""
 
 from collections.abc import Sequence
 

@@ -32,7 +32,7 @@ def of_campaign(name: str) -> dict[str, Any]:
     """Intervals of one campaign by method and label, as [lower, upper], None where open, and absent where there is none."""
     from benchmarks.evidence.coverage_campaigns import make
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import conclude, prepare, run
+    from calibration.fitting.decay_fit import conclude, prepare_fit, run_fit
     from calibration.uncertainty.bootstrap import bootstrap_blocks
     from calibration.uncertainty.likelihood import likelihood_of
     from calibration.uncertainty.profile import profile
@@ -42,8 +42,8 @@ def of_campaign(name: str) -> dict[str, Any]:
     if not (folder / "campaign.yaml").exists():  # written last
         make(folder, index)
     campaign = load_campaign(folder)
-    fit = prepare(campaign)
-    run(fit)
+    fit = prepare_fit(campaign)
+    run_fit(fit)
     result, likely = conclude(campaign, fit.problem.model, fit, 0.0), likelihood_of(fit)
     known = {k: p for k, p in result.parameters.items() if p.standard_deviation is not None}
     found: dict[str, dict[str, Any]] = {
@@ -70,12 +70,12 @@ def of_campaign(name: str) -> dict[str, Any]:
 def of_measured(name: str) -> dict[str, list[float]]:
     """Of a measured decay: relative deviations with the residual as it is, as if it were white, and their ratio, by label."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.fitting.decay_fit import conclude, prepare, run
+    from calibration.fitting.decay_fit import conclude, prepare_fit, run_fit
     from calibration.uncertainty.likelihood import likelihood_of
 
     campaign = load_campaign(SHARED / "measured" / name)
-    fit = prepare(campaign)
-    run(fit)
+    fit = prepare_fit(campaign)
+    run_fit(fit)
     likely, result = likelihood_of(fit), conclude(campaign, fit.problem.model, fit, 0.0)
     known = [k for k, p in result.parameters.items() if p.identifiable]
     rows = zip(likely.labels, likely.deviation(), likely.deviation(white=True), strict=True)

@@ -48,12 +48,12 @@ def handicap(values: dict[str, float]) -> float:
     import jax.numpy as jnp
 
     from calibration.global_search import Budget, Task
-    from calibration.global_search.descents import releases
-    from calibration.global_search.run_search import posed
+    from calibration.global_search.descents import fit_releases
+    from calibration.global_search.run_search import set_up_search
 
-    problem, records = posed(campaign())
+    problem, records = set_up_search(campaign())
     task = Task(problem, records, None, Budget())
-    task.own = releases(task)
+    task.own = fit_releases(task)
     x = [p.transform.inverse(values[p.label]) for p in problem.space.free]
     return float(task.simulate(np.asarray(jnp.array([x])))[0])
 

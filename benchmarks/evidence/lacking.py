@@ -59,12 +59,12 @@ def work(name: str) -> dict[str, Any]:
     from calibration.campaign.load_campaign import load_campaign
     from calibration.discovery.checkpoint import FILE
     from calibration.discovery.diagnose import diagnose
-    from calibration.results.result_folder import DIAGNOSIS
+    from calibration.results.result_folder import DIAGNOSIS_FILE
     from calibration.results.write_diagnosis import write_diagnosis
 
     folder = written_to(name)
     folder.mkdir(parents=True, exist_ok=True)
-    if not (folder / DIAGNOSIS).exists():
+    if not (folder / DIAGNOSIS_FILE).exists():
         campaign = load_campaign(campaign_of(name))
         write_diagnosis(diagnose(campaign.model, campaign, kept=folder / FILE), folder, figures=False)
         (folder / FILE).unlink(missing_ok=True)
@@ -76,10 +76,10 @@ def numbers(folder: Path, name: str) -> dict[str, Any]:
     import xarray as xr
 
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.results.result_folder import DIAGNOSIS
+    from calibration.results.result_folder import DIAGNOSIS_FILE
     from jaxhydro.analysis.spectral import bands
 
-    found = json.loads((folder / DIAGNOSIS).read_text())
+    found = json.loads((folder / DIAGNOSIS_FILE).read_text())
     tests = load_campaign(campaign_of(name)).manifest.tests
     periods = {test.id: test.peak_period for test in tests if test.kind == "irregular"}
     correlation: dict[str, Any] = {}

@@ -9,7 +9,7 @@ from benchmarks.evidence.numerical_tank_truth import REACH
 from calibration.discovery.acceptance import LOST, TIMES
 from calibration.discovery.effects.effect_names import called
 from calibration.formatting import listed, number, percent, quantity
-from calibration.report.diagnosis_words import plain
+from calibration.report.diagnosis_words import plain_name
 
 HALVES = {FITTED: "fitted", HELD: "held out"}
 BANDS = {"low_frequency": "low", "wave_frequency": "wave"}
@@ -66,7 +66,7 @@ def effects_table(found: dict[str, Any]) -> str:
         evidence = (number(one["bic"], 3), percent(one["held"]), f"{one['clear']:.0f}")
         for i, (label, (value, deviation, unit)) in enumerate(one["parameters"].items()):
             size = quantity(value, deviation, unit) if deviation is not None else f"({quantity(value, None, unit)})"
-            name = plain(label.removeprefix(f"{head}.").removeprefix(f"{one['effect']}."))
+            name = plain_name(label.removeprefix(f"{head}.").removeprefix(f"{one['effect']}."))
             about, rest = (named(one), evidence) if i == 0 else ("", ("", "", ""))
             rows.append((about, name, size, *rest))
     return table(("Effect", "Parameter", "Value ± 1 sd", "BIC falls by", "Held-out gain", "sd from none"), rows)

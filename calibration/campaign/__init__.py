@@ -1,1 +1,1 @@
-"""Campaigns: manifest, records, runs in waves, data quality."""
+"""Measurement campaigns: manifest, records, runs in waves, data quality."""

@@ -1,4 +1,4 @@
-"""Units, scales and signs that all records of a campaign tell together: told once, with the manifest's key that explains it."""
+"""Hints on wrong units, scales and signs that all records of a campaign share."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -13,17 +13,17 @@ from calibration.campaign.signals import dominant_period
 from jaxhydro.dynamics.statics import Modes
 from jaxhydro.environment import DOFS
 
-NEAR = 0.15  # of a logarithm: a ratio that is a factor
-ALIKE = 0.1  # of a logarithm: ratios of different motions that are one and the same
-TWICE = math.log(2.0)  # a smaller common ratio may be the declared model's own error
-COUPLED = 0.05  # of the released motion, in metres of the hull: a smaller motion beside it is not the mode's alone
-STRAIGHT = 0.3  # imaginary over real part: a motion further out of phase is not the mode's
-CLOSE = 0.25  # of a logarithm: a ratio that is 1, or 1 of the other sign
-LARGE, SMALL = 1.0, 1e-3  # of the radius of gyration: releases beyond are no platform's
-USUAL = (0.003, 0.6)  # of the radius of gyration, or rad: releases as they are
-LARGE_ANGLE, SMALL_ANGLE = math.radians(60.0), 4e-3
-FOLLOWED = 0.7  # correlation of measured and simulated motion, of either sign, from which their ratio says something
-TURN = 180 / math.pi
+RATIO_TOLERANCE = 0.15  # of a logarithm: a ratio that is a factor
+SAME_RATIO_TOLERANCE = 0.1  # of a logarithm: ratios of different motions that are one and the same
+MIN_COMMON_RATIO = math.log(2.0)  # a smaller common ratio may be the declared model's own error
+MIN_COUPLED_MOTION = 0.05  # of the released motion, in metres of the hull: a smaller motion beside it is not the mode's alone
+MAX_PHASE_RATIO = 0.3  # imaginary over real part: a motion further out of phase is not the mode's
+UNITY_TOLERANCE = 0.25  # of a logarithm: a ratio that is 1, or 1 of the other sign
+LARGEST_RELEASE, SMALLEST_RELEASE = 1.0, 1e-3  # of the radius of gyration: releases beyond are no platform's
+USUAL_RELEASES = (0.003, 0.6)  # of the radius of gyration, or rad: releases as they are
+LARGEST_RELEASE_ANGLE, SMALLEST_RELEASE_ANGLE = math.radians(60.0), 4e-3
+MIN_CORRELATION = 0.7  # correlation of measured and simulated motion, of either sign, from which their ratio says something
+DEGREES_PER_RADIAN = 180 / math.pi
 
 
 class Hint(NamedTuple):
@@ -46,13 +46,15 @@ def campaign_hints(
         length: m, its radius of gyration.
         scale: the manifest's.
     """
-    times = tuple(_of_times(records, modes, scale))
-    sizes = tuple(_of_sizes(records, length, scale, {"length"} if times else set()))  # lengths go with times, by the scale
+    times = tuple(_period_hints(records, modes, scale))
+    sizes = tuple(
+        _release_size_hints(records, length, scale, {"length"} if times else set())
+    )  # lengths go with times, by the scale
     known = {quantity(hint.channel) for hint in (*times, *sizes)}
-    return (*times, *sizes, *_of_relations(records, modes, widths, length, scale, known))
+    return (*times, *sizes, *_coupling_hints(records, modes, widths, length, scale, known))
 
 
-def _of_times(records: Sequence[Record], modes: Modes, scale: float) -> Iterator[Hint]:
+def _period_hints(records: Sequence[Record], modes: Modes, scale: float) -> Iterator[Hint]:
     """Are all natural periods off by one factor?"""
     found: dict[str, list[float]] = {}
     for record in records:
@@ -68,10 +70,16 @@ def _of_times(records: Sequence[Record], modes: Modes, scale: float) -> Iterator
     times = f"{math.exp(ratio):.3g} times" if ratio > 0 else f"1/{math.exp(-ratio):.3g} of"
     said = f"all measured periods, of {dofs}, are {times} the declared model's"
     for factor, why in _time_factors(scale):
-        if all(abs(one - math.log(factor)) < NEAR for one in every):
+        if all(abs(one - math.log(factor)) < RATIO_TOLERANCE for one in every):
             yield Hint(first, "time", f"{said}: {why}")
             return
-    if scale == 1 and len(found) > 1 and abs(ratio) > TWICE and max(abs(one - ratio) for one in every) < ALIKE and ratio < 0:
+    if (
+        scale == 1
+        and len(found) > 1
+        and abs(ratio) > MIN_COMMON_RATIO
+        and max(abs(one - ratio) for one in every) < SAME_RATIO_TOLERANCE
+        and ratio < 0
+    ):
         yield Hint(first, "time", f"{said}, as those of a model at 1:{math.exp(-2 * ratio):.3g} would be: is `scale` left out?")
 
 
@@ -89,7 +97,7 @@ def _time_factors(scale: float) -> Iterator[tuple[float, str]]:
         yield 1 / factor, f"`channels.time.unit`: {unit} and seconds mixed up?"
 
 
-def _of_sizes(records: Sequence[Record], length: float, scale: float, known: set[str]) -> Iterator[Hint]:
+def _release_size_hints(records: Sequence[Record], length: float, scale: float, known: set[str]) -> Iterator[Hint]:
     """Are all released displacements, all angles, or all of one motion of a size that no release has?"""
     told: set[str] = set()
     for name, dofs in {"displacement": DOFS[:3], "angle": DOFS[3:], **{dof: (dof,) for dof in DOFS}}.items():
@@ -98,14 +106,14 @@ def _of_sizes(records: Sequence[Record], length: float, scale: float, known: set
             continue
         turns = quantity(dofs[0]) == "angle"
         sizes = [_size(record) / (1.0 if turns else length) for record in released]
-        lowest, highest = (SMALL_ANGLE, LARGE_ANGLE) if turns else (SMALL, LARGE)
+        lowest, highest = (SMALLEST_RELEASE_ANGLE, LARGEST_RELEASE_ANGLE) if turns else (SMALLEST_RELEASE, LARGEST_RELEASE)
         if not (max(sizes) < lowest or min(sizes) > highest):
             continue
         large = min(sizes) > highest
         fitting = [
             (f"{factor:.4g}", units)
             for factor, units in _size_factors(turns, scale)
-            if all(USUAL[0] < (size / factor if large else size * factor) < USUAL[1] for size in sizes)
+            if all(USUAL_RELEASES[0] < (size / factor if large else size * factor) < USUAL_RELEASES[1] for size in sizes)
         ]
         if fitting:
             told |= set(dofs)
@@ -117,14 +125,14 @@ def _of_sizes(records: Sequence[Record], length: float, scale: float, known: set
 
 def _size_factors(turns: bool, scale: float) -> Iterator[tuple[float, str]]:
     if turns:
-        yield from ((TURN, "degrees and radians"), (1000.0, "milliradians and radians"))
+        yield from ((DEGREES_PER_RADIAN, "degrees and radians"), (1000.0, "milliradians and radians"))
         return
     yield from ((1000.0, "millimetres and metres"), (100.0, "centimetres and metres"))
     if scale > 1:
         yield scale, "lengths at the model's and at full scale (`scale`)"
 
 
-def _of_relations(
+def _coupling_hints(
     records: Sequence[Record],
     modes: Modes,
     widths: Float[np.ndarray, "6"],
@@ -143,7 +151,7 @@ def _of_relations(
         shape = dict(zip(DOFS, map(float, modes.shape[mode] / widths), strict=True))
         for other in record.values:
             expected = shape[other] / shape[dof]
-            if other == dof or abs(expected) * _arm(other, length) / _arm(dof, length) < COUPLED:
+            if other == dof or abs(expected) * _arm(other, length) / _arm(dof, length) < MIN_COUPLED_MOTION:
                 continue
             ratio = _ratio(record, dof, other)
             if ratio is not None:
@@ -152,14 +160,14 @@ def _of_relations(
                 found.setdefault((pair[0], pair[1]), []).append(value)
                 first.setdefault((pair[0], pair[1]), record)
     for (one, two), values in found.items():
-        message = _of_factor(one, two, values, scale, known)
+        message = _factor_in_words(one, two, values, scale, known)
         if message is not None:
             yield Hint(first[one, two], two, f"in {len(values)} {'decay' if len(values) == 1 else 'decays'} {message}")
 
 
-def _of_factor(one: str, two: str, values: Sequence[float], scale: float, known: set[str]) -> str | None:
+def _factor_in_words(one: str, two: str, values: Sequence[float], scale: float, known: set[str]) -> str | None:
     """In words, by what the ratio of motion `one` to motion `two` misses the model's, all records the same."""
-    if all(value < 0 for value in values) and all(abs(math.log(-value)) < CLOSE for value in values):
+    if all(value < 0 for value in values) and all(abs(math.log(-value)) < UNITY_TOLERANCE for value in values):
         keys = f"(`channels.{one}.sign` or `channels.{two}.sign`)"
         return (
             f"{one} and {two} go together as the declared model's do, with the other sign: an axis reversed {keys}, or "
@@ -172,10 +180,12 @@ def _of_factor(one: str, two: str, values: Sequence[float], scale: float, known:
     larger, smaller = (one, two) if sizes[0] > 0 else (two, one)
     factors = [(1000.0, f"millimetres and metres mixed up (`channels.{one}.unit`)")]
     if turns:
-        factors.append((TURN, f"degrees and radians mixed up (`channels.{two}.unit`)"))
+        factors.append((DEGREES_PER_RADIAN, f"degrees and radians mixed up (`channels.{two}.unit`)"))
         factors += [(max(scale, 1 / scale), "lengths not at the scale that `scale` states")] if scale != 1 else []
     said = [
-        why for factor, why in factors if all(abs(size - math.copysign(math.log(factor), sizes[0])) < CLOSE for size in sizes)
+        why
+        for factor, why in factors
+        if all(abs(size - math.copysign(math.log(factor), sizes[0])) < UNITY_TOLERANCE for size in sizes)
     ]
     times = f"{math.exp(abs(float(np.median(sizes)))):.3g} times"
     return f"{larger} is {times} too large beside {smaller}, by the declared model: {' or '.join(said)}?" if said else None
@@ -195,16 +205,18 @@ def motion_hints(tests: Iterable[Mapping[str, tuple[np.ndarray, np.ndarray]]]) -
             if min(deviations) > 0:
                 correlation = float(a @ b) / (deviations[0] * deviations[1])
                 ratios.setdefault(name, []).append((math.log(deviations[0] / deviations[1]), correlation))
-    followed = [name for name, some in ratios.items() if all(abs(correlation) > FOLLOWED for _, correlation in some)]
-    turned = [name for name in followed if all(one < 0 and abs(size) < 2 * CLOSE for size, one in ratios[name])]
+    followed = [name for name, some in ratios.items() if all(abs(correlation) > MIN_CORRELATION for _, correlation in some)]
+    turned = [name for name in followed if all(one < 0 and abs(size) < 2 * UNITY_TOLERANCE for size, one in ratios[name])]
     if turned:
         every = len(turned) == len(followed) > 1
         key = "`wave_channel.sign` or its `position`" if every else ", ".join(f"`channels.{name}.sign`" for name in turned)
         yield f"of the other sign than simulated in all tests in waves: {', '.join(turned)}. An axis reversed ({key})?"
     for name, values in ratios.items():
-        units, factor = ("degrees and radians", TURN) if quantity(name) == "angle" else ("millimetres and metres", 1000.0)
+        units, factor = (
+            ("degrees and radians", DEGREES_PER_RADIAN) if quantity(name) == "angle" else ("millimetres and metres", 1000.0)
+        )
         for sign, word in ((1, "large"), (-1, "small")):
-            if all(abs(size - sign * math.log(factor)) < 2 * CLOSE for size, _ in values):
+            if all(abs(size - sign * math.log(factor)) < 2 * UNITY_TOLERANCE for size, _ in values):
                 yield (
                     f"{name} is {factor:.4g} times too {word}, against that simulated in all {len(values)} tests in waves: "
                     f"{units} mixed up (`channels.{name}.unit`)?"
@@ -233,4 +245,4 @@ def _ratio(record: Record, dof: str, other: str) -> float | None:
         return complex(((values - values.mean()) * wave).sum())
 
     ratio = part(other) / part(dof)
-    return ratio.real if abs(ratio.imag) < STRAIGHT * abs(ratio.real) else None
+    return ratio.real if abs(ratio.imag) < MAX_PHASE_RATIO * abs(ratio.real) else None

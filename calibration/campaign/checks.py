@@ -1,4 +1,4 @@
-"""What is wrong with the records: clocks, gaps, missing values, frozen and clipped channels, spikes, drift, windows.
+"""Data-quality checks: clocks, gaps, frozen and clipped channels, spikes, drift, windows.
 
 An error is what no fit should be built on, a warning what its reader should know. Repaired, with a warning: rows with a
 value missing and rows that repeat a time, while they are less than 2 % of the window; they are dropped. Nothing else is
@@ -17,26 +17,26 @@ import numpy as np
 from calibration.campaign.digits import local_resolution, straight_piece
 from calibration.campaign.extent_checks import extent_warnings
 from calibration.campaign.manifest import DOFS, IN_WAVES, WAVE, Manifest
-from calibration.campaign.records import Series, factors, frozen, read_series, there
+from calibration.campaign.records import Series, frozen_channels, read_series, unit_factors, valid_values
 from calibration.campaign.signals import (
     constant_stretches,
     dominant_period,
-    flanks,
-    line,
+    flank_heights,
     missing_code,
     resolution,
     spikes,
+    straight_line,
     wave_height,
 )
 from jaxhydro.errors import Problem
 
-REPAIRABLE = 0.02  # of a window's rows
-LEAST_SAMPLES = 20  # in a window
-GAP = 3.5  # median steps
-COARSE, TOO_COARSE = 15, 8  # samples per cycle
-TOO_COARSE_WAVES = 4  # these only drive: what is slower is worth having still
-FEW_WAVES = 20  # after the transient
-SHOWN = 5  # of one kind in one channel
+MAX_DROPPED_SHARE = 0.02  # of a window's rows
+MIN_SAMPLES = 20  # in a window
+GAP_STEPS = 3.5  # median steps
+FEW_SAMPLES_PER_CYCLE, MIN_SAMPLES_PER_CYCLE = 15, 8  # samples per cycle
+MIN_SAMPLES_PER_WAVE = 4  # these only drive: what is slower is worth having still
+MIN_WAVES = 20  # after the transient
+MAX_SHOWN = 5  # of one kind in one channel
 
 Severity = Literal["warning", "error"]
 
@@ -82,7 +82,7 @@ class _Check:
         self.time = series.time[good]
         self.values = {name: values[good] for name, values in series.values.items()}
         steps = np.diff(self.time)
-        self.step = float(np.mean(steps[steps <= GAP * np.median(steps)])) if np.any(steps > 0) else 0.0
+        self.step = float(np.mean(steps[steps <= GAP_STEPS * np.median(steps)])) if np.any(steps > 0) else 0.0
         # the rows after the transient
         self.compared = self.time >= self.time[0] + self.test.transient if len(self.time) else good[:0]
         self.driven = WAVE if self.test.kind in IN_WAVES else self.test.degree_of_freedom or ""
@@ -99,10 +99,10 @@ class _Check:
             self.period = dominant_period(self.time, self.values[self.driven])
         signals = (f for name in self.values for f in self.signal(name))
         told = extent_warnings(self.series, self.time, self.values, self.compared, self.period)
-        extent = [self.found("warning", *one) for one in told]
+        extent = [self.finding("warning", *one) for one in told]
         return [*found, *extent, *self.held_out(), *self.oscillation(), *self.sea(), *signals]
 
-    def found(self, severity: Severity, channel: str, time: float | None, message: str, expected: str = "") -> Finding:
+    def finding(self, severity: Severity, channel: str, time: float | None, message: str, expected: str = "") -> Finding:
         return Finding(severity, self.test.file, self.test.id, channel, time, message, expected)
 
     def at(self, time: float) -> str:
@@ -113,7 +113,7 @@ class _Check:
         for other in self.others if self.test.use == "holdout" else ():
             alike = other.test.use == "fit" and other.test.file == self.test.file and len(other.time) > 0
             if alike and min(self.time[-1], other.time[-1]) > max(self.time[0], other.time[0]):
-                yield self.found("warning", "", None, f"held out, and the fitted test {other.test.id} has samples of it")
+                yield self.finding("warning", "", None, f"held out, and the fitted test {other.test.id} has samples of it")
 
     def window(self) -> Iterator[Finding]:
         """Is there enough of a record?"""
@@ -121,29 +121,29 @@ class _Check:
         start, end = self.test.window or (first, last)
         beyond = 0.01 * (end - start) + 2 * self.step
         if not first <= last:
-            yield self.found("error", "time", None, "none", "times")
+            yield self.finding("error", "time", None, "none", "times")
         elif start < first - beyond or end > last + beyond:
-            yield self.found(
+            yield self.finding(
                 "error",
                 "",
                 None,
                 f"a window from {self.at(start)} to {self.at(end)}",
                 f"a window in the file's range, {self.at(first)} to {self.at(last)}",
             )
-        elif count < LEAST_SAMPLES:
-            yield self.found("error", "", None, f"{count} samples", f"{LEAST_SAMPLES} samples or more in the window")
-        elif self.test.transient > 0 and after < LEAST_SAMPLES:
+        elif count < MIN_SAMPLES:
+            yield self.finding("error", "", None, f"{count} samples", f"{MIN_SAMPLES} samples or more in the window")
+        elif self.test.transient > 0 and after < MIN_SAMPLES:
             left = f"{self.at(self.test.transient)} of a record of {self.at(end - start)}, which leaves {after}"
             if missing := int((~self.series.good).sum()):
                 left = f"{left}, as {missing} of its {count} rows lack a value"
-            yield self.found("error", "", None, left, f"a transient that leaves {LEAST_SAMPLES} samples or more")
+            yield self.finding("error", "", None, left, f"a transient that leaves {MIN_SAMPLES} samples or more")
 
     def units(self) -> Iterator[Finding]:
         """Does the file state the unit that the manifest does?"""
         for channel, unit in self.series.units.items():
             stated = self.series.channels[channel]
             if unit != stated.unit:
-                yield self.found(
+                yield self.finding(
                     "warning",
                     channel,
                     None,
@@ -155,29 +155,29 @@ class _Check:
         zero = self.manifest.zero
         if zero is not None and zero.window is not None:
             fewest, (first, last) = min(map(len, self.series.still.values())), self.series.span
-            if fewest < LEAST_SAMPLES:
-                yield self.found(
+            if fewest < MIN_SAMPLES:
+                yield self.finding(
                     "error",
                     "",
                     None,
                     f"{fewest} in {list(zero.window)}, of a file from {self.at(first)} to {self.at(last)}",
-                    f"{LEAST_SAMPLES} or more samples in zero.window",
+                    f"{MIN_SAMPLES} or more samples in zero.window",
                 )
         elif zero is not None:
             rest = next(other for other in self.others if other.test.id == zero.test)
             for channel in sorted(set(self.values) & set(DOFS) - set(rest.values)):
-                yield self.found(
+                yield self.finding(
                     "error", channel, None, f"no such channel in test {zero.test}", "a channel that the zero test has too"
                 )
 
     def clock(self) -> Iterator[Finding]:
         """Do times increase, and evenly?"""
-        rows = np.flatnonzero(there(self.series.time))
+        rows = np.flatnonzero(valid_values(self.series.time))
         time = self.series.time[rows]
         steps = np.diff(time)
         if np.any(steps < 0):
             i = int(np.argmax(steps < 0))
-            yield self.found(
+            yield self.finding(
                 "error",
                 "time",
                 float(time[i]),
@@ -190,8 +190,8 @@ class _Check:
             i = int(np.argmax(steps == 0))
             yield self.dropped(same, "time", float(time[i]), f"{same} times that repeat, the first {self.at(time[i])}")
         steps = np.diff(self.time)
-        for i in np.flatnonzero(steps > GAP * self.step)[:SHOWN]:
-            yield self.found(
+        for i in np.flatnonzero(steps > GAP_STEPS * self.step)[:MAX_SHOWN]:
+            yield self.finding(
                 "warning",
                 "time",
                 float(self.time[i]),
@@ -200,17 +200,17 @@ class _Check:
         usual = steps[steps < 1.5 * self.step]
         rounding = resolution(usual) if len(usual) else 0.0
         if rounding > 0.02 * self.step and np.ptp(usual) < 2.5 * rounding:
-            yield self.found(
+            yield self.finding(
                 "warning", "time", None, f"times are written to {self.at(rounding)}, where steps are {self.at(self.step)}"
             )
 
     def missing(self) -> Iterator[Finding]:
         """Values that are not there."""
         for channel, values in {"time": self.series.time, **self.series.values}.items():
-            bad = np.flatnonzero(~there(values))
+            bad = np.flatnonzero(~valid_values(values))
             if len(bad):
                 before = self.series.time[: bad[0] + 1]
-                before = before[there(before)]
+                before = before[valid_values(before)]
                 when = float(before[-1]) if len(before) else None
                 place = "at the start" if when is None else f"the first near {self.at(when)}"
                 code = missing_code(values)
@@ -218,10 +218,14 @@ class _Check:
                 yield self.dropped(len(bad), channel, when, f"{len(bad)} values {what}, {place}")
 
     def dropped(self, count: int, channel: str, time: float | None, message: str) -> Finding:
-        if count < REPAIRABLE * len(self.series.time):
-            return self.found("warning", channel, time, f"{message}: these rows are dropped")
-        return self.found(
-            "error", channel, time, message, f"fewer than {REPAIRABLE:.0%} of the {len(self.series.time)} rows to be dropped"
+        if count < MAX_DROPPED_SHARE * len(self.series.time):
+            return self.finding("warning", channel, time, f"{message}: these rows are dropped")
+        return self.finding(
+            "error",
+            channel,
+            time,
+            message,
+            f"fewer than {MAX_DROPPED_SHARE:.0%} of the {len(self.series.time)} rows to be dropped",
         )
 
     def oscillation(self) -> Iterator[Finding]:
@@ -230,13 +234,13 @@ class _Check:
             return
         samples, cycles = self.period / self.step, (self.time[-1] - self.time[0]) / self.period
         message = f"{samples:.1f} samples per cycle of {self.at(self.period)}"
-        least = TOO_COARSE_WAVES if self.driven == WAVE else TOO_COARSE
+        least = MIN_SAMPLES_PER_WAVE if self.driven == WAVE else MIN_SAMPLES_PER_CYCLE
         if samples < least:
-            yield self.found("error", self.driven, None, message, f"{least} samples per cycle or more")
-        elif samples < COARSE:
-            yield self.found("warning", self.driven, None, f"only {message}")
+            yield self.finding("error", self.driven, None, message, f"{least} samples per cycle or more")
+        elif samples < FEW_SAMPLES_PER_CYCLE:
+            yield self.finding("warning", self.driven, None, f"only {message}")
         if cycles < 1.5:
-            yield self.found("warning", self.driven, None, f"only {cycles:.1f} cycles of about {self.at(self.period)}")
+            yield self.finding("warning", self.driven, None, f"only {cycles:.1f} cycles of about {self.at(self.period)}")
 
     def sea(self) -> Iterator[Finding]:
         """Is the sea what the manifest says, known where it was measured, and long enough?"""
@@ -244,16 +248,16 @@ class _Check:
         if self.driven != WAVE or WAVE not in self.values:
             return
         if self.manifest.wave_channel is not None and self.manifest.wave_channel.position is None:
-            yield self.found("warning", WAVE, None, "wave_channel has no position: taken as the origin")
+            yield self.finding("warning", WAVE, None, "wave_channel has no position: taken as the origin")
         name = "significant_wave_height" if irregular else "wave_height"
         stated = test.significant_wave_height if irregular else test.wave_height
-        metres = abs(factors(self.manifest, self.series.channels)[WAVE]) / self.manifest.scale
+        metres = abs(unit_factors(self.manifest, self.series.channels)[WAVE]) / self.manifest.scale
         height = wave_height(self.values[WAVE][self.compared], irregular) * metres
         if stated is not None and not 0.7 < height / stated < 1.4:
-            yield self.found("warning", WAVE, None, f"{name} is stated as {stated:g} m, and recorded as {height:.3g} m")
+            yield self.finding("warning", WAVE, None, f"{name} is stated as {stated:g} m, and recorded as {height:.3g} m")
         left = float(self.time[-1] - self.time[0]) - test.transient
-        if irregular and self.period is not None and left < FEW_WAVES * self.period:
-            yield self.found(
+        if irregular and self.period is not None and left < MIN_WAVES * self.period:
+            yield self.finding(
                 "warning",
                 WAVE,
                 None,
@@ -268,19 +272,19 @@ class _Check:
         if grain == 0:
             said = f"one value throughout, {values[0]:.6g}"
             if channel == self.driven:
-                yield self.found("error", channel, None, said, "a signal that moves")
+                yield self.finding("error", channel, None, said, "a signal that moves")
             else:
-                left_out = ": left out" if channel in frozen(self.series) else ""
-                yield self.found("warning", channel, None, f"{said}{left_out}")
+                left_out = ": left out" if channel in frozen_channels(self.series) else ""
+                yield self.finding("warning", channel, None, f"{said}{left_out}")
             return
         step = local_resolution(values)
         starts, lengths = constant_stretches(values, grain)
-        long = max(LEAST_SAMPLES, int((self.period or 0) / 3 / self.step))
-        for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:SHOWN]:
+        long = max(MIN_SAMPLES, int((self.period or 0) / 3 / self.step))
+        for i, n in list(zip(starts[lengths > long], lengths[lengths > long]))[:MAX_SHOWN]:
             beside = (values[max(0, i - long) : i + 1], values[i + n - 1 : i + n + long])
             still = self.still_until() > time[i + n - 1] or self.in_zero(time[i], time[i + n - 1])
             if max(map(np.ptp, beside)) > 6 * step[i] and not still:  # else it has come to rest
-                yield self.found(
+                yield self.finding(
                     "warning",
                     channel,
                     float(time[i]),
@@ -289,9 +293,9 @@ class _Check:
         piece = straight_piece(values, step)
         for name, extreme in (("highest", values.max()), ("lowest", values.min())):
             flat = (np.abs(values[starts] - extreme) < grain / 2) & (lengths >= 3 * piece) & (starts > 0)
-            flat &= flanks(values, starts, lengths) > 16 * step[starts]
+            flat &= flank_heights(values, starts, lengths) > 16 * step[starts]
             if (count := int(lengths[flat].sum())) >= 6:
-                yield self.found(
+                yield self.finding(
                     "warning",
                     channel,
                     float(time[starts[flat][0]]),
@@ -300,7 +304,7 @@ class _Check:
         off = spikes(values, step)
         if len(off := off[time[off + 2] - time[off - 2] < 4.5 * self.step]):  # none beside a gap
             i, more = int(off[0]), f", and {len(off) - 1} more" if len(off) > 1 else ""
-            yield self.found(
+            yield self.finding(
                 "warning",
                 channel,
                 float(time[i]),
@@ -333,8 +337,8 @@ class _Check:
             drift, limit = means[-third:].mean() - means[:third].mean(), 0.1 * np.abs(values - means[-1]).max()
         else:
             values = values[self.compared]
-            mean = line(self.time[self.compared], values)
+            mean = straight_line(self.time[self.compared], values)
             drift, limit = mean[-1] - mean[0], 2 * float(np.std(values - mean))
         if abs(drift) > limit + 2 * grain:
             unit = self.series.channels[channel].unit
-            yield self.found("warning", channel, None, f"its mean drifts by {drift:.3g} {unit}")
+            yield self.finding("warning", channel, None, f"its mean drifts by {drift:.3g} {unit}")

@@ -1,4 +1,4 @@
-"""The digits of a recorded channel: the step of its last digit at every value, and samples drawn straight between others."""
+"""Resolution of a recorded channel, and detection of linearly interpolated samples."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import numpy as np
 from calibration.campaign.signals import resolution
 
 _PLACES = range(-6, 13)  # decimal places that are looked for
-_USUAL = 0.9  # quantile of the places in one decade: trailing zeros are not written
+_PLACES_QUANTILE = 0.9  # quantile of the places in one decade: trailing zeros are not written
 _LONGEST_PIECE = 50.0  # samples: a straight piece that is longer is no sign of interpolation
-_STRAIGHT = 2.5  # steps of the last digit, by which rounding alone bends a straight line
-_CORNER = 2.0  # times that, at half of the corners at least
+_ROUNDING_STEPS = 2.5  # steps of the last digit, by which rounding alone bends a straight line
+_CORNER_RATIO = 2.0  # times that, at half of the corners at least
 
 
 def local_resolution(values: np.ndarray) -> np.ndarray:
@@ -27,7 +27,7 @@ def local_resolution(values: np.ndarray) -> np.ndarray:
             scaled = values * 10.0**place
             places[np.abs(scaled - np.rint(scaled)) < 1e-9 * np.maximum(np.abs(scaled), 1.0)] = place
     for one in np.unique(decade[size > 0]):
-        usual = float(np.quantile(places[decade == one], _USUAL, method="lower"))
+        usual = float(np.quantile(places[decade == one], _PLACES_QUANTILE, method="lower"))
         if np.isfinite(usual):
             step[decade == one] = np.maximum(step[decade == one], 10.0**-usual)
     if np.array_equal(values, values.astype(np.float32)):
@@ -42,11 +42,11 @@ def straight_piece(values: np.ndarray, step: np.ndarray) -> float:
         values: (n,) one channel.
         step: (n,) its `local_resolution`.
     """
-    rounding = _STRAIGHT * step[1:-1] + 1e-12 * np.abs(values).max()
+    rounding = _ROUNDING_STEPS * step[1:-1] + 1e-12 * np.abs(values).max()
     turn = np.abs(np.diff(values, 2)) / rounding
     bend = turn > 1
     corners = int(np.sum(bend[1:] & ~bend[:-1]))
-    if not corners or bend.mean() > 0.5 or np.median(turn[bend]) < _CORNER:
+    if not corners or bend.mean() > 0.5 or np.median(turn[bend]) < _CORNER_RATIO:
         return 1.0
     length = len(values) / corners
     return length if length <= _LONGEST_PIECE else 1.0

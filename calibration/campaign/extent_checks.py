@@ -1,4 +1,4 @@
-"""What is told of where a record begins and ends: a model that is held or pushed, waves that go on or have not begun."""
+"""Warnings on the start and end of a record: held or pushed models, late waves."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 
 from calibration.campaign.manifest import IN_WAVES, WAVE
 from calibration.campaign.records import Series
-from calibration.campaign.wave_bounds import CYCLES, begun_before, wave_span, waves_left, waves_of_others
+from calibration.campaign.wave_bounds import AVERAGING_CYCLES, begun_before, wave_span, waves_left, waves_of_others
 
-_LATER = "a `window` that begins later overrides this"
-Told = tuple[str, float | None, str]  # channel, time, message
+_WINDOW_HINT = "a `window` that begins later overrides this"
+ExtentWarning = tuple[str, float | None, str]  # channel, time, message
 
 
 def extent_warnings(
     series: Series, time: np.ndarray, values: Mapping[str, np.ndarray], compared: np.ndarray, period: float | None
-) -> Iterator[Told]:
+) -> Iterator[ExtentWarning]:
     """Yield warnings on where a decay or a sea begins and ends.
 
     Args:
@@ -27,17 +27,17 @@ def extent_warnings(
         period: of the released motion or of the waves, in the unit of `time`; None where it is not clear.
     """
     if series.test.kind == "decay":
-        yield from _free(series, time)
-        yield from _still_water(series, time, values, period)
+        yield from _free_motion_warnings(series, time)
+        yield from _wave_in_decay_warnings(series, time, values, period)
     elif series.test.kind in IN_WAVES and WAVE in values and period is not None and compared.any():
-        yield from _span(series, time, values[WAVE], compared, period)
+        yield from _wave_span_warnings(series, time, values[WAVE], compared, period)
 
 
 def _at(series: Series, time: float) -> str:
     return f"{time:.6g} {series.channels['time'].unit}"
 
 
-def _free(series: Series, time: np.ndarray) -> Iterator[Told]:
+def _free_motion_warnings(series: Series, time: np.ndarray) -> Iterator[ExtentWarning]:
     """What of a decay was left out, since the model was held or pushed."""
     free, channel = series.free, str(series.test.degree_of_freedom)
     if free is None:
@@ -45,9 +45,9 @@ def _free(series: Series, time: np.ndarray) -> Iterator[Told]:
     begin, until, ended = (_at(series, float(one)) for one in (time[0], free.held_until, free.ended_at))
     still = f"stands still at {free.level:.4g} {series.channels[channel].unit} until {until}"
     if free.start == "release":
-        yield channel, free.held_until, f"{still}: the decay begins at this release, {begin} ({_LATER})"
+        yield channel, free.held_until, f"{still}: the decay begins at this release, {begin} ({_WINDOW_HINT})"
     elif free.start == "push":
-        message = f"{still}, and is pushed or pulled then: the decay begins where it turns, {begin} ({_LATER})"
+        message = f"{still}, and is pushed or pulled then: the decay begins where it turns, {begin} ({_WINDOW_HINT})"
         yield channel, free.held_until, message
     if free.end != "record":
         what = "pushed or pulled" if free.end == "push" else "held"
@@ -55,7 +55,9 @@ def _free(series: Series, time: np.ndarray) -> Iterator[Told]:
         yield channel, free.ended_at, f"is {what} again after {ended}: {done}"
 
 
-def _still_water(series: Series, time: np.ndarray, values: Mapping[str, np.ndarray], period: float | None) -> Iterator[Told]:
+def _wave_in_decay_warnings(
+    series: Series, time: np.ndarray, values: Mapping[str, np.ndarray], period: float | None
+) -> Iterator[ExtentWarning]:
     """Is a decay in still water?"""
     channel = str(series.test.degree_of_freedom)
     if WAVE in values and (other := waves_of_others(time, values[WAVE], period)) is not None:
@@ -66,10 +68,12 @@ def _still_water(series: Series, time: np.ndarray, values: Mapping[str, np.ndarr
         yield channel, None, f"its last third oscillates by {size} in {_at(series, left[0])}: are waves left in the basin?"
 
 
-def _span(series: Series, time: np.ndarray, wave: np.ndarray, compared: np.ndarray, period: float) -> Iterator[Told]:
+def _wave_span_warnings(
+    series: Series, time: np.ndarray, wave: np.ndarray, compared: np.ndarray, period: float
+) -> Iterator[ExtentWarning]:
     """Do the waves begin and end in the record?"""
     transient = series.test.transient
-    if series.rows[0] == 0 and transient < CYCLES / 2 * period and begun_before(time, wave, period):
+    if series.rows[0] == 0 and transient < AVERAGING_CYCLES / 2 * period and begun_before(time, wave, period):
         told = "the waves have begun before the record, and the platform is simulated from rest: leave the first cycles out"
         yield WAVE, float(time[0]), f"{told} (`transient` is {_at(series, transient)})"
     time, wave = time[compared], wave[compared]

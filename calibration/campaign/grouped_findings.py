@@ -1,4 +1,4 @@
-"""Warnings about records, each said once: equal messages on the same channel are grouped over tests.
+"""Findings about records, equal ones grouped over tests.
 
 Messages on whole records are equal when they differ by their numbers alone: "its mean drifts by -0.149 to -0.0885 m".
 """
@@ -11,7 +11,7 @@ from calibration.campaign.checks import Finding
 from calibration.formatting import counted, listed
 
 NUMBER = re.compile(r"(?<![\w.-])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w])")
-NAMED = 3  # tests that are named; of more the number is given
+MAX_NAMED_TESTS = 3  # tests that are named; of more the number is given
 
 
 class GroupedFinding(NamedTuple):
@@ -25,7 +25,7 @@ class GroupedFinding(NamedTuple):
     @property
     def where(self) -> str:
         """The tests by name while they are few, else how many."""
-        return listed(self.tests) if len(self.tests) <= NAMED else f"{len(self.tests)} tests"
+        return listed(self.tests) if len(self.tests) <= MAX_NAMED_TESTS else f"{len(self.tests)} tests"
 
     @property
     def source(self) -> str:
@@ -36,11 +36,11 @@ class GroupedFinding(NamedTuple):
         channel = f", channel {self.channel}" if self.channel else ""
         if len(self.tests) == 1:
             return f"{self.files[0]}, test {self.tests[0]}{channel}: {self.message}"
-        names = f" ({listed(self.tests)})" if len(self.tests) > NAMED else ""
+        names = f" ({listed(self.tests)})" if len(self.tests) > MAX_NAMED_TESTS else ""
         return f"{'' if names else 'tests '}{self.where}{names}{channel}: {self.message}"
 
 
-def grouped(findings: Iterable[Finding]) -> list[GroupedFinding]:
+def group_findings(findings: Iterable[Finding]) -> list[GroupedFinding]:
     """Findings in their order, equal messages of one channel together."""
     groups: dict[tuple[str, str], list[Finding]] = {}
     for one in findings:

@@ -1,4 +1,4 @@
-"""A campaign as calibration takes it: manifest, platform, records and findings; whole or not at all."""
+"""Loading of a campaign: manifest, platform, records and findings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from calibration.campaign.checks import Finding, check_records
 from calibration.campaign.manifest import IN_WAVES, Manifest, platform_source, read_manifest
 from calibration.campaign.plausible import CampaignFinding, check_plausible
 from calibration.campaign.records import Record, read_series, records_of
-from calibration.campaign.table_findings import check_tables, of_platform
+from calibration.campaign.table_findings import check_tables, platform_findings
 from calibration.campaign.wave_band import wave_band
 from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model
@@ -23,8 +23,16 @@ from jaxhydro.platform.schema import Platform, load_platform
 
 @dataclass(frozen=True, eq=False)
 class Campaign:
-    """Everything that was read. Records are SI at full scale; `findings` are warnings. `own` is a model in place of the
-    platform file's."""
+    """A campaign that was read and checked.
+
+    Attributes:
+        manifest: Content of campaign.yaml.
+        folder: Folder of the campaign.
+        platform: Content of the platform file.
+        records: Measured motions of all tests, in SI at full scale.
+        findings: Warnings about the data.
+        own: A model in place of the platform file's; None for the latter.
+    """
 
     manifest: Manifest
     folder: Path
@@ -64,11 +72,19 @@ def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]
 
 
 def load_campaign(path: str | PathLike[str]) -> Campaign:
-    """The campaign in a folder, or of a campaign.yaml.
+    """Load and check a campaign.
 
-    Raises InputError, and nothing else, for whatever is wrong: the manifest's mistakes first, then those of the
-    platform and the data files together, then the records' errors. A test marked `ignore` that is faulty, the zero test
-    aside, is left out with a warning.
+    A faulty test marked `ignore` is left out with a warning, unless it is the zero test.
+
+    Args:
+        path: Folder of the campaign, or its campaign.yaml.
+
+    Returns:
+        The campaign, with warnings about its data.
+
+    Raises:
+        InputError: If anything is wrong. The manifest's mistakes come first, then those of the platform and the data files
+            together, then the records' errors.
     """
     manifest, folder = read_manifest(path)
     source = str(folder / "campaign.yaml" if Path(path).is_dir() else path)
@@ -102,7 +118,7 @@ def load_campaign(path: str | PathLike[str]) -> Campaign:
     except EquilibriumError as error:
         raise InputError(source, [Problem(manifest.platform, "a platform that floats at rest", str(error))]) from None
     band = wave_band(manifest, model, records)
-    doubtful = (*of_platform(model, manifest.platform), *check_tables(records, model, band), *doubtful)
+    doubtful = (*platform_findings(model, manifest.platform), *check_tables(records, model, band), *doubtful)
     if grave := [finding.problem for finding in doubtful if finding.severity == "error"]:
         raise InputError(source, [*(one.problem for one in doubtful if isinstance(one, CampaignFinding)), *grave])
     return replace(campaign, findings=(*findings, *doubtful))

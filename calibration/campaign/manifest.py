@@ -1,4 +1,4 @@
-"""campaign.yaml: what was measured, in which columns and units, and what each test is for.
+"""Schema of campaign.yaml: tests, channels, units, and the use of each test.
 
 Everything in a manifest is stated as it was recorded: windows, `transient`, noise, wave heights and positions are in
 the units and at the scale of the files, whatever `scale` says.

@@ -1,4 +1,4 @@
-"""Are records of the size and pace of the platform? With a wrong unit or scale they are not, which no fit should find out."""
+"""Plausibility of records: motions and periods compared with those of the platform."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,17 +14,19 @@ from jaxhydro.dynamics.statics import characteristic_length, equilibrium, natura
 from jaxhydro.environment import DOFS
 from jaxhydro.units import for_people, unit_of
 
-ODD, WRONG = 3.0, 20.0  # natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
-HEAVE = (0.5, 3.0)  # motions that are odd or wrong: of the radius of gyration
-LEVEL = (3.0, 6.0)  # ... in surge and sway, where moorings may be slack
-TURNED = (np.radians(60.0), np.radians(180.0))
-SMALL, SMALL_ANGLE = 1e-3, 4e-3  # of the radius of gyration, rad: what nobody would release a platform from
-NEAR = 0.15  # of a logarithm: a ratio that is the square root of the scale
-OFF = 0.02  # of the radius of gyration, or rad: where a platform is at rest
-STEEP = (1 / 7, 1.0)  # height over length: beyond 1/7 no wave stands (Michell 1893, Phil. Mag. 36)
-FULL, WHAT = "(full scale)", "a unit, or the scale?"
-NOISY = 0.5  # of a motion's deviation
-AGREE = "records that agree with the manifest and the declared model"
+# natural periods, measured against the model's: a second is 1000 milliseconds, a minute 60
+UNUSUAL_PERIOD_RATIO, WRONG_PERIOD_RATIO = 3.0, 20.0
+HEAVE_LIMITS = (0.5, 3.0)  # motions that are odd or wrong: of the radius of gyration
+HORIZONTAL_LIMITS = (3.0, 6.0)  # ... in surge and sway, where moorings may be slack
+ANGLE_LIMITS = (np.radians(60.0), np.radians(180.0))
+# of the radius of gyration, rad: what nobody would release a platform from
+SMALLEST_RELEASE, SMALLEST_RELEASE_ANGLE = 1e-3, 4e-3
+SCALE_TOLERANCE = 0.15  # of a logarithm: a ratio that is the square root of the scale
+MAX_REST_OFFSET = 0.02  # of the radius of gyration, or rad: where a platform is at rest
+STEEPNESS_LIMITS = (1 / 7, 1.0)  # height over length: beyond 1/7 no wave stands (Michell 1893, Phil. Mag. 36)
+FULL_SCALE, UNIT_OR_SCALE = "(full scale)", "a unit, or the scale?"
+MAX_NOISE_SHARE = 0.5  # of a motion's deviation
+EXPECTED_AGREEMENT = "records that agree with the manifest and the declared model"
 
 
 class CampaignFinding(Finding):
@@ -45,17 +47,20 @@ def check_plausible(records: Sequence[Record], model: Model, zeroed: bool, scale
         modes = natural_modes(model, rest)
         periods = {dof: modes.of(dof) for dof in DOFS if np.isfinite(modes.of(dof))}
         hints = campaign_hints(decays, modes, widths(model), length, scale)
-        found += [CampaignFinding("warning", h.record.file, h.record.id, h.channel, None, h.message, AGREE) for h in hints]
-        found += [] if zeroed else _at_rest(decays, dict(zip(DOFS, map(float, rest))), length)
+        found += [
+            CampaignFinding("warning", h.record.file, h.record.id, h.channel, None, h.message, EXPECTED_AGREEMENT)
+            for h in hints
+        ]
+        found += [] if zeroed else _rest_findings(decays, dict(zip(DOFS, map(float, rest))), length)
     told = any(hint.channel == "time" for hint in hints)
-    return (*found, *(one for record in used for one in _of(record, length, gravity, periods, scale, told)))
+    return (*found, *(one for record in used for one in _record_findings(record, length, gravity, periods, scale, told)))
 
 
-def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
+def _rest_findings(decays: Sequence[Record], rest: dict[str, float], length: float) -> Iterator[Finding]:
     """Where nobody took a zero: do decays end where the platform floats?"""
     for name in DOFS:
         there = [float(np.mean(one.values[name][len(one.time) // 2 :])) for one in decays if name in one.values]
-        limit = OFF * (1.0 if name in DOFS[3:] else length)
+        limit = MAX_REST_OFFSET * (1.0 if name in DOFS[3:] else length)
         if there and abs(where := float(np.median(there)) - rest[name]) > limit:
             message = (
                 f"decays end {_in_words(name, where)} from where the declared platform floats: `zero` would say where still "
@@ -64,7 +69,7 @@ def _at_rest(decays: Sequence[Record], rest: dict[str, float], length: float) ->
             yield Finding("warning", decays[0].file, decays[0].id, name, None, message)
 
 
-def _of(
+def _record_findings(
     record: Record, length: float, gravity: float, periods: dict[str, float], scale: float, told: bool
 ) -> Iterator[Finding]:
     """Findings on one record. `told`: that all periods are off is said of the campaign."""
@@ -78,43 +83,49 @@ def _of(
         name, own = record.degree_of_freedom, periods[record.degree_of_freedom]
         period = dominant_period(record.time, record.values[name])
         if period is not None:
-            why, by_scale = _of_time(period / own, scale)
-            message = f"a period of {period:.3g} s {FULL}, the declared model's is {own:.3g} s: {why}"
-            limits, ratio = (WRONG if told else 1.0 if by_scale else ODD, WRONG), max(period / own, own / period)
+            why, by_scale = _period_reason(period / own, scale)
+            message = f"a period of {period:.3g} s {FULL_SCALE}, the declared model's is {own:.3g} s: {why}"
+            limits, ratio = (
+                (WRONG_PERIOD_RATIO if told else 1.0 if by_scale else UNUSUAL_PERIOD_RATIO, WRONG_PERIOD_RATIO),
+                max(period / own, own / period),
+            )
             yield from found(limits, ratio, name, message, f"a period of about {own:.3g} s")
     for name, values in record.values.items():
         size = float(np.percentile(np.abs(values - np.median(values)), 99))
         turns = name in DOFS[3:]
-        if name == record.degree_of_freedom and size < (SMALL_ANGLE if turns else SMALL * length):
-            what = "degrees or radians?" if turns else WHAT
+        if name == record.degree_of_freedom and size < (SMALLEST_RELEASE_ANGLE if turns else SMALLEST_RELEASE * length):
+            what = "degrees or radians?" if turns else UNIT_OR_SCALE
             yield Finding("warning", record.file, record.id, name, None, f"moves by {_in_words(name, size)} only: {what}")
         if turns:
             message = f"an angle of {_in_words(name, size)}: degrees or radians?"
-            yield from found(TURNED, size, name, message, "an angle that a platform may have")
+            yield from found(ANGLE_LIMITS, size, name, message, "an angle that a platform may have")
         else:
-            message = f"a motion of {size:.3g} m {FULL}, and the platform's radius of gyration is {length:.3g} m: {WHAT}"
-            limits = HEAVE if name == "heave" else LEVEL
+            gyration = f"the platform's radius of gyration is {length:.3g} m: {UNIT_OR_SCALE}"
+            message = f"a motion of {size:.3g} m {FULL_SCALE}, and {gyration}"
+            limits = HEAVE_LIMITS if name == "heave" else HORIZONTAL_LIMITS
             yield from found(limits, size / length, name, message, "a motion that a platform may have")
     if record.noise_declared and record.degree_of_freedom is not None:
         name = record.degree_of_freedom
         spread, noise = float(np.std(record.values[name])), record.noise[name]
         message = f"noise is stated as {_in_words(name, noise)}, where the motion's own deviation is {_in_words(name, spread)}"
-        yield from found((NOISY, np.inf), noise / spread, name, message, "")
+        yield from found((MAX_NOISE_SHARE, np.inf), noise / spread, name, message, "")
     if record.wave is not None and record.kind in IN_WAVES:
         step = float(np.median(np.diff(record.time)))
         height = wave_height(record.wave, record.kind == "irregular")
         wavelength = gravity / (2 * np.pi * peak_frequency(record.wave, step) ** 2)
-        message = f"waves {height:.3g} m high and {wavelength:.3g} m long {FULL}: {WHAT}"
-        yield from found(STEEP, height / wavelength, "wave", message, "waves that do not break, less than 1/7 as high as long")
+        message = f"waves {height:.3g} m high and {wavelength:.3g} m long {FULL_SCALE}: {UNIT_OR_SCALE}"
+        yield from found(
+            STEEPNESS_LIMITS, height / wavelength, "wave", message, "waves that do not break, less than 1/7 as high as long"
+        )
 
 
-def _of_time(ratio: float, scale: float) -> tuple[str, bool]:
+def _period_reason(ratio: float, scale: float) -> tuple[str, bool]:
     """What may explain a measured period over the model's, and whether `scale` does."""
-    if scale != 1 and abs(np.log(ratio / scale**0.5)) < NEAR:
+    if scale != 1 and abs(np.log(ratio / scale**0.5)) < SCALE_TOLERANCE:
         return f"longer by the square root of `scale`, {scale**0.5:.3g}: are the records at full scale already?", True
-    if scale != 1 and abs(np.log(ratio * scale**0.5)) < NEAR:
+    if scale != 1 and abs(np.log(ratio * scale**0.5)) < SCALE_TOLERANCE:
         return f"shorter by the square root of `scale`, {scale**0.5:.3g}: were times scaled down before?", True
-    if scale == 1 and 1 / WRONG < ratio < 1 / ODD:
+    if scale == 1 and 1 / WRONG_PERIOD_RATIO < ratio < 1 / UNUSUAL_PERIOD_RATIO:
         return f"a unit of time, or a `scale` of about {ratio**-2:.2g}, as model-scale records would need?", False
     return "a unit of time, or the scale?", False
 

@@ -1,4 +1,4 @@
-"""Records: what each test measured, in SI at full scale, still water at zero, with its noise.
+"""Records of the tests: measured motions in SI at full scale, with their noise.
 
 `Series` is a test as it stands in its file; `Record` is what calibration works on. Recorded times are kept, jitter and
 all. Rows with a value missing and rows that repeat a time are dropped here; `checks` says so, or refuses.
@@ -18,13 +18,13 @@ import pandas as pd
 from calibration.campaign.manifest import IN_WAVES, WAVE, Channel, Manifest, Test, quantity
 from calibration.campaign.release import FreeMotion, free_motion
 from calibration.campaign.signals import missing_code, noise_level, resolution
-from calibration.campaign.tracked_point import at_reference, noise_at_reference
+from calibration.campaign.tracked_point import move_to_reference, noise_moved_to_reference
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.interop.data_files import read_table
 from jaxhydro.units import SI
 
-_LEAST_NOISE = 1e-6  # m at the scale of the file, or rad: finer than any basin's sensor
-_BEYOND = 1e15  # what is larger stands for a missing value
+_MIN_NOISE = 1e-6  # m at the scale of the file, or rad: finer than any basin's sensor
+_LARGEST_VALUE = 1e15  # what is larger stands for a missing value
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +45,9 @@ class Series:
     @property
     def good(self) -> np.ndarray:
         """(n,) bool: rows that are complete and whose time has not been seen just before."""
-        good = there(self.time)
+        good = valid_values(self.time)
         for values in self.values.values():
-            good = good & there(values)
+            good = good & valid_values(values)
         at = np.flatnonzero(good)
         good[at[1:][np.diff(self.time[at]) == 0]] = False
         return good
@@ -72,14 +72,14 @@ class Record:
     file: str
 
 
-def there(values: np.ndarray) -> np.ndarray:
+def valid_values(values: np.ndarray) -> np.ndarray:
     """(n,) bool: neither missing nor infinite, nor so large that it stands for that, nor a logger's number for it."""
-    good = np.abs(values) < _BEYOND  # False for nan
+    good = np.abs(values) < _LARGEST_VALUE  # False for nan
     code = missing_code(values[good])
     return good if code is None else good & (values != code)
 
 
-def factors(manifest: Manifest, channels: dict[str, Channel]) -> dict[str, float]:
+def unit_factors(manifest: Manifest, channels: dict[str, Channel]) -> dict[str, float]:
     """Channel -> what its column is multiplied by to be SI at full scale, the sign included."""
     froude = {"time": manifest.scale**0.5, "length": manifest.scale, "angle": 1.0}
     kinds = {name: quantity(name) for name in channels}
@@ -148,7 +148,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
     if problems:
         raise InputError(test.file, problems)
     time = columns.pop("time")
-    known = time[there(time)]
+    known = time[valid_values(time)]
     rows = _rows(time, test.window)
     zero = manifest.zero.window if manifest.zero is not None else None
     still = _rows(time, zero) if zero is not None else np.arange(0)
@@ -159,7 +159,7 @@ def _windowed(manifest: Manifest, test: Test, table: pd.DataFrame) -> Series:
         channels,
         (float(known.min()), float(known.max())) if len(known) else (np.nan, np.nan),
         rows,
-        {name: values[still][there(values[still])] for name, values in columns.items()},
+        {name: values[still][valid_values(values[still])] for name, values in columns.items()},
         units,
     )
     return _free(series) if test.kind == "decay" else series
@@ -192,7 +192,7 @@ def still_water(manifest: Manifest, series: tuple[Series, ...]) -> tuple[dict[st
         return tuple({} for _ in series)
 
     def means(one: Series, values: dict[str, np.ndarray]) -> dict[str, float]:
-        scale = factors(manifest, one.channels)
+        scale = unit_factors(manifest, one.channels)
         return {name: float(np.mean(v)) * scale[name] for name, v in values.items() if len(v)}
 
     if zero.window is not None:
@@ -219,7 +219,7 @@ def whole_series(manifest: Manifest, folder: Path, test: Test) -> tuple[Series, 
     return series[0], still_water(manifest, series[::-1])[-1]
 
 
-def frozen(series: Series) -> set[str]:
+def frozen_channels(series: Series) -> set[str]:
     """Motions of a test that moves which have one value throughout, where others have not: not measured, `checks` says so."""
     if series.test.kind != "decay" and series.test.kind not in IN_WAVES:
         return set()
@@ -229,14 +229,14 @@ def frozen(series: Series) -> set[str]:
 
 
 def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Record:
-    test, scale, good = series.test, factors(manifest, series.channels), series.good
-    out = frozen(series)
+    test, scale, good = series.test, unit_factors(manifest, series.channels), series.good
+    out = frozen_channels(series)
     time = series.time[good] * scale["time"]
     values = {
         name: column[good] * scale[name] - zeros.get(name, 0.0) for name, column in series.values.items() if name not in out
     }
-    stated = factors(manifest, manifest.all_channels)
-    floor = {name: _LEAST_NOISE * (1.0 if quantity(name) == "angle" else manifest.scale) for name in values}
+    stated = unit_factors(manifest, manifest.all_channels)
+    floor = {name: _MIN_NOISE * (1.0 if quantity(name) == "angle" else manifest.scale) for name in values}
     noise = {
         name: manifest.noise[name] * abs(stated[name])
         if name in manifest.noise
@@ -247,7 +247,7 @@ def _record(manifest: Manifest, series: Series, zeros: dict[str, float]) -> Reco
     if manifest.tracked_point is not None:
         x, y, z = manifest.tracked_point
         point = (manifest.scale * x, manifest.scale * y, manifest.scale * z)
-        values, noise = at_reference(values, point), noise_at_reference(noise, point)
+        values, noise = move_to_reference(values, point), noise_moved_to_reference(noise, point)
     x, y = (manifest.wave_channel.position if manifest.wave_channel else None) or (0.0, 0.0)
     return Record(
         id=test.id,

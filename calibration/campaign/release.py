@@ -1,4 +1,4 @@
-"""The free part of a decay record: from the release, or the end of a push, to the next push or to where the model is caught."""
+"""Detection of the free motion in a decay record."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from scipy import ndimage, signal
 
 from calibration.campaign.signals import noise_level
 
-STILL = 0.2  # period, for which stillness is looked for; a free peak moves by 0.19 of its amplitude in it
-FLAT = 0.08  # of the amplitude of the motion that follows: less is stillness
-CAUGHT = 0.03  # of the amplitude before: less is more than damping does
-LARGE = 0.3  # of the first amplitude: friction alone may stop less
-HOLD = 0.35  # period: what lasts less between motions is no hold, but two motions that cancel
-SMOOTH = 0.06  # period, over which noise is averaged
-NOISE = 3.0  # deviations of the averaged noise, by which stillness may move
-PROMINENT = 0.1  # of the largest amplitude: what counts as a turn
-LEAST_TURNS = 3  # of a free motion
-SHORT_HOLD = 0.05  # period: a hold that is shorter is not told from a release
-SLOW = 0.3  # of the range: turns of a slow motion that is the main one
-UNLIKE = 0.012  # of the amplitude, by which a short hold and its release may miss a level and a cosine
-AT_REST = 0.15  # of the amplitude: a hold closer to rest is none
-OFF_REST, ABRUPT = 0.3, 0.8  # of the amplitude: where a caught model stands, and its speed just before over omega
-AFTER = 0.02  # period after the release, at which the test begins
-GROWTH, OF_RANGE = 1.25, 0.18  # by which a swing exceeds the two before it, and by how much of the whole range
-ALIKE = 0.15  # period, by which half a period may differ: another motion is no second push
-COARSEST = 8  # samples per cycle
+STILLNESS_DURATION = 0.2  # period, for which stillness is looked for; a free peak moves by 0.19 of its amplitude in it
+STILLNESS_AMPLITUDE = 0.08  # of the amplitude of the motion that follows: less is stillness
+CATCH_AMPLITUDE = 0.03  # of the amplitude before: less is more than damping does
+MIN_CATCH_AMPLITUDE = 0.3  # of the first amplitude: friction alone may stop less
+MIN_HOLD_DURATION = 0.35  # period: what lasts less between motions is no hold, but two motions that cancel
+SMOOTHING_DURATION = 0.06  # period, over which noise is averaged
+NOISE_MARGIN = 3.0  # deviations of the averaged noise, by which stillness may move
+PEAK_PROMINENCE = 0.1  # of the largest amplitude: what counts as a turn
+MIN_PEAKS = 3  # of a free motion
+MIN_VISIBLE_HOLD = 0.05  # period: a hold that is shorter is not told from a release
+SLOW_MOTION_SHARE = 0.3  # of the range: turns of a slow motion that is the main one
+MAX_HOLD_MISFIT = 0.012  # of the amplitude, by which a short hold and its release may miss a level and a cosine
+MIN_HOLD_OFFSET = 0.15  # of the amplitude: a hold closer to rest is none
+CAUGHT_OFFSET, CAUGHT_SPEED = 0.3, 0.8  # of the amplitude: where a caught model stands, and its speed just before over omega
+RELEASE_DELAY = 0.02  # period after the release, at which the test begins
+PUSH_GROWTH, MIN_PUSH_SHARE = 1.25, 0.18  # by which a swing exceeds the two before it, and by how much of the whole range
+HALF_PERIOD_TOLERANCE = 0.15  # period, by which half a period may differ: another motion is no second push
+MIN_SAMPLES_PER_CYCLE = 8  # samples per cycle
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
         values: (n,) the motion that was released.
     """
     whole = FreeMotion(0, len(time))
-    if len(time) < 4 * COARSEST or np.ptp(values) == 0 or not (np.diff(time) > 0).all():
+    if len(time) < 4 * MIN_SAMPLES_PER_CYCLE or np.ptp(values) == 0 or not (np.diff(time) > 0).all():
         return whole
     step = float(np.median(np.diff(time)))
     even = np.arange(time[0], time[-1] + 0.5 * step, step)
@@ -63,13 +63,15 @@ def free_motion(time: np.ndarray, values: np.ndarray) -> FreeMotion:
     noise = noise_level(even, x)
     period = _period(x, step, noise)
     slow = ndimage.uniform_filter1d(x, min(max(round(period / step), 1), len(x))) if np.isfinite(period) else x
-    apart = np.diff(_turns(slow, 0, len(x), SLOW * float(np.ptp(x))))
+    apart = np.diff(_turning_points(slow, 0, len(x), SLOW_MOTION_SHARE * float(np.ptp(x))))
     if len(apart) and float(np.median(apart)) < 4 * period / step:  # the fast motion is not what was released
         period = _period(slow, step, 0.0)
     gap = float(np.diff(time).max())
-    if not COARSEST * step < period < 0.7 * (time[-1] - time[0]) or gap > max(STILL * period, 1.5 * step):
+    if not MIN_SAMPLES_PER_CYCLE * step < period < 0.7 * (time[-1] - time[0]) or gap > max(
+        STILLNESS_DURATION * period, 1.5 * step
+    ):
         return whole
-    y = ndimage.uniform_filter1d(x, max(int(SMOOTH * period / step), 1), mode="nearest")
+    y = ndimage.uniform_filter1d(x, max(int(SMOOTHING_DURATION * period / step), 1), mode="nearest")
     found = _first_decay(x, y, period / step, noise)
     if found is None:
         return whole
@@ -91,19 +93,23 @@ def _first_decay(
     x: np.ndarray, y: np.ndarray, period: float, sigma: float
 ) -> tuple[float, float, Literal["record", "release", "push"], Literal["record", "catch", "push"], float, float] | None:
     """The bounds of the first decay, what bounds it, the end of the stillness before it and its level; in samples."""
-    size, width, cycle = 0.5 * float(np.ptp(y)), round(STILL * period), round(period)
-    noise = NOISE * sigma / max(SMOOTH * period, 1) ** 0.5
+    size, width, cycle = 0.5 * float(np.ptp(y)), round(STILLNESS_DURATION * period), round(period)
+    noise = NOISE_MARGIN * sigma / max(SMOOTHING_DURATION * period, 1) ** 0.5
     spread = _range(y, width)
     after = 0.5 * np.roll(_range(y, cycle), -width)
     after[len(y) - width :] = 0.0
-    moves = after > max(PROMINENT * size, 0.8 * noise / FLAT)
-    runs = [run for run in _runs((spread < FLAT * after + noise) & moves) if run[1] - run[0] + width > HOLD * period]
+    moves = after > max(PEAK_PROMINENCE * size, 0.8 * noise / STILLNESS_AMPLITUDE)
+    runs = [
+        run
+        for run in _true_stretches((spread < STILLNESS_AMPLITUDE * after + noise) & moves)
+        if run[1] - run[0] + width > MIN_HOLD_DURATION * period
+    ]
     begins = [0, *(last + width for _, last in runs)]
     ends = [*(max(first, 1) for first, _ in runs), len(y)]
     lasts = [*(last + width for _, last in runs), len(y)]
     for i, (begin, end, still) in enumerate(zip(begins, ends, lasts)):
-        turns = _turns(y, begin, end, max(PROMINENT * size, 3 * noise))
-        if len(turns) < LEAST_TURNS:
+        turns = _turning_points(y, begin, end, max(PEAK_PROMINENCE * size, 3 * noise))
+        if len(turns) < MIN_PEAKS:
             continue
         peaks = y[turns[:7]]
         rest = float(np.median((peaks[:-2] + 2 * peaks[1:-1] + peaks[2:]) / 4))
@@ -112,23 +118,25 @@ def _first_decay(
         first, start, held = float(begin), "record", 0.0
         since = runs[i - 1][0] if i else 0
         level = float(np.median(x[since:begin])) if i else float(x[: max(cycle // 30, 1)].mean())
-        if i and abs(level - rest) < AT_REST * amplitude:
+        if i and abs(level - rest) < MIN_HOLD_OFFSET * amplitude:
             start, held = "push", float(begin)
             large = [turn for turn in turns if abs(y[turn] - rest) > 0.5 * amplitude]
             first = float(large[0] if large else turns[0])
         elif abs(level - rest) > 0.5 * amplitude:
             least, most = max(since, begin - cycle // 3), begin + cycle // (5 if i else 2)
-            held, left = _released(x, least, most, level - rest, cycle)
-            if i or (held - begin > SHORT_HOLD * cycle and left < UNLIKE * amplitude + 1.5 * sigma):
-                start, first = "release", held + AFTER * cycle
-        later = np.diff(_turns(y, still, min(still + 12 * cycle, len(y)), max(PROMINENT * size, 3 * noise))) / cycle
-        pushed = len(later) > 0 and abs(float(np.median(later)) - 0.5) < ALIKE
-        stop, how = _stop(y, turns, rest, cycle, noise, end, still if pushed else None)
+            held, left = _find_release(x, least, most, level - rest, cycle)
+            if i or (held - begin > MIN_VISIBLE_HOLD * cycle and left < MAX_HOLD_MISFIT * amplitude + 1.5 * sigma):
+                start, first = "release", held + RELEASE_DELAY * cycle
+        later = (
+            np.diff(_turning_points(y, still, min(still + 12 * cycle, len(y)), max(PEAK_PROMINENCE * size, 3 * noise))) / cycle
+        )
+        pushed = len(later) > 0 and abs(float(np.median(later)) - 0.5) < HALF_PERIOD_TOLERANCE
+        stop, how = _find_end(y, turns, rest, cycle, noise, end, still if pushed else None)
         return first, stop, start, how, held, level  # type: ignore[return-value]
     return None
 
 
-def _stop(
+def _find_end(
     y: np.ndarray, turns: np.ndarray, rest: float, cycle: int, noise: float, end: int, pushed: int | None
 ) -> tuple[float, Literal["record", "catch", "push"]]:
     """Where a free motion ends (samples) and by what."""
@@ -136,29 +144,33 @@ def _stop(
     apart, whole = np.diff(turns) / cycle, float(np.ptp(y))
     for k in range(2, len(swings) - 1):
         before = max(swings[k - 1], swings[k - 2])
-        grown = swings[k : k + 3] > max(GROWTH * before, before + OF_RANGE * whole)
-        if grown[0] and (grown[1:] & (np.abs(apart[k + 1 : k + 3] - 0.5) < ALIKE)).any():
-            while k > 2 and swings[k - 1] > GROWTH * max(swings[k - 2], swings[k - 3]):
+        grown = swings[k : k + 3] > max(PUSH_GROWTH * before, before + MIN_PUSH_SHARE * whole)
+        if grown[0] and (grown[1:] & (np.abs(apart[k + 1 : k + 3] - 0.5) < HALF_PERIOD_TOLERANCE)).any():
+            while k > 2 and swings[k - 1] > PUSH_GROWTH * max(swings[k - 2], swings[k - 3]):
                 k -= 1  # a pull before the release is part of it
             return float(turns[k]), "push"
-    width = round(STILL * cycle)
+    width = round(STILLNESS_DURATION * cycle)
     spread, before = _range(y, width), np.zeros(len(y))
     before[cycle:] = 0.5 * _range(y, cycle)[:-cycle]
-    still = (spread < CAUGHT * before + noise) & (noise < FLAT * before) & (before > LARGE * 0.5 * swings.max())
+    still = (
+        (spread < CATCH_AMPLITUDE * before + noise)
+        & (noise < STILLNESS_AMPLITUDE * before)
+        & (before > MIN_CATCH_AMPLITUDE * 0.5 * swings.max())
+    )
     still &= (np.arange(len(y)) > turns[0]) & (np.arange(len(y)) < len(y) - width)
-    for first, last in _runs(still):
+    for first, last in _true_stretches(still):
         if first >= end:
             break
-        if last - first + width < HOLD * cycle:
+        if last - first + width < MIN_HOLD_DURATION * cycle:
             continue
         speed = np.abs(np.diff(y[max(first - cycle // 8, 0) : first + 1])).max(initial=0.0) * cycle / (2 * np.pi)
         off = abs(float(np.median(y[first : first + width])) - rest)
-        if max(off / OFF_REST, speed / ABRUPT) > before[first]:
-            return float(first - SMOOTH * cycle), "catch"
-    return (float(pushed - AFTER * cycle), "push") if pushed is not None else (float(len(y)), "record")
+        if max(off / CAUGHT_OFFSET, speed / CAUGHT_SPEED) > before[first]:
+            return float(first - SMOOTHING_DURATION * cycle), "catch"
+    return (float(pushed - RELEASE_DELAY * cycle), "push") if pushed is not None else (float(len(y)), "record")
 
 
-def _released(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> tuple[float, float]:
+def _find_release(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> tuple[float, float]:
     """When (samples) a held motion is let go, by least squares: level until then, and the begin of a cosine; what is left."""
     best = (np.inf, float(first))
     for at in np.arange(first, last, 0.25):
@@ -168,7 +180,7 @@ def _released(x: np.ndarray, first: int, last: int, fall: float, cycle: int) -> 
     return best[1], best[0] ** 0.5
 
 
-def _turns(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
+def _turning_points(y: np.ndarray, begin: int, end: int, prominence: float) -> np.ndarray:
     """Where a motion turns, high and low in turn."""
     part = y[begin:end]
     high, low = (signal.find_peaks(sign * part, prominence=prominence)[0] for sign in (1, -1))
@@ -190,7 +202,7 @@ def _range(y: np.ndarray, width: int) -> np.ndarray:
     return high - ndimage.minimum_filter1d(y, width, origin=shift, mode="nearest")  # type: ignore[no-any-return]
 
 
-def _runs(flag: np.ndarray) -> list[tuple[int, int]]:
+def _true_stretches(flag: np.ndarray) -> list[tuple[int, int]]:
     """First and last index of every stretch that is true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flag, [False]]).astype(int)))
     return [(int(first), int(last) - 1) for first, last in zip(edges[::2], edges[1::2])]
@@ -201,7 +213,7 @@ def _period(x: np.ndarray, step: float, noise: float) -> float:
     speed = np.diff(x)
     frequency = np.fft.rfftfreq(4 * len(speed), step)
     power = np.abs(np.fft.rfft(speed, 4 * len(speed))) ** 2
-    known = np.flatnonzero(frequency <= 1 / (COARSEST * step))[1:]
+    known = np.flatnonzero(frequency <= 1 / (MIN_SAMPLES_PER_CYCLE * step))[1:]
     if not len(known):
         return np.inf
     total = np.concatenate([[0.0], np.cumsum(power)])

@@ -1,4 +1,4 @@
-"""Runs in waves: the whole record of each file, and the tests that are windows of it. SI at full scale."""
+"""Runs in waves: the whole record of each file, and the tests that are windows of it."""
 
 import math
 from collections.abc import Sequence
@@ -8,11 +8,12 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES, WAVE, platform_source
-from calibration.campaign.records import Record, factors, there, whole_series
+from calibration.campaign.records import Record, unit_factors, valid_values, whole_series
 from jaxhydro.errors import InputError, Problem
 
-LEAST = 20  # samples
-UNEVEN = 0.2  # of a step, by which a time may miss the even clock that fits all best: rounding in a file does half of it
+MIN_SAMPLES = 20  # samples
+# of a step, by which a time may miss the even clock that fits all best: rounding in a file does half of it
+MAX_CLOCK_ERROR = 0.2
 LONGEST_GAP = 3  # samples of the wave that may be missing in a row, and are drawn straight
 
 
@@ -71,11 +72,11 @@ def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
     where = f"{test.file}, channel {WAVE}"
     if WAVE not in series.values:
         raise InputError(where, [Problem(f"{where} of test {test.id}", "a wave channel, since waves drive it", "none")])
-    scale = factors(manifest, series.channels)
-    kept = there(series.time) & there(series.values[WAVE])
+    scale = unit_factors(manifest, series.channels)
+    kept = valid_values(series.time) & valid_values(series.values[WAVE])
     time, wave = series.time[kept], series.values[WAVE][kept]
     first = np.concatenate([[True], np.diff(time) != 0])
-    even, wave, missing = evenly(time[first], wave[first], where, series.channels["time"].unit)
+    even, wave, missing = on_even_clock(time[first], wave[first], where, series.channels["time"].unit)
     notes = [f"{where}: {missing} samples are missing, and drawn straight"] if missing else []
     position = records[0].wave_position
     assert position is not None
@@ -90,22 +91,22 @@ def _run(campaign: Campaign, records: Sequence[Record]) -> Run:
     )
 
 
-def evenly(time: np.ndarray, values: np.ndarray, where: str, unit: str) -> tuple[np.ndarray, np.ndarray, int]:
+def on_even_clock(time: np.ndarray, values: np.ndarray, where: str, unit: str) -> tuple[np.ndarray, np.ndarray, int]:
     """The even clock behind written times, values on it, and how many had to be drawn straight. Raises InputError."""
 
     def wrong(expected: str, found: str) -> InputError:
         return InputError(where, [Problem(where, expected, found)])
 
     steps = np.diff(time)
-    if len(time) < LEAST:
-        raise wrong(f"{LEAST} samples or more", str(len(time)))
+    if len(time) < MIN_SAMPLES:
+        raise wrong(f"{MIN_SAMPLES} samples or more", str(len(time)))
     if not (steps > 0).all():
         raise wrong("times that increase", f"a step back after {time[:-1][steps <= 0][0]:.6g} {unit}")
     index = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / np.median(steps)), 1))]).astype(int)
     slope, start = np.polyfit(index, time, 1)
     off = np.abs(time - start - slope * index)
     worst = int(np.argmax(off))
-    if off[worst] > UNEVEN * slope:
+    if off[worst] > MAX_CLOCK_ERROR * slope:
         raise wrong(
             "even sampling, since a sea is made of the whole record",
             f"{time[worst]:.6g} {unit}, which is {off[worst]:.3g} off an even step of {slope:.6g} {unit}",

@@ -1,4 +1,4 @@
-"""One recorded channel: its resolution, its noise, its period, what is constant in it and what sticks out."""
+"""Analysis of one recorded channel: resolution, noise, period, spikes, constant stretches."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 from scipy import signal
 
-SPIKE = 8.0  # robust standard deviations
-OUTSIDE = 2.0  # the same, or steps of the last digit: a spike is that far beyond both neighbours
-CODE = 10.0  # times all else: what is no measurement
+SPIKE_DEVIATIONS = 8.0  # robust standard deviations
+SPIKE_MARGIN = 2.0  # the same, or steps of the last digit: a spike is that far beyond both neighbours
+MISSING_CODE_RATIO = 10.0  # times all else: what is no measurement
 SEGMENT = 1000.0  # s of a record in waves, or an eighth of it
 
 
@@ -55,7 +55,7 @@ def _differences(time: np.ndarray, values: np.ndarray, order: int) -> np.ndarray
     return np.sum(weights * np.lib.stride_tricks.sliding_window_view(values, order + 1), axis=1)
 
 
-def line(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+def straight_line(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     """(n,) the straight line of least squares through the values."""
     centred = time - time.mean()
     return values.mean() + centred * np.sum(centred * (values - values.mean())) / max(np.sum(centred**2), 1e-300)
@@ -67,7 +67,7 @@ def dominant_period(time: np.ndarray, values: np.ndarray) -> float | None:
         return None
     even = np.linspace(time[0], time[-1], len(time))
     resampled = np.interp(even, time, values)
-    power = np.abs(np.fft.rfft(resampled - line(even, resampled), 4 * len(resampled))) ** 2
+    power = np.abs(np.fft.rfft(resampled - straight_line(even, resampled), 4 * len(resampled))) ** 2
     peak = int(np.argmax(power))
     if peak == 0 or power[int(0.6 * peak) : int(1.6 * peak) + 5].sum() < 0.4 * power.sum():
         return None
@@ -91,7 +91,7 @@ def constant_stretches(values: np.ndarray, grain: float) -> tuple[np.ndarray, np
     return edges[:-1], np.diff(edges)
 
 
-def flanks(values: np.ndarray, starts: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+def flank_heights(values: np.ndarray, starts: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """How far the signal goes, in the time that it stays at a value, before and after that; the lesser of the two.
 
     Round a rounded peak this is at most 8 times the resolution, so much more is a peak cut off.
@@ -106,7 +106,7 @@ def missing_code(values: np.ndarray) -> float | None:
     extreme = float(known[np.argmax(np.abs(known))]) if len(known) else 0.0
     rest = np.abs(known[known != extreme])
     nines = re.fullmatch(r"9{3,}|9+\.9+", f"{abs(extreme):.10g}")
-    return extreme if nines and len(rest) and abs(extreme) > CODE * float(rest.max()) else None
+    return extreme if nines and len(rest) and abs(extreme) > MISSING_CODE_RATIO * float(rest.max()) else None
 
 
 def spikes(values: np.ndarray, step: np.ndarray) -> np.ndarray:
@@ -126,10 +126,10 @@ def spikes(values: np.ndarray, step: np.ndarray) -> np.ndarray:
     off = middle - (4 * (before + after) - values[:-4] - values[4:]) / 6
     scatter = 1.4826 * pd.Series(np.abs(off)).rolling(101, center=True, min_periods=8).median().to_numpy()
     tolerance = np.maximum(scatter, step)
-    alone = np.abs(off) > SPIKE * tolerance
+    alone = np.abs(off) > SPIKE_DEVIATIONS * tolerance
     for shift in (-1, 1):  # its neighbours are off by two thirds of it, the other way
         alone &= np.abs(np.roll(off, shift) + 2 / 3 * off) < 0.35 * np.abs(off)
     above = np.sign(off)
     outside = np.minimum(above * (middle - before), above * (middle - after))
     beyond = np.minimum(above * (middle - 2 * before + values[:-4]), above * (middle - 2 * after + values[4:]))
-    return np.flatnonzero(alone & (outside > OUTSIDE * tolerance) & (beyond > 0.5 * np.abs(off))) + 2
+    return np.flatnonzero(alone & (outside > SPIKE_MARGIN * tolerance) & (beyond > 0.5 * np.abs(off))) + 2

@@ -1,4 +1,4 @@
-"""How strips are loaded, in the words of a platform file: read from a model, given to another."""
+"""Conventions of strip loads, read from a model and applied to another."""
 
 from dataclasses import replace
 from typing import Literal
@@ -9,7 +9,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import Flag
 
 
-class Strips(BaseModel):
+class StripConventions(BaseModel):
     """`directions` of strips, `drag_speed` (one of a vector, or component by component) and whether there is a `centripetal`
     part of their acceleration: keys of a platform file. Coefficients that were found with one way mean others with another."""
 
@@ -20,7 +20,7 @@ class Strips(BaseModel):
     centripetal: Flag
 
     @classmethod
-    def of(cls, model: Model) -> "Strips":
+    def of(cls, model: Model) -> "StripConventions":
         """Those of a model."""
         coupled = all(getattr(load, "coupled", True) for load in model.loads)
         return cls.model_validate(
@@ -31,9 +31,9 @@ class Strips(BaseModel):
             }
         )
 
-    def given_to(self, model: Model) -> Model:
+    def applied_to(self, model: Model) -> Model:
         """The model with strips so loaded; itself where they are."""
-        if self == Strips.of(model):
+        if self == StripConventions.of(model):
             return model
         coupled = self.drag_speed == "vector"
         loads = tuple(
@@ -46,4 +46,4 @@ class Strips(BaseModel):
         return ", ".join(f"{key}: {str(value).lower()}" for key, value in self.model_dump().items())
 
 
-USUAL = Strips(directions="body", drag_speed="vector", centripetal=True)
+DEFAULT_STRIPS = StripConventions(directions="body", drag_speed="vector", centripetal=True)

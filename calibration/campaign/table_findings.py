@@ -1,4 +1,4 @@
-"""Findings on a campaign's platform and its tables: what was read with a remark, waves that a table does not have."""
+"""Findings on the platform file, and on waves outside its hydrodynamic tables."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -21,7 +21,7 @@ class PlatformFinding(Finding):
         return self.file
 
 
-def of_platform(model: Model, file: str) -> tuple[Finding, ...]:
+def platform_findings(model: Model, file: str) -> tuple[Finding, ...]:
     """The remarks on the files that a platform was read from, warnings first."""
     told = sorted(model.remarks, key=lambda remark: not remark.warning)
     return tuple(PlatformFinding("warning", file, "", "", None, remark.text) for remark in told)
@@ -40,11 +40,11 @@ def check_tables(records: Sequence[Record], model: Model, band: tuple[float, flo
         finding
         for record in records
         if ranges and record.kind in IN_WAVES and record.wave is not None and record.use != "ignore"
-        for finding in _of_record(record, ranges, acting, band)
+        for finding in _record_findings(record, ranges, acting, band)
     )
 
 
-def _of_record(
+def _record_findings(
     record: Record, ranges: tuple[TableRange, ...], acting: tuple[TableRange, ...], limits: tuple[float, float]
 ) -> Iterator[Finding]:
     assert record.wave is not None

@@ -1,4 +1,4 @@
-"""Motions that were recorded at another point of the hull, moved to the reference point."""
+"""Transfer of motions from a tracked point of the hull to the reference point."""
 
 from collections.abc import Collection, Iterator, Mapping
 
@@ -27,7 +27,7 @@ def missing_angles(point: Point, channels: Collection[str]) -> Iterator[Problem]
         yield Problem("tracked_point", f"a channel {angle}, which moves the point in {' and in '.join(why)}", "none")
 
 
-def at_reference(values: Mapping[str, np.ndarray], point: Point) -> dict[str, np.ndarray]:
+def move_to_reference(values: Mapping[str, np.ndarray], point: Point) -> dict[str, np.ndarray]:
     """Motions of the reference point, from those of a tracked point.
 
     y = p + R o - o, with y recorded, p of the reference point, o the point in body axes and R the rotation by roll, pitch and
@@ -49,8 +49,8 @@ def at_reference(values: Mapping[str, np.ndarray], point: Point) -> dict[str, np
     return {name: motion - turned[:, DOFS.index(name)] if name in LEVERS else motion for name, motion in values.items()}
 
 
-def noise_at_reference(noise: Mapping[str, float], point: Point) -> dict[str, float]:
-    """Standard deviations of the noise (m, rad) after `at_reference`: that of the angles comes in by their levers."""
+def noise_moved_to_reference(noise: Mapping[str, float], point: Point) -> dict[str, float]:
+    """Standard deviations of the noise (m, rad) after `move_to_reference`: that of the angles comes in by their levers."""
     found = dict(noise)
     for motion, angles in LEVERS.items():
         if motion in noise:

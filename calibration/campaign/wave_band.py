@@ -1,4 +1,4 @@
-"""The frequency band of a campaign's first-order waves."""
+"""Frequency band of a campaign's first-order waves."""
 
 from collections.abc import Sequence
 

@@ -1,1 +1,1 @@
-"""The commands on campaigns."""
+"""Commands on campaigns: calibrate, simulate, diagnose, uncertainty."""

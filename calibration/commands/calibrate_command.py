@@ -1,4 +1,4 @@
-"""The commands on campaigns, from a folder to files and tables: calibrate, and simulate in measured waves."""
+"""Commands `calibrate`, and `simulate` in the measured waves of a campaign."""
 
 import time as clock
 from collections.abc import Callable, Mapping
@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.wave_band import band_sentence
@@ -14,7 +14,7 @@ from calibration.fitting.decay_fit import Interrupted, calibrate
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.joint_state import Loss
 from calibration.fitting.law_choice import SeaLaws, choose_law
-from calibration.fitting.law_parameters import LAWS, of_law
+from calibration.fitting.law_parameters import LAWS, is_law_parameter
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.global_search import Budget
 from calibration.global_search.run_search import SearchInterrupted, search
@@ -23,13 +23,13 @@ from calibration.report.sea_state_law_tables import laws_table, sentence, states
 from calibration.report.summary import calibration_sentence, summary_of
 from calibration.report.write_report import write_report
 from calibration.residuals import sea_errors
-from calibration.residuals.measured_seas import Diverged, Options, compare, options_of, unusual
+from calibration.residuals.measured_seas import Diverged, Options, compare, non_default_options, options_of
 from calibration.residuals.seas import Objective
 from calibration.result import Calibration
 from calibration.results import comparison as seas_results
-from calibration.results.applied_calibration import Applied, applied
-from calibration.results.read_calibration import Saved, read_saved
-from calibration.results.result_folder import MOTION, RESULT
+from calibration.results.applied_calibration import AppliedCalibration, apply_calibration
+from calibration.results.read_calibration import SavedCalibration, read_saved
+from calibration.results.result_folder import MOTION_FILE, RESULT_FILE
 from calibration.results.write_calibration import NotFinite, write_calibration
 from calibration.results.write_comparison import write_comparison
 from calibration.results.write_laws import write_laws
@@ -37,8 +37,8 @@ from jaxhydro.cli.console import complain, progress, say, table
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.errors import InputError, Problem
 
-SECONDS = 60.0  # CPU time of a search
-ENDED = {
+SEARCH_SECONDS = 60.0  # CPU time of a search
+SEARCH_ENDINGS = {
     "settled": "ended of its own",
     "reached": "ended of its own",
     "budget": "cut off by --search-seconds",
@@ -46,12 +46,12 @@ ENDED = {
 }
 
 
-def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.tests_counted) -> Campaign:
+def load(path: Path, out: Path, counted: Callable[[Campaign], str] = tables.count_tests) -> Campaign:
     """The campaign, its warnings printed. Raises InputError, also where results would replace its own data."""
     campaign = load_campaign(path)
     for test in campaign.manifest.tests:
-        if (campaign.folder / test.file).resolve() == (out / MOTION).resolve():
-            found = f"{str(out)!r}, where {MOTION} is the data of test {test.id}"
+        if (campaign.folder / test.file).resolve() == (out / MOTION_FILE).resolve():
+            found = f"{str(out)!r}, where {MOTION_FILE} is the data of test {test.id}"
             raise InputError("--out", [Problem("", "another folder", found)])
     say(f"{campaign.manifest.name}: {counted(campaign)}")
     if (band := band_sentence(campaign.manifest, campaign.model, campaign.records)) is not None:
@@ -70,7 +70,7 @@ def load_fitted(path: Path, out: Path, tests: str | None = None) -> tuple[Campai
         return tests or ("waves" if "decay" not in kinds and kinds & set(IN_WAVES) else "decays")
 
     used = {"decays": ("decay",), "waves": IN_WAVES, "all": ("decay", *IN_WAVES, "static")}
-    loaded = load(path, out, counted=lambda campaign: tables.tests_counted(campaign, used[kind(campaign)]))
+    loaded = load(path, out, counted=lambda campaign: tables.count_tests(campaign, used[kind(campaign)]))
     return loaded, kind(loaded)
 
 
@@ -87,7 +87,7 @@ def run(
     start: Path | None = None,
     method: str | None = None,
     seed: int = 0,
-    seconds: float = SECONDS,
+    seconds: float = SEARCH_SECONDS,
 ) -> Calibration | None:
     """Calibrate, write and print the result; of a fit that the user stops, what was reached; None if that is no number.
 
@@ -104,7 +104,7 @@ def run(
     if objective != "bands" and tests == "decays":
         expected = "--tests waves or all beside it: decays are fitted to their motion"
         raise InputError("--objective", [Problem("", expected, "--tests decays")])
-    if method is None and (seed, seconds) != (0, SECONDS):
+    if method is None and (seed, seconds) != (0, SEARCH_SECONDS):
         raise InputError("--method", [Problem("", "a search beside --search-seed and --search-seconds", "none")])
     if law == "choose" and objective != "bands":
         raise InputError("--objective", [Problem("", "bands, by which laws are chosen", objective)])
@@ -116,24 +116,24 @@ def run(
     begin: dict[str, Any] = {}
     if start is not None:
         declared = campaign.model
-        used = applied(start, declared, campaign.platform.name)
+        used = apply_calibration(start, declared, campaign.platform.name)
         # what a law adds is begun from in waves only; effects found are not declared
-        known = [k for k in used.values if k in declared.values or (tests == "waves" and of_law(k))]
+        known = [k for k in used.values if k in declared.values or (tests == "waves" and is_law_parameter(k))]
         begin = {"start": {k: used.values[k] for k in known}}
-        _told(used._replace(values=begin["start"]), start, campaign)
+        _calibrated_values(used._replace(values=begin["start"]), start, campaign)
         if used.strips is not None:
             complain(f"warning: values are begun from, strips stay as the platform file has them: {start} has {used.strips}")
-        if tests != "decays" and used.seas is not None and (said := unusual(used.seas)):
+        if tests != "decays" and used.seas is not None and (said := non_default_options(used.seas)):
             complain(f"warning: waves are taken with all that they bind; for {start} they were not: {said}")
     words: tuple[str, ...] = ()
     if method is not None:
-        values, said = _searched(campaign, method, seed, seconds)
+        values, said = _run_search(campaign, method, seed, seconds)
         begin, words = {"begin": values}, (f"begun from a search: {said}",)
     try:
         with progress() as show:
             if law == "choose":
                 laws = choose_law(campaign, progress=show, **begin)
-                result = laws.chosen.calibration if laws.finished else tables.unfinished(laws.chosen.calibration)
+                result = laws.chosen.calibration if laws.finished else tables.mark_unfinished(laws.chosen.calibration)
             elif tests == "all":
                 result = calibrate_jointly(campaign, progress=show, objective=objective, loss=loss, **begin)
             elif tests == "waves":
@@ -147,7 +147,7 @@ def run(
     except Interrupted as stopped:
         if stopped.partial is None:
             raise
-        result = tables.unfinished(stopped.partial)
+        result = tables.mark_unfinished(stopped.partial)
     result = replace(result, notes=(*words, *result.notes))
     try:
         write_calibration(result, out, figures, truth)
@@ -156,19 +156,19 @@ def run(
     except NotFinite as error:
         complain(f"not converged: {error}; nothing was written")
         return None
-    saved, source = read_saved(out / RESULT), str(out / RESULT)
+    saved, source = read_saved(out / RESULT_FILE), str(out / RESULT_FILE)
     _print_results(saved, source)
     if laws is not None:
         table("Laws over the sea state: error of ln(energy) in bands, root mean square", *laws_table(laws), left=1)
         table("Coefficients of one sea alone | by the chosen law", *states_table(laws), left=1)
         say(sentence(laws))
-    warned = {str(finding) for finding in grouped(campaign.findings)}
+    warned = {str(finding) for finding in group_findings(campaign.findings)}
     for note in result.notes:
         if note not in warned:
             say(f"Note: {note}")
-    say(tables.outcome(saved))
+    say(tables.outcome_sentence(saved))
     if truth is not None:
-        table("Against the true coefficients", *tables.against(saved))
+        table("Against the true coefficients", *tables.comparison_with_truth(saved))
         say(tables.agreement_with_truth(saved))
     say(f"Results are in {out}" if truth is None else f"Open {write_report(out)}")
     if not result.converged:
@@ -177,7 +177,7 @@ def run(
     return result
 
 
-def _print_results(saved: Saved, source: str) -> None:
+def _print_results(saved: SavedCalibration, source: str) -> None:
     """Print the tables of a written calibration."""
     heads, rows = tables.parameters(saved)
     table("Parameters", (heads[0], *heads[2:]), [(row[0], *row[2:]) for row in rows])
@@ -189,7 +189,7 @@ def _print_results(saved: Saved, source: str) -> None:
         table("Errors of energy in bands", *energies, left=4)
 
 
-def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tuple[dict[str, float], str]:
+def _run_search(campaign: Campaign, method: str, seed: int, seconds: float) -> tuple[dict[str, float], str]:
     """Where a global search ends, and what it took; stopped by the user, where it has got to."""
     try:
         with progress() as show:
@@ -201,7 +201,7 @@ def _searched(campaign: Campaign, method: str, seed: int, seconds: float) -> tup
             raise
         found = stopped.partial
     spent = f"{found.simulations:.0f} simulations, {found.seconds:.0f} s CPU"
-    words = f"{found.method}, seed {seed}, J {found.objective:.4g}, {spent}; {ENDED[found.ended]}"
+    words = f"{found.method}, seed {seed}, J {found.objective:.4g}, {spent}; {SEARCH_ENDINGS[found.ended]}"
     say(f"Search: {words}")
     return found.values, words
 
@@ -223,9 +223,9 @@ def simulate_campaign(
     loaded = load(campaign, out, sea_tables.counted)
     model, used = loaded.model, None
     if calibration is not None:
-        used = applied(calibration, model, loaded.platform.name)
+        used = apply_calibration(calibration, model, loaded.platform.name)
         model = used.model
-        _told(used, calibration, loaded)
+        _calibrated_values(used, calibration, loaded)
         if used.strips is not None:
             say(f"Strips as they were when these were found: {used.strips}")
     asked = asked or {}
@@ -236,7 +236,7 @@ def simulate_campaign(
     if not options.cutoff > options.low:
         expected = f"a number above {options.low:g} Hz, where first-order waves begin"
         raise InputError("--cutoff", [Problem("", expected, f"{options.cutoff:g}")])
-    if seas is not None and (said := unusual(options, asked)):
+    if seas is not None and (said := non_default_options(options, asked)):
         say(f"Seas as they were when these were found: {said}")
     stable_modes(model)
     try:
@@ -257,12 +257,12 @@ def simulate_campaign(
     return True
 
 
-def _told(used: Applied, source: Path, campaign: Campaign) -> None:
+def _calibrated_values(used: AppliedCalibration, source: Path, campaign: Campaign) -> None:
     """Which calibrated values are used, and what is to be said of them."""
     if used.campaign != campaign.manifest.name:
         complain(f"warning: {source} is a calibration of {used.campaign!r}, used for {campaign.manifest.name!r}")
     say(f"Calibrated values used: {', '.join(used.values)}")
-    if used.left:
-        say(f"Not used, the campaign has its own: {', '.join(used.left)}")
-    if used.vague:
-        complain(f"warning: the records of that calibration did not determine {', '.join(used.vague)}: they say little")
+    if used.not_used:
+        say(f"Not used, the campaign has its own: {', '.join(used.not_used)}")
+    if used.undetermined:
+        complain(f"warning: the records of that calibration did not determine {', '.join(used.undetermined)}: they say little")

@@ -1,9 +1,9 @@
-"""The diagnose command, from a campaign to files and tables."""
+"""Command `diagnose`: from a campaign to result files and tables."""
 
 from dataclasses import replace
 from pathlib import Path
 
-from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.manifest import IN_WAVES
 from calibration.commands.calibrate_command import load
 from calibration.discovery.checkpoint import FILE
@@ -13,7 +13,7 @@ from calibration.report import diagnosis_words as words
 from calibration.report import tables as calibrations
 from calibration.residuals.measured_seas import Diverged
 from calibration.results.read_diagnosis import SavedDiagnosis, read_diagnosis
-from calibration.results.result_folder import DIAGNOSIS
+from calibration.results.result_folder import DIAGNOSIS_FILE
 from calibration.results.write_calibration import NotFinite
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.cli.console import complain, progress, say, table
@@ -29,7 +29,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     from calibration.discovery.diagnose import diagnose
 
     stopped = False
-    campaign = load(path, out, lambda c: calibrations.tests_counted(c, ("decay", *IN_WAVES)))
+    campaign = load(path, out, lambda c: calibrations.count_tests(c, ("decay", *IN_WAVES)))
     try:
         with progress() as show:
             result = diagnose(campaign.model, campaign, progress=show, kept=out / FILE)
@@ -42,7 +42,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
             if (out / FILE).exists():
                 raise KeyboardInterrupt(f"stopped; the same command goes on from what was reached, which is in {out}") from None
             raise
-        result = unfinished(partial)
+        result = mark_unfinished(partial)
     try:
         write_diagnosis(result, out, figures)
     except NotFinite as error:
@@ -50,8 +50,8 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
         return False
     if not stopped:
         (out / FILE).unlink(missing_ok=True)
-    saved = read_diagnosis(out / DIAGNOSIS)
-    warned = {str(finding) for finding in grouped(campaign.findings)}
+    saved = read_diagnosis(out / DIAGNOSIS_FILE)
+    warned = {str(finding) for finding in group_findings(campaign.findings)}
     show_diagnosis(saved, [note for note in saved.notes if note not in warned])
     say(f"Results are in {out}; `jaxhydro report {out}` makes a page of them")
     if stopped:
@@ -61,7 +61,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     return saved.converged
 
 
-def unfinished(partial: Diagnosis) -> Diagnosis:
+def mark_unfinished(partial: Diagnosis) -> Diagnosis:
     """What was reached when the user stopped the search, marked as not complete and not converged.
 
     That nothing is missing is for a whole search to say: the verdict of a stopped one is then "unexplained".
@@ -87,11 +87,11 @@ def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
         table("What was found", *rows, left=2)
     for note in notes:
         say(f"Note: {note}")
-    say(f"\n{words.verdict(saved)}", "bold")
+    say(f"\n{words.verdict_sentence(saved)}", "bold")
     for one in saved.missing.effects:
         name = words.capital(words.called(one.effect, one.degree_of_freedom))
-        say(f"{name}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
-    say(words.left_over(saved))
+        say(f"{name}: {' '.join(words.describe_certainty(saved, one))} {words.describe_alternatives(one)}")
+    say(words.describe_unexplained(saved))
     for force in saved.missing.unexplained.forces:
         say(force.words)
     if saved.next_test:

@@ -1,4 +1,4 @@
-"""The uncertainty command: from a campaign and a finished calibration of its decays to intervals of the parameters."""
+"""Command `uncertainty`: intervals of the parameters of a finished calibration."""
 
 import fnmatch
 from collections.abc import Iterator, Sequence
@@ -9,24 +9,30 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.commands.calibrate_command import load
-from calibration.fitting.decay_fit import Progress, run
+from calibration.fitting.decay_fit import Progress, run_fit
 from calibration.formatting import number
-from calibration.results.applied_calibration import no_place
-from calibration.results.read_calibration import Saved, read_as, read_saved
-from calibration.results.read_uncertainty import SavedUncertainty, interval_sentence, intervals, other_ways, summary_of
-from calibration.results.result_folder import RESULT, UNCERTAINTY
+from calibration.results.applied_calibration import unknown_values_error
+from calibration.results.read_calibration import SavedCalibration, read_as, read_saved
+from calibration.results.read_uncertainty import (
+    SavedUncertainty,
+    interval_sentence,
+    intervals_table,
+    other_intervals_table,
+    summary_of,
+)
+from calibration.results.result_folder import RESULT_FILE, UNCERTAINTY_FILE
 from calibration.results.write_uncertainty import Uncertainty, write_uncertainty
 from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats, repeats
-from calibration.uncertainty.likelihood import Likelihood, likelihood_of, reposed
+from calibration.uncertainty.likelihood import Likelihood, likelihood_of, restored_fit
 from calibration.uncertainty.nuts import Samples, sample
 from calibration.uncertainty.profile import Profile, profile
 from jaxhydro.cli.console import complain, counting, progress, say, table
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.interrupts import stopping
 
-MOVED = 0.1  # standard deviations by which a refit may miss the file's values; of the same fit it is some 1e-8
+MAX_REFIT_SHIFT = 0.1  # standard deviations by which a refit may miss the file's values; of the same fit it is some 1e-8
 CHAINS, WARMUP, DRAWS = 4, 150, 350  # of NUTS
-REFIT = 0.5  # its share of the time, where profiles follow
+REFIT_TIME_SHARE = 0.5  # its share of the time, where profiles follow
 
 
 def quantify(
@@ -49,17 +55,17 @@ def quantify(
     """
     _check(draws, nuts, level)
     campaign = load(path, out)
-    calibration = calibration / RESULT if calibration.is_dir() else calibration
-    saved = finished(campaign, calibration)
-    labels = chosen(profiles, saved)
+    calibration = calibration / RESULT_FILE if calibration.is_dir() else calibration
+    saved = read_finished_calibration(campaign, calibration)
+    labels = match_labels(profiles, saved)
     likely, along = _likelihood(campaign, saved, calibration, labels, level)
-    bootstraps = {} if draws is None else _resampled(likely, draws, seed)
-    samples = _sampled(likely, seed) if nuts else None
+    bootstraps = {} if draws is None else _run_bootstrap(likely, draws, seed)
+    samples = _run_nuts(likely, seed) if nuts else None
     found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
     write_uncertainty(found, out, figures)
-    written = read_as(SavedUncertainty, out / UNCERTAINTY)
-    table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals(written))
-    if (rows := other_ways(written))[1]:
+    written = read_as(SavedUncertainty, out / UNCERTAINTY_FILE)
+    table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals_table(written))
+    if (rows := other_intervals_table(written))[1]:
         table(f"{written.percent} intervals in other ways", *rows)
     for note in written.notes:
         say(f"Note: {note}")
@@ -83,20 +89,20 @@ def _check(draws: int | None, nuts: bool, level: float) -> None:
         raise InputError("--nuts", [Problem("", "numpyro", "that it is not installed", "pip install 'jaxhydro[nuts]'")])
 
 
-def finished(campaign: Campaign, path: Path) -> Saved:
+def read_finished_calibration(campaign: Campaign, path: Path) -> SavedCalibration:
     """The finished calibration of the campaign's decays in a calibration.json. Raises InputError for what is none."""
     saved = read_saved(path)
     for fault in _faults(saved, campaign):
         raise InputError(str(path), [fault])
     model = campaign.model
     if unknown := [label for label in saved.values() if label not in model.values]:
-        raise no_place(saved, unknown, model, campaign.platform.name, path)
+        raise unknown_values_error(saved, unknown, model, campaign.platform.name, path)
     return saved
 
 
-def _faults(saved: Saved, campaign: Campaign) -> Iterator[Problem]:
+def _faults(saved: SavedCalibration, campaign: Campaign) -> Iterator[Problem]:
     if saved.augmented is not None:
-        yield Problem("", f"a {RESULT}, as `jaxhydro calibrate` writes it", "a diagnosis")
+        yield Problem("", f"a {RESULT_FILE}, as `jaxhydro calibrate` writes it", "a diagnosis")
     if saved.campaign != campaign.manifest.name:
         yield Problem("campaign", repr(campaign.manifest.name), repr(saved.campaign), "It is another campaign's calibration.")
     if saved.platform and saved.platform != campaign.platform.name:
@@ -119,7 +125,7 @@ def _faults(saved: Saved, campaign: Campaign) -> Iterator[Problem]:
             yield Problem(f"baseline.parameters.{label}.start", "the value that the fit began from", "nothing")
 
 
-def chosen(profiles: Sequence[str], saved: Saved) -> list[str]:
+def match_labels(profiles: Sequence[str], saved: SavedCalibration) -> list[str]:
     """The parameters that labels or patterns (`column.*`) name, each once. Raises InputError for what names none."""
     known = list(saved.values())
     for one in profiles:
@@ -130,22 +136,22 @@ def chosen(profiles: Sequence[str], saved: Saved) -> list[str]:
 
 
 def _likelihood(
-    campaign: Campaign, saved: Saved, path: Path, labels: Sequence[str], level: float
+    campaign: Campaign, saved: SavedCalibration, path: Path, labels: Sequence[str], level: float
 ) -> tuple[Likelihood, dict[str, Profile]]:
     """The calibration's likelihood, and profiles along parameters."""
-    share, found = REFIT if labels else 1.0, saved.baseline.parameters
+    share, found = REFIT_TIME_SHARE if labels else 1.0, saved.baseline.parameters
     with progress() as show:
 
         def report(stage: str, iteration: int, objective: float, fraction: float) -> None:
             show(Progress(f"fitting again: {stage}", iteration, objective, share * fraction))
 
         began = {label: one.start for label, one in found.items()}
-        fit = reposed(campaign, began, saved.values(), report)
+        fit = restored_fit(campaign, began, saved.values(), report)
         there = np.asarray(fit.unknowns.shared)
-        run(fit)
+        run_fit(fit)
         show(Progress("information and colour of the errors", 0, float("nan"), share))
         likely = likelihood_of(fit)
-        _same(likely, there, saved, path)
+        _check_same_fit(likely, there, saved, path)
         along = {}
         for i, label in enumerate(labels):
             show(Progress(f"profile of {label}", 0, float("nan"), share + (1 - share) * i / len(labels)))
@@ -153,12 +159,12 @@ def _likelihood(
     return likely, along
 
 
-def _same(likely: Likelihood, there: np.ndarray, saved: Saved, path: Path) -> None:
+def _check_same_fit(likely: Likelihood, there: np.ndarray, saved: SavedCalibration, path: Path) -> None:
     """Raises InputError where a fit to the campaign's decays does not end at the file's values."""
     p = len(likely.labels)
     moved = np.abs(likely.estimate[:p] - there) / likely.deviation()
     worst = int(np.argmax(moved))
-    if moved[worst] < MOVED:
+    if moved[worst] < MAX_REFIT_SHIFT:
         return
     label = likely.labels[worst]
     end, value = likely.value(label, likely.estimate[worst]), saved.values()[label]
@@ -168,7 +174,7 @@ def _same(likely: Likelihood, there: np.ndarray, saved: Saved, path: Path) -> No
     raise InputError(str(path), [Problem(f"baseline.parameters.{label}.value", expected, found, hint)])
 
 
-def _resampled(likely: Likelihood, draws: int, seed: int) -> dict[str, Bootstrap]:
+def _run_bootstrap(likely: Likelihood, draws: int, seed: int) -> dict[str, Bootstrap]:
     """Bootstrap over blocks, and over repeats where there are any."""
     found = {}
     with counting(draws, 0, "resamplings") as count:
@@ -180,7 +186,7 @@ def _resampled(likely: Likelihood, draws: int, seed: int) -> dict[str, Bootstrap
     return found
 
 
-def _sampled(likely: Likelihood, seed: int) -> Samples | None:
+def _run_nuts(likely: Likelihood, seed: int) -> Samples | None:
     """NUTS; of a run that the user stops, what there is, if it is enough."""
     with counting(CHAINS * (WARMUP + DRAWS), 0, f"draws of {CHAINS} chains, {WARMUP} of each to find its step") as count:
         try:

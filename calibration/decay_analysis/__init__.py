@@ -1,1 +1,1 @@
-"""Damping of free decays: linear and quadratic (P-Q), and what members contribute."""
+"""Damping of free decays: linear and quadratic (P-Q), and its sources in the model."""

@@ -1,4 +1,4 @@
-"""Classical analysis of a free decay: logarithmic decrement, linear and quadratic damping (P-Q), equivalent damping.
+"""Decay analysis: logarithmic decrement, linear and quadratic (P-Q) damping.
 
 The law is that of one degree of freedom, x'' + p x' + q x'|x'| + w^2 x = 0, p in 1/s, q in 1/m or 1/rad. Between two
 successive extremes A0, A1 the energy w^2 (A0^2 - A1^2)/2 per unit mass is lost to damping. Along x = a cos wt that is, over
@@ -29,13 +29,19 @@ from scipy.stats import t as student
 from calibration.campaign.signals import noise_level
 from jaxhydro.dynamics.response import extremes
 
-LEAST = 3  # decrements that a fit of two numbers with an interval needs
+MIN_DECREMENTS = 3  # decrements that a fit of two numbers with an interval needs
 CONFIDENCE = 0.95
-_NAMES = ("linear", "quadratic")
+_TERMS = ("linear", "quadratic")
 
 
-class Bounded(NamedTuple):
-    """An estimate with the ends of its 95 % confidence interval: floats, or arrays of one shape."""
+class EstimateWithInterval(NamedTuple):
+    """An estimate with its 95 % confidence interval: floats, or arrays of one shape.
+
+    Attributes:
+        value: Estimate.
+        lower: Lower end of the interval.
+        upper: Upper end of the interval.
+    """
 
     value: np.ndarray | float
     lower: np.ndarray | float
@@ -44,9 +50,14 @@ class Bounded(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Decrements:
-    """Pairs of extremes, half a cycle (`cycles` 0.5) or a whole one (1) apart.
+    """Pairs of successive extremes of a decay, half a cycle or a whole one apart.
 
-    `extreme_times` (s) and `heights` (m or rad, positive) are (m,); `first` and `second` (n,) say which two a pair is of.
+    Attributes:
+        extreme_times: (m,) times of the extremes (s).
+        heights: (m,) absolute values of the extremes (m or rad).
+        first: (n,) index of the first extreme of each pair.
+        second: (n,) index of the second extreme of each pair.
+        cycles: Cycles between the two: 0.5 or 1.
     """
 
     extreme_times: np.ndarray
@@ -83,31 +94,54 @@ class Decrements:
 
 @dataclass(frozen=True, eq=False)
 class LinearQuadratic:
-    """p (1/s) and q (1/m or 1/rad) of a decay, `covariance` (2, 2) in that order.
+    """Linear and quadratic (P-Q) damping of a decay.
 
-    `scatter` (m or rad) is the standard deviation of the extremes about the fit, `freedom` how many decrements it has beyond
-    two, `period` (s) the mean one. `warnings` says in words where p or q is negative.
+    Attributes:
+        linear: p (1/s).
+        quadratic: q (1/m or 1/rad).
+        covariance: (2, 2) covariance of p and q.
+        scatter: Standard deviation of the extremes about the fit (m or rad).
+        freedom: Degrees of freedom: number of decrements less two.
+        period: Mean period (s).
+        warnings: Sentences on a negative p or q.
     """
 
-    linear: Bounded
-    quadratic: Bounded
+    linear: EstimateWithInterval
+    quadratic: EstimateWithInterval
     covariance: np.ndarray
     scatter: float
     freedom: int
     period: float
     warnings: tuple[str, ...]
 
-    def damping(self, inertia: float) -> tuple[Bounded, Bounded]:
-        """B_lin = M p (N s/m, N m s) and B_quad = M q (N s2/m2, N m s2) for inertia with added mass (kg, kg m2)."""
-        return tuple(Bounded(*(inertia * number for number in one)) for one in (self.linear, self.quadratic))  # type: ignore
+    def damping(self, inertia: float) -> tuple[EstimateWithInterval, EstimateWithInterval]:
+        """Dimensional damping: B_lin = M p (N s/m, N m s) and B_quad = M q (N s2/m2, N m s2).
+
+        Args:
+            inertia: M, mass or moment of inertia with added mass (kg, kg m2).
+
+        Returns:
+            B_lin and B_quad.
+        """
+        return tuple(EstimateWithInterval(*(inertia * number for number in one)) for one in (self.linear, self.quadratic))  # type: ignore
 
 
 @dataclass(frozen=True, eq=False)
 class Classical:
-    """The classical analysis of one record. `positive` and `negative` are crests and troughs apart, over whole cycles: where
-    their decrements differ, the record does not oscillate about zero. Their fits are None where they have too few cycles.
+    """Classical analysis of one decay record.
 
-    `equivalent` is B_eq at the amplitudes of `half_cycles` (N s/m, N m s), None without an inertia."""
+    Crests and troughs are also analysed apart, over whole cycles. Where their decrements differ, the record does not
+    oscillate about zero.
+
+    Attributes:
+        half_cycles: Pairs of extremes half a cycle apart.
+        positive: Pairs of crests a whole cycle apart.
+        negative: Pairs of troughs a whole cycle apart.
+        fit: Damping by half cycles.
+        positive_fit: Damping by crests; None with too few cycles.
+        negative_fit: Damping by troughs; None with too few cycles.
+        equivalent: Equivalent damping at the amplitudes of `half_cycles` (N s/m, N m s); None without an inertia.
+    """
 
     half_cycles: Decrements
     positive: Decrements
@@ -115,14 +149,21 @@ class Classical:
     fit: LinearQuadratic
     positive_fit: LinearQuadratic | None
     negative_fit: LinearQuadratic | None
-    equivalent: Bounded | None
+    equivalent: EstimateWithInterval | None
 
 
 def decrements(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tuple[Decrements, Decrements, Decrements]:
-    """Half cycles, whole cycles between crests, whole cycles between troughs, of a decay that oscillates about zero.
+    """Find the pairs of extremes of a decay that oscillates about zero.
 
-    `time` (s) and `motion` (m or rad) are (k,); `noise` is one standard deviation of `motion`. Half cycles are those of
-    `decay_cycles`.
+    Half cycles are those of `decay_cycles`.
+
+    Args:
+        time: (k,) times (s).
+        motion: (k,) motion (m or rad).
+        noise: Standard deviation of the noise on `motion` (m or rad).
+
+    Returns:
+        Half cycles, whole cycles between crests, whole cycles between troughs.
     """
     when, value = extremes(np.asarray(time), np.asarray(motion), noise)
     turn = np.sign(value[1:]) != np.sign(value[:-1])
@@ -136,16 +177,27 @@ def decrements(time: np.ndarray, motion: np.ndarray, noise: float = 0.0) -> tupl
 
 
 def linear_quadratic(pairs: Decrements) -> LinearQuadratic:
-    """p and q by ln(A0/A1) = (t1 - t0)/2 p + 8/3 c a q, c = 1/2 for half cycles, 1 for whole ones: the module's docstring.
+    """Fit linear and quadratic damping to decrements.
 
-    Generalised least squares (Aitken 1935, Proceedings of the Royal Society of Edinburgh 55, 42-48) under one standard
-    deviation of all extremes: a decrement then has a variance of 1/A0^2 + 1/A1^2, and neighbours share an extreme, with a
-    correlation near -1/2. Intervals by Student's t, the standard deviation being estimated. Raises ValueError for fewer than
-    3 decrements, and where the amplitude hardly varies.
+    The law is ln(A0/A1) = (t1 - t0)/2 p + 8/3 c a q, c = 1/2 for half cycles and 1 for whole ones: see the module's
+    docstring. All extremes have one standard deviation. A decrement then has a variance of 1/A0^2 + 1/A1^2, and neighbours
+    share an extreme, with a correlation near -1/2. Intervals are by Student's t, since the standard deviation is estimated.
+
+    Args:
+        pairs: Pairs of extremes.
+
+    Returns:
+        p and q with their intervals.
+
+    Raises:
+        ValueError: If there are fewer than 3 decrements, or the amplitude hardly varies.
+
+    References:
+        Aitken 1935, Proceedings of the Royal Society of Edinburgh 55, 42-48 (generalised least squares).
     """
     count, amplitude = len(pairs.first), pairs.amplitude
-    if count < LEAST:
-        raise ValueError(f"expected a decay with at least {LEAST} decrements, found {count}")
+    if count < MIN_DECREMENTS:
+        raise ValueError(f"expected a decay with at least {MIN_DECREMENTS} decrements, found {count}")
     duration = pairs.period * pairs.cycles
     design = np.stack([0.5 * duration, 8 / 3 * pairs.cycles * amplitude], axis=1)
     ratio = np.zeros((count, len(pairs.heights)))  # d ln(A0/A1) for a unit error of each extreme
@@ -164,37 +216,56 @@ def linear_quadratic(pairs: Decrements) -> LinearQuadratic:
     best, half = solution / scale, student.ppf(0.5 + CONFIDENCE / 2, freedom) * np.sqrt(np.diag(covariance))
     warnings = tuple(
         f"{name} damping is negative: {value:.3g}, {'within' if value + width >= 0 else 'beyond'} its uncertainty"
-        for name, value, width in zip(_NAMES, best, half)
+        for name, value, width in zip(_TERMS, best, half)
         if value < 0
     )
-    linear, quadratic = (Bounded(float(b), float(b - h), float(b + h)) for b, h in zip(best, half))
+    linear, quadratic = (EstimateWithInterval(float(b), float(b - h), float(b + h)) for b, h in zip(best, half))
     # the time of an extreme is the less certain, the lower it is
     period = float(np.average(pairs.period, weights=amplitude**2))
     return LinearQuadratic(linear, quadratic, covariance, math.sqrt(variance), freedom, period, warnings)
 
 
-def equivalent_damping(fit: LinearQuadratic, amplitude: np.ndarray | float, inertia: float) -> Bounded:
-    """B_eq(a) = M (p + 8/(3 pi) q w a), N s/m or N m s, w = 2 pi/T: dissipates the same energy per cycle at amplitude a.
+def equivalent_damping(fit: LinearQuadratic, amplitude: np.ndarray | float, inertia: float) -> EstimateWithInterval:
+    """Compute the equivalent linear damping B_eq(a) = M (p + 8/(3 pi) q w a), w = 2 pi/T.
 
-    `amplitude` is in m or rad, any shape, `inertia` with added mass (kg, kg m2). The interval is that of p and q together,
-    the inertia being known. Faltinsen 1990, chapter 7 (quadratic damping linearised by its work over a cycle).
+    It dissipates the same energy per cycle at amplitude a. The interval is that of p and q together; the inertia is taken
+    as known.
+
+    Args:
+        fit: Linear and quadratic damping.
+        amplitude: Amplitude of motion (m or rad), of any shape.
+        inertia: M, mass or moment of inertia with added mass (kg, kg m2).
+
+    Returns:
+        B_eq (N s/m, N m s) of the shape of `amplitude`, with its interval.
+
+    References:
+        Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 7.
     """
     a = np.asarray(amplitude, dtype=float)
     row = np.stack([np.ones_like(a), 16 / (3 * fit.period) * a], axis=-1)
     value = row @ np.array([fit.linear.value, fit.quadratic.value])
     width = student.ppf(0.5 + CONFIDENCE / 2, fit.freedom) * np.sqrt(np.einsum("...i,ij,...j", row, fit.covariance, row))
-    return Bounded(inertia * value, inertia * (value - width), inertia * (value + width))
+    return EstimateWithInterval(inertia * value, inertia * (value - width), inertia * (value + width))
 
 
 def classical(
     time: np.ndarray, motion: np.ndarray, noise: float | None = None, inertia: float | None = None, skip: int = 0
 ) -> Classical:
-    """Decrements, P-Q fit and equivalent damping of a free decay about zero.
+    """Analyse a free decay about zero: decrements, linear and quadratic damping, equivalent damping.
 
-    `time` (s, increasing) and `motion` (m or rad) are (k,); `noise` is one standard deviation of `motion`, estimated by
-    `noise_level` if None; `inertia` that with added mass (kg, kg m2). `skip` half cycles at the start are left out: flow
-    that has not built up yet damps less. Raises ValueError for records that are no such series, have fewer than 3 half
-    cycles, or do not decay.
+    Args:
+        time: (k,) increasing times (s).
+        motion: (k,) motion (m or rad).
+        noise: Standard deviation of the noise on `motion` (m or rad); None: estimated by `noise_level`.
+        inertia: Mass or moment of inertia with added mass (kg, kg m2); None: no equivalent damping.
+        skip: Half cycles left out at the start, where the flow has not built up and damps less.
+
+    Returns:
+        The analysis.
+
+    Raises:
+        ValueError: If the record is no such series, has fewer than 3 half cycles, or does not decay.
     """
     time, motion = np.asarray(time, dtype=float), np.asarray(motion, dtype=float)
     if time.ndim != 1 or time.shape != motion.shape:
@@ -203,9 +274,9 @@ def classical(
         raise ValueError("expected finite numbers and increasing times, found others")
     noise = noise_level(time, motion) if noise is None else noise
     half, *sides = decrements(time, motion, noise)
-    if skip < 0 or len(half.first) - skip < LEAST:
+    if skip < 0 or len(half.first) - skip < MIN_DECREMENTS:
         raise ValueError(
-            f"expected at least {LEAST} half cycles after the {skip} skipped, clear of noise of {noise:.3g}, "
+            f"expected at least {MIN_DECREMENTS} half cycles after the {skip} skipped, clear of noise of {noise:.3g}, "
             f"found {max(len(half.first) - skip, 0)}"
         )
     start = half.first[skip]
@@ -215,6 +286,6 @@ def classical(
         for late in [one.first >= start]
     )
     fit = linear_quadratic(half)
-    crests, troughs = (linear_quadratic(side) if len(side.first) >= LEAST else None for side in (positive, negative))
+    crests, troughs = (linear_quadratic(side) if len(side.first) >= MIN_DECREMENTS else None for side in (positive, negative))
     equivalent = None if inertia is None else equivalent_damping(fit, half.amplitude, inertia)
     return Classical(half, positive, negative, fit, crests, troughs, equivalent)

@@ -1,4 +1,4 @@
-"""A model's damping in one motion, in the terms of a P-Q fit, and which drag coefficients it comes from.
+"""Linear and quadratic damping of a model in one motion, by drag coefficient.
 
 M x'' + B_lin x' + B_quad x'|x'| + C x = 0, so p = B_lin/M and q = B_quad/M of `classical`, M with added mass.
 """
@@ -23,9 +23,13 @@ SPEEDS = (0.5, 1.0, 2.0)
 
 @dataclass(frozen=True, eq=False)
 class ModelDamping:
-    """A model's damping in one motion: total inertia (kg, kg m2), B_lin (N s/m, N m s), B_quad (N s2/m2, N m s2).
+    """Damping of a model in one motion.
 
-    `per_coefficient` is label -> B_quad per unit of a drag coefficient (or quadratic damping): B_quad is linear in them.
+    Attributes:
+        inertia: Mass or moment of inertia with added mass (kg, kg m2).
+        linear: B_lin (N s/m, N m s).
+        quadratic: B_quad (N s2/m2, N m s2).
+        per_coefficient: B_quad per unit of a drag or quadratic damping coefficient, by label. B_quad is linear in them.
     """
 
     inertia: float
@@ -40,10 +44,21 @@ class ModelDamping:
 
 
 def motion_shape(model: Model, dof: str, position: Float[Array, "6"] | None = None) -> np.ndarray:
-    """(6,) natural mode with the largest strain energy in `dof`, as rates of surge ... yaw (m/s, rad/s), 1 for `dof`.
+    """Find the natural mode with the largest strain energy in a degree of freedom.
 
-    A platform let go in pitch also surges: its decay has the inertia and damping of the mode. Raises ValueError where no
-    mode is mainly of `dof`; KeyError for an unknown one.
+    A platform released in pitch also surges: its decay has the inertia and damping of the mode.
+
+    Args:
+        model: The model.
+        dof: Degree of freedom, such as `pitch`.
+        position: (6,) position about which the mode is taken (m, rad); None for the equilibrium.
+
+    Returns:
+        (6,) rates of surge ... yaw (m/s, rad/s), 1 for `dof`.
+
+    Raises:
+        KeyError: If the degree of freedom is unknown.
+        ValueError: If no mode is mainly of `dof`.
     """
     if dof not in DOFS:
         raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")
@@ -86,14 +101,27 @@ def _damping(model: Model, position: Array, rates: Array) -> tuple[Array, Array,
 def model_damping(
     model: Model, dof: str, position: Float[Array, "6"] | None = None, shape: np.ndarray | None = None
 ) -> ModelDamping:
-    """Inertia with added mass, B_lin and B_quad of a model that moves in one degree of freedom, or in a given shape.
+    """Compute inertia, linear and quadratic damping of a model in one degree of freedom or shape.
 
-    The force against the motion at three speeds about `position` (the equilibrium), wetted as there; with S = `shape` (6,),
-    rates of surge ... yaw where that of `dof` is 1 (by default the others are 0): M = S M S, and S F(S v) = B_lin v +
-    B_quad v|v|, generalised to the rate of `dof`. So p = B_lin/M and q = B_quad/M of a small decay. Radiation damping with
-    a memory is not in it: memories are at rest, so that high-passed drag counts as of fast motion, and drag that follows the
-    Keulegan-Carpenter number as of a very small one. Raises KeyError for an unknown degree of freedom, ValueError for a
-    shape without it and for damping that is neither linear nor quadratic.
+    The force against the motion is taken at three speeds, about and wetted as at `position`. With S = `shape`, M = S M S
+    and S F(S v) = B_lin v + B_quad v|v|, generalised to the rate of `dof`. So p = B_lin/M and q = B_quad/M of a small
+    decay.
+
+    Radiation damping with a memory is left out, since memories are at rest. High-passed drag therefore counts as that of
+    fast motion. Drag that follows the Keulegan-Carpenter number counts as that of a very small number.
+
+    Args:
+        model: The model.
+        dof: Degree of freedom, such as `pitch`.
+        position: (6,) position (m, rad); None for the equilibrium.
+        shape: (6,) rates of surge ... yaw where that of `dof` is 1; None: the others are 0.
+
+    Returns:
+        Inertia with added mass, B_lin and B_quad.
+
+    Raises:
+        KeyError: If the degree of freedom is unknown.
+        ValueError: If `shape` does not move `dof`, or damping is neither linear nor quadratic.
     """
     if dof not in DOFS:
         raise KeyError(f"no degree of freedom {dof!r}; there are: {', '.join(DOFS)}")
@@ -111,10 +139,20 @@ def model_damping(
 
 
 def drag_coefficient(model: Model, damping: ModelDamping, label: str, quadratic: float) -> float:
-    """The drag coefficient `label` with which a model has the B_quad `quadratic` (q M of a fit), all others kept.
+    """Compute the drag coefficient with which a model has a given quadratic damping, all others kept.
 
-    `damping` is the model's own. Raises KeyError for a label that is no drag coefficient, ValueError for one without part in
-    the motion.
+    Args:
+        model: The model.
+        damping: Damping of this model, by `model_damping`.
+        label: Name of the drag coefficient.
+        quadratic: B_quad (N s2/m2, N m s2), that is q M of a fit.
+
+    Returns:
+        The value of the coefficient.
+
+    Raises:
+        KeyError: If the label is no drag coefficient.
+        ValueError: If the coefficient has no part in the motion.
     """
     if label not in damping.per_coefficient:
         raise KeyError(f"no drag coefficient {label!r}; there are: {', '.join(damping.per_coefficient)}")

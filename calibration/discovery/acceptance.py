@@ -11,7 +11,7 @@ from calibration.discovery.eliminated_least_squares import likelihoods, predict
 from calibration.discovery.linearisations import FLOOR, Look, Prior
 from calibration.discovery.study import Study
 from calibration.formatting import percent
-from calibration.identifiability.information import inverse
+from calibration.identifiability.information import pseudo_inverse
 
 # thresholds, set by what they do on campaigns with nothing missing
 LEAST_BIC = 6.0  # strong, by Kass and Raftery 1995
@@ -206,5 +206,5 @@ def clearness(study: Study, one: Candidate, state: State, prior: Prior) -> float
     columns = [look.active.index(i) for i in study.index(one.amplitudes)]
     covariance = predict(study, look, prior).covariance[np.ix_(columns, columns)]
     steps = study.steps(look.place.x)[study.index(one.amplitudes)]
-    wald = float(steps @ inverse(covariance) @ steps)
+    wald = float(steps @ pseudo_inverse(covariance) @ steps)
     return math.sqrt(max(wald - len(columns) + 1, 0.0))

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.acceptance import State, given_up
 from calibration.discovery.channel_signs import in_words, reversed_channels, turned
@@ -86,7 +86,7 @@ def diagnose(
     def concluded() -> Diagnosis:
         lost = [] if search.alone is None else given_up(search.study, search.alone, states[-1].left)
         unknown = [] if campaign.manifest.zero is not None else [ABSOLUTE]
-        warnings = [str(finding) for finding in grouped(campaign.findings)]
+        warnings = [str(finding) for finding in group_findings(campaign.findings)]
         every = (*notes, *search.notes, *lost, *unknown, *warnings)
         return conclude(search.campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calibration.campaign.strip_conventions import Strips
+from calibration.campaign.strip_conventions import StripConventions
 from calibration.discovery.acceptance import Verdict
 from calibration.residuals.measured_seas import Options
 from calibration.result import Calibration, Estimate
@@ -180,6 +180,6 @@ class Diagnosis:
     notes: tuple[str, ...]
     seconds: float
     latent: tuple[LatentForce, ...] = ()
-    strips: Strips | None = None
+    strips: StripConventions | None = None
     seas: Options | None = None
     complete: bool = True

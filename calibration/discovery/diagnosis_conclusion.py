@@ -17,7 +17,7 @@ from calibration.discovery.effects.effect_names import called
 from calibration.discovery.eliminated_least_squares import predict
 from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.residual_anatomy import anatomy, signature
-from calibration.fitting.fit_conclusion import strays
+from calibration.fitting.fit_conclusion import records_not_followed
 from calibration.residuals.measured_seas import peak_period
 from calibration.residuals.sea_errors import bands_of
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
@@ -54,7 +54,7 @@ def conclude(
     more = much(search, left)
     sure = [one for one in effects if one.in_doubt is None]
     verdict = "found" if sure else ("unexplained" if effects or more else "nothing_missing")
-    lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
+    lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name,

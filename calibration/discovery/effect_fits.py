@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.strip_conventions import Strips
+from calibration.campaign.strip_conventions import StripConventions
 from calibration.discovery.acceptance import Grounds, Left, State, Verdict, judge
 from calibration.discovery.effect_descent import Reached, fit
 from calibration.discovery.effects.candidates import Candidate
@@ -18,7 +18,7 @@ from calibration.discovery.expected_residuals import expected
 from calibration.discovery.held_out_blocks import Blocks
 from calibration.discovery.linearisations import Look, Place, Prior
 from calibration.discovery.set_up import WIDE, Posed
-from calibration.fitting.decay_fit import Fit, prepare, run
+from calibration.fitting.decay_fit import DecayFit, prepare_fit, run_fit
 from calibration.residuals.decays import first_guess
 
 Order = Literal["second", "first", "cut", "origin", "cut, origin"]
@@ -35,8 +35,8 @@ class Fits:
     def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
         self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
         self.order: Order = "second"
-        self.plain: Fit | None = None  # an ordinary calibration to the decays, where one is at hand
-        self.strips: Strips | None = None  # where they are not taken as the platform file says
+        self.plain: DecayFit | None = None  # an ordinary calibration to the decays, where one is at hand
+        self.strips: StripConventions | None = None  # where they are not taken as the platform file says
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
         self.base = self.study.index([*posed.base, *posed.nuisances])
         # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only
@@ -63,7 +63,7 @@ class Fits:
         own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
             if (plain := self.plain) is None:
-                run(plain := prepare(self.campaign), near=True)
+                run_fit(plain := prepare_fit(self.campaign), near=True)
             for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
             rows = [r.id for r in study.decay_records]

@@ -15,7 +15,7 @@ from scipy.special import boxcox
 
 from calibration.discovery.linearisations import Look, Place, Prior
 from calibration.discovery.study import Study
-from calibration.identifiability.information import inverse
+from calibration.identifiability.information import pseudo_inverse
 
 POWER = 0.2  # p: 0 is the logarithm
 FAR = 3.0  # standard deviations of a prior: beyond them it is steep
@@ -117,7 +117,7 @@ def own_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarray) -> np.
 
 def inverted(matrix: np.ndarray) -> np.ndarray:
     """A symmetric matrix's inverse, or pseudo-inverse, of parameters of any size."""
-    return inverse(matrix, ROUNDING)
+    return pseudo_inverse(matrix, ROUNDING)
 
 
 def solve(study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float) -> tuple[np.ndarray, np.ndarray]:

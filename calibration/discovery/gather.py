@@ -17,9 +17,9 @@ from calibration.discovery.study import Study
 from calibration.discovery.wave_records import by_a_program, highest_difference
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import Problem, dominant_period, gather
+from calibration.residuals.decays import DecayProblem, dominant_period, gather_decays
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, sea_of, sea_step, seas_of
-from calibration.residuals.stretches import window
+from calibration.residuals.stretches import samples_after_transient
 from jaxhydro.dynamics.integrate import clock
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.simulate import excursion_of, memory_step
@@ -130,11 +130,11 @@ def highest_of(model: Model) -> float:
 
 def of_decays(
     records: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float, highest: float
-) -> tuple[Problem, list[Series], np.ndarray, Rows]:
+) -> tuple[DecayProblem, list[Series], np.ndarray, Rows]:
     """Decays in arrays, simulated in steps of at most `step` (s); every motion's series, how far their own unknowns may go, and
     their rows up to `highest` (Hz)."""
-    data = gather(records, model, step, exact=True)
-    decays = Problem(model, data, space, from_rest, None if from_rest else equilibrium(model))
+    data = gather_decays(records, model, step, exact=True)
+    decays = DecayProblem(model, data, space, from_rest, None if from_rest else equilibrium(model))
     found, own_width = _decay_series(records, data, highest)
     return decays, [one for one, _ in found], own_width, Rows.of([cut for _, cut in found], data.time.shape[1])
 
@@ -210,7 +210,7 @@ def _sea_record(
     shortest = 2 * np.pi * float(model.environment.gravity) / float(np.max(np.asarray(made.components.omega))) ** 2
     sea = made.prepared(*hull, instants, max(EXCURSIONS * excursion_of(model), MIN_EXCURSION * shortest), *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
-    windows = [window(run, r) for r in tests]
+    windows = [samples_after_transient(run, r) for r in tests]
     n = min(len(w) for w in windows)
     power = np.asarray(made.components.amplitude) ** 2
     order = np.argsort(np.asarray(made.components.omega))

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import Data, Problem
+from calibration.residuals.decays import DecayData, DecayProblem
 from jaxhydro.dynamics.integrate import Grid, integrate
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import observe
@@ -29,19 +29,21 @@ class Frame(NamedTuple):
     basis: Float[Array, "p q"]
 
 
-def _record_residual(problem: Problem, x: Float[Array, " p"], own: Float[Array, " o"], record: Data) -> Float[Array, "c t"]:
+def _record_residual(
+    problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, " o"], record: DecayData
+) -> Float[Array, "c t"]:
     return (problem.motion(x, own, record) - record.measured) * record.present
 
 
 @eqx.filter_jit
-def decay_residuals(problem: Problem, x: Float[Array, " p"], own: Float[Array, "r o"]) -> Float[Array, "r c t"]:
+def decay_residuals(problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, "r o"]) -> Float[Array, "r c t"]:
     """Simulated less measured, zero where there is no sample."""
     return jax.lax.map(lambda one: _record_residual(problem, x, *one), (own, problem.data))
 
 
 @eqx.filter_jit
 def decay_slopes(
-    problem: Problem, frame: Frame, own: Float[Array, "r o"]
+    problem: DecayProblem, frame: Frame, own: Float[Array, "r o"]
 ) -> tuple[Float[Array, "r c t"], Float[Array, "r c t k"]]:
     """Residuals, and their slopes along the directions and the records' own unknowns."""
     q = frame.basis.shape[1]

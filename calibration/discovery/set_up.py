@@ -16,7 +16,7 @@ from calibration.discovery.gather import study_of
 from calibration.discovery.linearisations import Prior
 from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import labels_of, space_of
-from calibration.parameters.space import VAGUE, Free, ParameterSpace
+from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
 from calibration.residuals.measured_seas import Options, moving_channels, sea_step, with_diffraction
 from jaxhydro.dynamics.model import Model
@@ -89,7 +89,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
             )
         for label, size in own.sizes.items():
             null = float(own.load.values[label])
-            scaled[label], units[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)
+            scaled[label], units[label] = FreeParameter(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)
     candidates = [*candidates, *extra]
     # what the platform file has is fitted, not looked for
     taken = set(declared.values) - (sought(declared) - set(labels))
@@ -97,7 +97,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     scaled = {label: one for label, one in scaled.items() if label not in taken}
     base_space = space_of(campaign, labels, declared)
     nuisances: dict[str, tuple[dict[str, float], float]] = {}  # name -> parameters and how they go together, deviation
-    free: list[Free] = [*base_space.free]
+    free: list[FreeParameter] = [*base_space.free]
     for name in next(one.amplitudes for one in candidates if one.effect == "mass_properties"):
         nuisances[name] = ({name: 1.0}, OF_MASS)
     # draught and trim are as the platform was ballasted, sensors zeroed afloat or not
@@ -109,7 +109,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
         values = {label: float(value) for label, value in declared.values.items() if label.startswith("mooring.")}
         for name in values:
             value = values[name]
-            free.append(Free(name, value, LogInterval(0.5 * value, 2 * value), 0.0, math.inf))
+            free.append(FreeParameter(name, value, LogInterval(0.5 * value, 2 * value), 0.0, math.inf))
         tension = {line: _pretension(declared, line) for line in lines}
         stretch = [tension[line] / values[f"{line}.stiffness"] / values[f"{line}.unstretched_length"] for line in lines]
         nuisances["mooring_stiffness"] = ({f"{line}.stiffness": 1.0 for line in lines}, STIFFNESS)
@@ -118,7 +118,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     model = with_drag(declared)
     ends = bool(waves) and bool((np.asarray(declared.hull.ends.radius) == 0).any()) if declared.hull.ends.label else False
     if ends:
-        free.append(Free("covered_ends.share", 0.0, Scaled(0.0, 1.0), 0.0, math.inf))
+        free.append(FreeParameter("covered_ends.share", 0.0, Scaled(0.0, 1.0), 0.0, math.inf))
         nuisances["covered_ends.share"] = ({"covered_ends.share": 1.0}, ENDS)
     model = with_candidates(model, candidates, ["covered_ends.share"] if ends else [])
     free += list(scaled.values())
@@ -163,7 +163,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
 def width_of(label: str, declared: Model, waves: bool) -> float:
     """How well a coefficient is known before its records, one standard deviation of its logarithm."""
     if not waves or float(declared.values[label]) == 0:
-        return VAGUE
+        return VAGUE_DEVIATION
     return ANCHORED_DAMPING if label.startswith("linear_damping.") else ANCHORED
 
 

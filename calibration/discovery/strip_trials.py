@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.strip_conventions import USUAL, Strips
+from calibration.campaign.strip_conventions import DEFAULT_STRIPS, StripConventions
 from calibration.discovery.acceptance import LEAST_TOGETHER
-from calibration.fitting.decay_fit import Fit, observations, prepare, run
+from calibration.fitting.decay_fit import DecayFit, independent_observations, prepare_fit, run_fit
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.strip_drag import StripDrag
 
-SIMPLER = Strips(directions="earth", drag_speed="component", centripetal=False)  # as simpler programs take them
+SIMPLER = StripConventions(directions="earth", drag_speed="component", centripetal=False)  # as simpler programs take them
 FOLLOWED = (
     "decays are followed better with strips loaded along earth axes, drag by components of the speed and no centripetal "
     f"acceleration, as programs may have it ({SIMPLER} in a platform file): so are they taken here, and in what is found"
@@ -24,8 +24,8 @@ class Conventions(NamedTuple):
     taken where that is not as its platform file says, and why."""
 
     campaign: Campaign
-    fit: Fit | None = None
-    strips: Strips | None = None
+    fit: DecayFit | None = None
+    strips: StripConventions | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -34,24 +34,29 @@ def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Con
     platform file says how they are taken, or has other laws of drag than a constant coefficient."""
     decays = [record for record in campaign.used("fit") if record.kind == "decay"]
     model = campaign.model
-    said = bool(set(Strips.model_fields) & campaign.platform.model_fields_set) or Strips.of(model) != USUAL
+    said = (
+        bool(set(StripConventions.model_fields) & campaign.platform.model_fields_set)
+        or StripConventions.of(model) != DEFAULT_STRIPS
+    )
     other_drag = any(hasattr(load, "coupled") and not isinstance(load, StripDrag) for load in model.loads)
     if said or other_drag or campaign.platform.sea_state_laws is not None or not decays or not model.hull.strips.element:
         return Conventions(campaign)
     say("calibrating to the decays", 0.01)
-    run(fit := prepare(campaign), near=True)
+    run_fit(fit := prepare_fit(campaign), near=True)
     say("calibrating to the decays, strips as simpler programs take them", 0.02)
-    other = campaign.with_model(SIMPLER.given_to(model))
-    run(again := prepare(other), near=True)
+    other = campaign.with_model(SIMPLER.applied_to(model))
+    run_fit(again := prepare_fit(other), near=True)
     if (better := _unlikelihood(fit) - _unlikelihood(again)) < LEAST_TOGETHER:
         return Conventions(campaign, fit)
     return Conventions(other, again, SIMPLER, (f"{FOLLOWED} (by {better:.0f} in -2 ln L of the decays)",))
 
 
-def _unlikelihood(fit: Fit) -> float:
+def _unlikelihood(fit: DecayFit) -> float:
     """-2 ln L of calibrated decays, of errors that are no smaller than stated noise."""
     data = fit.problem.data
     noise = np.array([[record.noise.get(DOFS[dof], 0.0) for dof in data.dofs] for record in fit.records])
     squares = np.maximum(fit.mean_squares(), noise**2)
     there = np.asarray(data.present).sum(axis=-1) > 0
-    return float(np.sum(observations(data, fit.ends)[:, None] * np.where(there, np.log(np.maximum(squares, 1e-300)), 0.0)))
+    return float(
+        np.sum(independent_observations(data, fit.ends)[:, None] * np.where(there, np.log(np.maximum(squares, 1e-300)), 0.0))
+    )

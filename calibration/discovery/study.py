@@ -17,7 +17,7 @@ from calibration.discovery.residuals import Frame, SeaRecord, decay_residuals, d
 from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
-from calibration.residuals.decays import Problem
+from calibration.residuals.decays import DecayProblem
 from calibration.residuals.measured_seas import Options, moving
 from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
@@ -38,7 +38,7 @@ class Study:
     names: tuple[str, ...]
     directions: np.ndarray
     width: int
-    decays: Problem | None
+    decays: DecayProblem | None
     seas: tuple[SeaRecord, ...]
     other_seas: Mapping[str, tuple[SeaRecord, ...]]
     series: tuple[Series, ...]

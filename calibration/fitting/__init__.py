@@ -1,1 +1,1 @@
-"""Fits of parameters to residuals of all kinds."""
+"""Fits of parameters to decays, to tests in waves, and to both."""

@@ -1,4 +1,4 @@
-"""How much work goes side by side."""
+"""Number of CPU cores available to this process."""
 
 import os
 

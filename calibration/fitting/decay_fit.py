@@ -1,4 +1,4 @@
-"""Calibration: free parameters fitted to all decay records together by least squares."""
+"""Calibration to decays: least squares on all decay records together."""
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
@@ -10,11 +10,19 @@ import numpy as np
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
-from calibration.fitting.fit_conclusion import estimates, remarks, series_of, strays
+from calibration.fitting.fit_conclusion import estimates, records_not_followed, remarks, series_of
 from calibration.fitting.fit_uncertainty import uncertainty_of
 from calibration.fitting.levenberg_marquardt import descend
-from calibration.parameters.space import ParameterSpace, choose, parameter_space
-from calibration.residuals.decays import Data, Problem, Unknowns, condensed, dominant_period, first_guess, gather
+from calibration.parameters.space import ParameterSpace, match_free_labels, parameter_space
+from calibration.residuals.decays import (
+    DecayData,
+    DecayProblem,
+    Unknowns,
+    condensed_decays,
+    dominant_period,
+    first_guess,
+    gather_decays,
+)
 from calibration.result import Calibration, TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.simulate import memory_step
@@ -24,16 +32,24 @@ from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
 from jaxhydro.interrupts import stopping
 
-SIDE = 0.1  # weight of a record's other channels against the released one, on the same footing in metres of the hull
-GROWTH = 2.5  # the window grows by this factor, from CYCLES cycles to the whole record
-CYCLES = 1.25
+# weight of a record's other channels against the released one, both in metres of the hull
+SIDE_CHANNEL_WEIGHT = 0.1
+WINDOW_GROWTH = 2.5  # the window grows by this factor, from FIRST_WINDOW_CYCLES cycles to the whole record
+FIRST_WINDOW_CYCLES = 1.25
 STEPS_PER_PERIOD = 16  # of the shortest natural period: an error of some 1e-7 in the period
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a calibration is: what it is doing, iterations, the objective, the fraction done (0 to 1, a guess), and what the
-    objective is called."""
+    """Progress of a calibration.
+
+    Attributes:
+        stage: Name of the current stage.
+        iteration: Number of iterations so far.
+        objective: Value of the objective.
+        fraction: Estimated fraction done, 0 to 1.
+        name: Name of the objective.
+    """
 
     stage: str
     iteration: int
@@ -43,7 +59,11 @@ class Progress:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a calibration; `partial` holds what was reached, None if nothing was."""
+    """Interruption of a calibration by the user (Ctrl-C).
+
+    Attributes:
+        partial: Result that was reached; None if there is none.
+    """
 
     def __init__(self, partial: Calibration | None):
         super().__init__("stopped; nothing was written")
@@ -54,14 +74,14 @@ def _objective(unknowns: Unknowns, args):
     """Residuals of the records and of the prior, for optimistix."""
     problem, weight, until, prior = args
     mean, precision = prior
-    rows, products = condensed(unknowns, problem, weight, until)
+    rows, products = condensed_decays(unknowns, problem, weight, until)
     return (rows, precision * (unknowns.shared - mean)), products
 
 
-class Fit:
+class DecayFit:
     """One calibration under way: the problem, the unknowns reached so far, and how it reports."""
 
-    def __init__(self, problem: Problem, records: Sequence[Record], unknowns: Unknowns, report) -> None:
+    def __init__(self, problem: DecayProblem, records: Sequence[Record], unknowns: Unknowns, report) -> None:
         self.problem, self.records, self.unknowns, self.report = problem, records, unknowns, report
         space = problem.space
         mean, width = space.prior
@@ -70,7 +90,7 @@ class Fit:
         self.history: list[float] = []
         self.ridge: np.ndarray = np.zeros(len(space.free))
         self.ends = jnp.array([record.time[-1] for record in records])
-        self.scored, self.spread = scored(records, problem.data)
+        self.scored, self.spread = scored_channels(records, problem.data)
         self.weight, self.samples = np.ones(self.scored.shape), np.ones(self.scored.shape)
         self.products: np.ndarray | None = None
 
@@ -85,8 +105,8 @@ class Fit:
     ) -> bool:
         """Levenberg-Marquardt from where the fit is, to a relative decrease below `tolerance`.
 
-        Every free parameter has a prior, VAGUE unless the manifest says otherwise, about where it started. It weighs as one
-        observation among `samples` independent ones, so that what the records do not say stays where it was.
+        Every free parameter has a prior about where it started, of VAGUE_DEVIATION unless the manifest says otherwise. It
+        weighs as one observation among `samples` independent ones: what the records do not determine stays where it was.
         """
         # in units of the cost so far, so that damping and ridge mean the same in every stage
         weight = np.asarray(weight) / self.cost(weight)
@@ -112,8 +132,8 @@ class Fit:
         return np.minimum(np.asarray(data.time[:, 0]) + cycles * 2 * np.pi / np.asarray(data.pace), np.asarray(self.ends))
 
     def information(self, until) -> float:
-        """How many independent `observations` all records stand for."""
-        return float(np.sum(observations(self.problem.data, until)))
+        """Number of `independent_observations` in all records."""
+        return float(np.sum(independent_observations(self.problem.data, until)))
 
     def cost(self, weight: np.ndarray) -> float:
         """Weighted sum of squares where the fit is; 1 before it has begun."""
@@ -131,13 +151,13 @@ class Fit:
         return float(np.sum(np.where(self.scored, np.sqrt(self.mean_squares()) / self.spread, 0.0)))
 
 
-def observations(data: Data, until) -> np.ndarray:
+def independent_observations(data: DecayData, until) -> np.ndarray:
     """How many independent observations each record stands for when the model's error, not noise, is what is left: four for
     every cycle of the released motion."""
     return 4 * (np.asarray(until) - np.asarray(data.time[:, 0])) / (2 * np.pi / np.asarray(data.pace))
 
 
-def scored(records: Sequence[Record], data: Data) -> tuple[np.ndarray, np.ndarray]:
+def scored_channels(records: Sequence[Record], data: DecayData) -> tuple[np.ndarray, np.ndarray]:
     """Which record's which channel counts in J, and the standard deviation of every measured series (record, channel)."""
     counts = np.zeros((len(records), len(data.dofs)), dtype=bool)
     spread = np.ones((len(records), len(data.dofs)))
@@ -149,13 +169,13 @@ def scored(records: Sequence[Record], data: Data) -> tuple[np.ndarray, np.ndarra
     return counts, spread
 
 
-def samples_until(data: Data, until) -> np.ndarray:
+def samples_until(data: DecayData, until) -> np.ndarray:
     """How many samples every record and channel has up to `until` (s, by record)."""
     return (np.asarray(data.present) * (np.asarray(data.time) <= np.asarray(until)[:, None])[:, None]).sum(axis=-1)
 
 
-def weights(
-    records: Sequence[Record], data: Data, counts: np.ndarray, spreads: np.ndarray, factor: np.ndarray, until=None
+def record_weights(
+    records: Sequence[Record], data: DecayData, counts: np.ndarray, spreads: np.ndarray, factor: np.ndarray, until=None
 ) -> np.ndarray:
     """What multiplies the squares, by record and channel: with `factor` 1 the sum over records of (RMSE / spread)^2.
 
@@ -164,7 +184,7 @@ def weights(
     """
     samples = samples_until(data, data.time[:, -1] if until is None else until)
     scale = np.where(counts, spreads, np.asarray(data.unit))
-    return np.where(counts, 1.0, SIDE) * factor[:, None] / (np.maximum(samples, 1) * scale**2)
+    return np.where(counts, 1.0, SIDE_CHANNEL_WEIGHT) * factor[:, None] / (np.maximum(samples, 1) * scale**2)
 
 
 def calibrate(
@@ -175,17 +195,27 @@ def calibrate(
     start: dict[str, float] | None = None,
     begin: dict[str, float] | None = None,
 ) -> Calibration:
-    """Fit the declared model's coefficients to the decay records marked `fit`, all together.
+    """Fit the baseline model's coefficients to all decay records marked `fit`.
 
-    What is minimised is the contract's J = sum of RMSE / standard deviation over the records' released degrees of freedom, by
-    least squares with weights renewed from the errors reached (so that the sum of RMSE, not of squares, is stationary). The
-    window grows from a little over one cycle to the whole record, which finds the natural periods before the phase of
-    late cycles matters. Where the fit comes down to the noise everywhere, a last pass weighs every sample by its noise, which
-    is maximum likelihood. Initial position, rate and sensor offset of every record and channel are free.
+    The objective is J, the sum of RMSE / standard deviation over the records' released degrees of freedom. It is minimised
+    by least squares, with weights renewed from the errors reached, so that the sum of RMSE is stationary. The fitted window
+    grows from a little over one cycle to the whole record: natural periods are found before the phase of late cycles
+    matters. Where the error comes down to the noise everywhere, a last pass weighs every sample by its noise (maximum
+    likelihood). Initial position, initial rate and sensor offset of every record and channel are free.
 
-    `free` are labels or patterns (the manifest's by default), `start` values in place of the platform's, where the fit begins
-    and which the vague priors are about; `begin` values where it begins, priors or not (those of a search).
-    Raises InputError where there is nothing to fit, Interrupted (a KeyboardInterrupt) with what was reached.
+    Args:
+        campaign: The campaign.
+        free: Labels or patterns of the free parameters; None for those of the manifest.
+        progress: Function that is called with the progress after every iteration.
+        start: Values in place of the platform's, by label. The fit begins there, and vague priors are centred there.
+        begin: Values where the fit begins, by label, without effect on priors. Those of a search, for example.
+
+    Returns:
+        The calibrated model, its parameters with their uncertainty, and all decay tests.
+
+    Raises:
+        InputError: If there is nothing to fit.
+        Interrupted: If the user stops the fit (a KeyboardInterrupt); it holds what was reached.
     """
     begun = clock.monotonic()
 
@@ -193,13 +223,13 @@ def calibrate(
         if progress is not None:
             progress(Progress(stage, iteration, objective, fraction))
 
-    fit = prepare(campaign, free=free, start=start, begin=begin, report=report)
+    fit = prepare_fit(campaign, free=free, start=start, begin=begin, report=report)
 
     def finish() -> Calibration:
         return conclude(campaign, fit.problem.model, fit, clock.monotonic() - begun)
 
     try:
-        run(fit)
+        run_fit(fit)
     except KeyboardInterrupt:
         stopping()
         fit.converged = False
@@ -207,14 +237,14 @@ def calibrate(
     return finish()
 
 
-def prepare(
+def prepare_fit(
     campaign: Campaign,
     *,
     free: Sequence[str] | None = None,
     start: dict[str, float] | None = None,
     begin: dict[str, float] | None = None,
     report: Callable[[str, int, float, float], None] = lambda *_: None,
-) -> Fit:
+) -> DecayFit:
     """A calibration to the decays before its first step. Arguments and InputError are those of `calibrate`."""
     source = str(campaign.folder / "campaign.yaml")
     records = [record for record in campaign.used("fit") if record.kind == "decay"]
@@ -231,16 +261,16 @@ def prepare(
     declared = campaign.model
     labels = labels_of(campaign, declared, [str(record.degree_of_freedom) for record in records], free)
     first = declared.with_values(start or {})
-    problem = pose(first, campaign, records, space_of(campaign, labels, first))
+    problem = set_up_decays(first, campaign, records, space_of(campaign, labels, first))
     x = jnp.array([p.transform.inverse((begin or {}).get(p.label, p.start)) for p in problem.space.free])
-    return Fit(problem, records, Unknowns(x, first_guess(records, problem.data)), report)
+    return DecayFit(problem, records, Unknowns(x, first_guess(records, problem.data)), report)
 
 
 def labels_of(campaign: Campaign, declared: Model, moved: Sequence[str], free: Sequence[str] | None) -> tuple[str, ...]:
     """The free parameters: those that `moved` motions are about, or the labels and patterns asked for. Raises InputError where
     there are none."""
     source, wish = str(campaign.folder / "campaign.yaml"), campaign.manifest.calibrate
-    labels = choose(declared, moved, wish.free if free is None else free, wish.fixed, source)
+    labels = match_free_labels(declared, moved, wish.free if free is None else free, wish.fixed, source)
     if not labels:
         none = f"none: the platform declares nothing that acts on {', '.join(sorted(set(moved)))}"
         raise InputError(source, [Wrong("calibrate.free", "at least one free parameter", none)])
@@ -258,14 +288,14 @@ def space_of(
     return parameter_space(begin, labels, dict(wish.bounds), {**(priors or {}), **stated}, source)
 
 
-def conclude(campaign: Campaign, declared: Model, fit: "Fit", seconds: float) -> Calibration:
+def conclude(campaign: Campaign, declared: Model, fit: "DecayFit", seconds: float) -> Calibration:
     """The result of a fit: parameters with their standard deviations, and all decay tests with the fitted model."""
     space, x = fit.problem.space, fit.unknowns.shared
     model = space.model(fit.problem.model, x)
     tests = series_of(fit.problem, fit.records, fit.unknowns)
     uncertainty, found = uncertainty_of(fit, tests)
     parameters = estimates(space, fit.problem.model, np.asarray(x), uncertainty)
-    lost = strays(tests, declared)
+    lost = records_not_followed(tests, declared)
     tests += held_out(campaign, declared, model)
     return Calibration(
         campaign.manifest.name,
@@ -289,38 +319,38 @@ def held_out(campaign: Campaign, declared: Model, model: Model) -> list[TestFit]
     if not held:
         return []
     empty = ParameterSpace(())
-    other = pose(model, campaign, held, empty)
-    judge = Fit(other, held, Unknowns(jnp.zeros(0), first_guess(held, other.data)), lambda *_: None)
-    weight = weights(held, other.data, judge.scored, judge.spread, np.ones(len(held)))
+    other = set_up_decays(model, campaign, held, empty)
+    judge = DecayFit(other, held, Unknowns(jnp.zeros(0), first_guess(held, other.data)), lambda *_: None)
+    weight = record_weights(held, other.data, judge.scored, judge.spread, np.ones(len(held)))
     judge.minimise("held-out records", weight, judge.ends, 1e-4, (1.0, 1.0))
-    return series_of(other, held, judge.unknowns, pose(declared, campaign, held, empty))
+    return series_of(other, held, judge.unknowns, set_up_decays(declared, campaign, held, empty))
 
 
-def pose(model: Model, campaign: Campaign, records: Sequence[Record], space: ParameterSpace) -> Problem:
+def set_up_decays(model: Model, campaign: Campaign, records: Sequence[Record], space: ParameterSpace) -> DecayProblem:
     """The fixed part of a calibration of `model` to decay records."""
     periods = natural_modes(model).period
     step = float(periods.min()) / STEPS_PER_PERIOD
     # a model that starts with periods far too long would step too far for the true ones
     step = min([step, memory_step(model), *(dominant_period(record) / STEPS_PER_PERIOD for record in records)])
-    data = gather(records, model, step)
+    data = gather_decays(records, model, step)
     rest = None if space.moves_equilibrium else equilibrium(model)
-    return Problem(model, data, space, campaign.manifest.zero is not None, rest)
+    return DecayProblem(model, data, space, campaign.manifest.zero is not None, rest)
 
 
-def run(fit: Fit, near: bool = False) -> None:
+def run_fit(fit: DecayFit, near: bool = False) -> None:
     """The stages of a fit; where `near`, no more than brings it near."""
     data, records = fit.problem.data, fit.records
     period, start = 2 * np.pi / np.asarray(data.pace), np.asarray(data.time[:, 0])
     length = (np.asarray(fit.ends) - start) / period
-    even, cycles = np.array([record.test.weight for record in records]), CYCLES
-    windows = max(1, int(np.ceil(np.log(length.max() / CYCLES) / np.log(GROWTH))))
+    even, cycles = np.array([record.test.weight for record in records]), FIRST_WINDOW_CYCLES
+    windows = max(1, int(np.ceil(np.log(length.max() / FIRST_WINDOW_CYCLES) / np.log(WINDOW_GROWTH))))
     done = 0
     while cycles < length.max():
         until = fit.window(cycles)
-        weight = weights(records, data, fit.scored, fit.spread, even, until)
+        weight = record_weights(records, data, fit.scored, fit.spread, even, until)
         fit.minimise(f"first {cycles:.3g} cycles", weight, until, 1e-2, (0.4 * done / windows, 0.4 * (done + 1) / windows))
-        cycles, done = cycles * GROWTH, done + 1
-    weight = weights(records, data, fit.scored, fit.spread, even)
+        cycles, done = cycles * WINDOW_GROWTH, done + 1
+    weight = record_weights(records, data, fit.scored, fit.spread, even)
     fit.minimise("whole records", weight, fit.ends, 1e-3, (0.4, 0.6))
     if near:
         return
@@ -333,7 +363,7 @@ def run(fit: Fit, near: bool = False) -> None:
             fit.converged = fit.minimise("noise level", weight, fit.ends, 2e-6, (0.8, 1.0), fit.samples.sum())
             return
         main = np.where(fit.scored, np.maximum(error, noise) / fit.spread, 0).sum(axis=1)
-        renewed = weights(records, data, fit.scored, fit.spread, even / main)
+        renewed = record_weights(records, data, fit.scored, fit.spread, even / main)
         settled = np.allclose(renewed / renewed.max(), weight / weight.max(), rtol=0.02)
         weight = renewed
         fit.converged = fit.minimise("sum of RMSE", weight, fit.ends, 1e-5, (0.6, 0.9))

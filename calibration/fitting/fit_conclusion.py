@@ -1,4 +1,4 @@
-"""What a finished fit says: parameters with their uncertainty, series measured against simulated, remarks in words."""
+"""Results of a finished fit: estimates, measured and simulated series, remarks."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.wave_band import band_sentence
 from calibration.fitting.unit_hints import unit_hints
 from calibration.formatting import listed, percent_span
-from calibration.identifiability.directions import Identifiability, family
-from calibration.identifiability.information import CLEAR
+from calibration.identifiability.directions import Identifiability, parameter_family
+from calibration.identifiability.information import IDENTIFIABLE_DEVIATION
 from calibration.identifiability.standard_deviations import Spread
 from calibration.parameters.space import ParameterSpace, slopes
-from calibration.residuals.decays import Problem, Unknowns
+from calibration.residuals.decays import DecayProblem, Unknowns
 from calibration.result import Estimate, Series, TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.environment import DOFS
 
-LOST = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
+NOT_FOLLOWED_ERROR = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
 
 
 def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: Spread) -> dict[str, Estimate]:
@@ -39,7 +39,9 @@ def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: S
         bound = parameter.transform.at_bound(x[i])
         value, small = float(parameter.transform.forward(jnp.asarray(x[i]))), float(abs(slope[i]) * deviation[i])
         # known to a quarter of its size, or known to be small
-        clear = bool(deviation[i] < CLEAR or small < CLEAR * abs(parameter.start)) and not bound
+        clear = (
+            bool(deviation[i] < IDENTIFIABLE_DEVIATION or small < IDENTIFIABLE_DEVIATION * abs(parameter.start)) and not bound
+        )
         about = model.about(parameter.label)
         found[parameter.label] = Estimate(
             parameter.label,
@@ -55,11 +57,13 @@ def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: S
 
 
 @eqx.filter_jit
-def _motions(problem: Problem, unknowns: Unknowns, x):
+def _motions(problem: DecayProblem, unknowns: Unknowns, x):
     return jax.lax.map(lambda inputs: problem.motion(x, *inputs), (unknowns.own, problem.data))
 
 
-def series_of(problem: Problem, records: Sequence[Record], unknowns: Unknowns, before: Problem | None = None) -> list[TestFit]:
+def series_of(
+    problem: DecayProblem, records: Sequence[Record], unknowns: Unknowns, before: DecayProblem | None = None
+) -> list[TestFit]:
     """Every record measured against simulated. `before` is the same with the model that the calibration started from."""
     data = problem.data
     after = np.asarray(_motions(problem, unknowns, unknowns.shared))
@@ -93,12 +97,12 @@ def series_of(problem: Problem, records: Sequence[Record], unknowns: Unknowns, b
     return tests
 
 
-def strays(tests: Sequence[TestFit], declared: Model) -> list[str]:
+def records_not_followed(tests: Sequence[TestFit], declared: Model) -> list[str]:
     """Sentences on fitted tests that the model does not follow, one for each motion. Most often a unit, a scale or a mass is
     wrong."""
     lost: dict[str, list[TestFit]] = {}
     for test in tests:
-        if test.use == "fit" and test.main.relative >= LOST:
+        if test.use == "fit" and test.main.relative >= NOT_FOLLOWED_ERROR:
             lost.setdefault(test.main.channel, []).append(test)
     if not lost:
         return []
@@ -125,11 +129,11 @@ def remarks(
     kinds: Sequence[str] = ("decay",),
 ) -> tuple[str, ...]:
     """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
-    said = [str(finding) for finding in grouped(campaign.findings)]
+    said = [str(finding) for finding in group_findings(campaign.findings)]
     left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
     if left:
         said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
-    if campaign.used("fit") and not any(family(label) == "damping" for label in parameters):
+    if campaign.used("fit") and not any(parameter_family(label) == "damping" for label in parameters):
         said.append("no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out")
     band = band_sentence(campaign.manifest, campaign.model, campaign.records) if set(IN_WAVES) & set(kinds) else None
     said += [] if band is None else [band]

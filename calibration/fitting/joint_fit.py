@@ -1,4 +1,4 @@
-"""Calibration to tests of all kinds together: decays, tests in waves, static offsets and natural periods."""
+"""Joint calibration to decays, tests in waves, static offsets and natural periods."""
 
 import time as clock
 from collections.abc import Callable, Sequence
@@ -8,14 +8,14 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.fitting.decay_fit import Interrupted, Progress, held_out, labels_of, prepare, run, space_of
-from calibration.fitting.fit_conclusion import estimates, remarks, strays
+from calibration.fitting.decay_fit import Interrupted, Progress, held_out, labels_of, prepare_fit, run_fit, space_of
+from calibration.fitting.fit_conclusion import estimates, records_not_followed, remarks
 from calibration.fitting.joint_state import JointFit, Kind, Loss, Sources
 from calibration.fitting.sea_fit import tests_in_waves
 from calibration.formatting import listed, number, percent, with_deviation
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction
-from calibration.residuals.seas import Objective, SeaProblem, pose_in_waves
-from calibration.residuals.static import pose_offsets, pose_periods
+from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
+from calibration.residuals.static import set_up_offsets, set_up_periods
 from calibration.result import Calibration
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model
@@ -37,16 +37,30 @@ def calibrate_jointly(
     loss: Loss = "squares",
     options: Options | None = None,
 ) -> Calibration:
-    """Fit the declared model's coefficients to all that a campaign has of some `kinds`, together.
+    """Fit the baseline model's coefficients to decays, tests in waves, static offsets and natural periods.
 
-    Decays and tests in waves as `calibrate` and `calibrate_in_waves` take them (`objective` is the latter's); static tests
-    marked `fit` with a `degree_of_freedom`, in which an unknown force holds that motion where it is, by the motions that go
-    with it; the natural periods that the manifest states. Each kind weighs by its own error, estimated from what is left of it,
-    times the `weight` of a test (see `JointFit`). The decays are fitted first, alone: the rest begins there. With `loss`
-    "cauchy" residuals beyond some standard deviations hardly count (outliers, stretches that the model cannot follow).
+    Decays and tests in waves enter as in `calibrate` and `calibrate_in_waves`. Static tests marked `fit` need a
+    `degree_of_freedom`: an unknown force holds that motion, and the motions that go with it are fitted. Natural periods are
+    those stated in the manifest. Each kind is weighed by its own error, estimated from its residuals, times the `weight` of
+    a test (see `JointFit`). The decays are fitted first, alone; the joint fit begins there.
 
-    `free`, `start` and `begin` as in `calibrate`. Raises InputError where there is nothing to fit, Interrupted with what was
-    reached.
+    Args:
+        campaign: The campaign.
+        kinds: Kinds of data to be fitted.
+        free: As in `calibrate`.
+        progress: Function that is called with the progress after every iteration.
+        start: As in `calibrate`.
+        begin: As in `calibrate`.
+        objective: Objective of tests in waves, as in `calibrate_in_waves`.
+        loss: "squares", or "cauchy", with which large residuals (outliers, stretches not followed) hardly count.
+        options: How waves are made and act, as in `calibrate_in_waves`.
+
+    Returns:
+        The calibrated model, its parameters with their uncertainty, and all tests.
+
+    Raises:
+        InputError: If there is nothing to fit.
+        Interrupted: If the user stops the fit; it holds what was reached.
     """
     begun = clock.monotonic()
     options = options_of(campaign) if options is None else options
@@ -84,21 +98,21 @@ def calibrate_jointly(
         def first(stage: str, iteration: int, value: float, fraction: float) -> None:
             report(stage, iteration, value, 0.3 * fraction, "J")
 
-        fit = prepare(campaign, free=labels, start=start, begin=begin, report=first)
-        run(fit)
+        fit = prepare_fit(campaign, free=labels, start=start, begin=begin, report=first)
+        run_fit(fit)
         x = fit.unknowns.shared
     made: Seas = seas_of(campaign, declared.environment, options) if waves else ()
     reached = space.model(first_model, x)
 
     def problem_in_waves(model: Model) -> SeaProblem:
         step = sea_step(declared, options)
-        return pose_in_waves(model, made, space, options, from_rest=from_rest, scale=scale, step=step, objective=objective)
+        return set_up_waves(model, made, space, options, from_rest=from_rest, scale=scale, step=step, objective=objective)
 
     sources = Sources(
         None if fit is None else fit.problem,
         problem_in_waves(reached) if waves else None,
-        pose_offsets(first_model, held, space, from_rest) if held else None,
-        pose_periods(first_model, stated_periods, space, scale) if stated_periods else None,
+        set_up_offsets(first_model, held, space, from_rest) if held else None,
+        set_up_periods(first_model, stated_periods, space, scale) if stated_periods else None,
     )
     later = 0.3 if decays else 0.0
 
@@ -130,7 +144,7 @@ def _conclude(
     spread, known = joint.uncertainty(words)
     parameters = estimates(joint.space, declared, x, spread)
     tests = list(joint.tests)
-    lost = strays(tests, declared) if joint.loss == "squares" else []  # outliers are no sign of a wrong model
+    lost = records_not_followed(tests, declared) if joint.loss == "squares" else []  # outliers are no sign of a wrong model
     notes: tuple[str, ...] = ()
     if tests:
         tests += held_out(campaign, declared, model)

@@ -1,4 +1,4 @@
-"""A calibration to tests of all kinds together, under way: what is fitted, how it is weighed, what it knows."""
+"""State of a joint calibration: sources, errors, weights, uncertainty."""
 
 import math
 from collections.abc import Callable
@@ -9,33 +9,34 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.fitting.decay_fit import Fit, weights
+from calibration.fitting.decay_fit import DecayFit, record_weights
 from calibration.fitting.fit_conclusion import series_of
 from calibration.fitting.levenberg_marquardt import descend
-from calibration.identifiability.directions import Identifiability, stated
-from calibration.identifiability.information import LEAST_VARIANCE
-from calibration.identifiability.standard_deviations import Spread, memory
+from calibration.identifiability.directions import Identifiability, identifiability_at
+from calibration.identifiability.information import MIN_VARIANCE
+from calibration.identifiability.standard_deviations import Spread, correlated_samples
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import Problem, Unknowns, condensed, condensed_groups
-from calibration.residuals.seas import SeaProblem, look
+from calibration.residuals.decays import DecayProblem, Unknowns, condensed_decays, condensed_groups
+from calibration.residuals.seas import SeaProblem, residuals_and_reach
 from calibration.residuals.static import OffsetProblem, PeriodProblem
 from calibration.result import TestFit
 from jaxhydro.environment import DOFS
 
 Kind = Literal["decays", "waves", "offsets", "periods"]
 Loss = Literal["squares", "cauchy"]
-ROUNDS = 6  # times that the errors of the kinds of data are estimated anew
-SETTLED = 0.1  # relative change of these that is none
+MAX_ROUNDS = 6  # times that the errors of the kinds of data are estimated anew
+ERROR_TOLERANCE = 0.1  # relative change of these that is none
 TOLERANCE = 1e-4
-TRUST = 1.0
-TAIL = 2.385  # standard deviations: Cauchy's loss is then 95 % efficient on normal errors (Holland and Welsch 1977, table 1)
-LEAST = {"waves": 0.02, "offsets": 1e-3}  # error of ln(energy), share of the held motion: below, a fit proves nothing
+INITIAL_TRUST = 1.0
+# standard deviations: Cauchy's loss is then 95 % efficient on normal errors (Holland and Welsch 1977, table 1)
+CAUCHY_SCALE = 2.385
+MIN_ERROR = {"waves": 0.02, "offsets": 1e-3}  # error of ln(energy), share of the held motion: below, a fit proves nothing
 
 
 class Sources(NamedTuple):
     """What is fitted; None where there is nothing of a kind."""
 
-    decays: Problem | None
+    decays: DecayProblem | None
     waves: SeaProblem | None
     offsets: OffsetProblem | None
     periods: PeriodProblem | None
@@ -55,7 +56,7 @@ def _objective(unknowns: Unknowns, args):
     sources, weight, until, (mean, width) = args
     rows, products = [], []
     if sources.decays is not None:
-        row, product = condensed(unknowns, sources.decays, weight.decays, until)
+        row, product = condensed_decays(unknowns, sources.decays, weight.decays, until)
         rows.append(row)
         products.append(product)
     for source, mine in zip(sources[1:], weight[1:], strict=True):
@@ -66,7 +67,7 @@ def _objective(unknowns: Unknowns, args):
     return (tuple(rows), (unknowns.shared - mean) / width), tuple(products)
 
 
-class Errors(NamedTuple):
+class ResidualStatistics(NamedTuple):
     """Variance of residuals and how many of them count as one: of decays by record and channel, else by group."""
 
     variance: np.ndarray
@@ -85,14 +86,14 @@ class JointFit:
     def __init__(
         self,
         sources: Sources,
-        decays: Fit | None,
+        decays: DecayFit | None,
         space: ParameterSpace,
         x,
         report: Callable,
         loss: Loss,
-        pose: Callable[[Any], SeaProblem],
+        set_up: Callable[[Any], SeaProblem],
     ) -> None:
-        self.pose = pose
+        self.set_up = set_up
         self.sources, self.decays, self.space, self.report, self.loss = sources, decays, space, report, loss
         self.mean, self.width = space.prior
         own = jnp.zeros((0, 0)) if decays is None else decays.unknowns.own
@@ -105,7 +106,7 @@ class JointFit:
         self.errors = self.estimate()
         self.weights = self.weigh()
 
-    def estimate(self) -> dict[str, Errors]:
+    def estimate(self) -> dict[str, ResidualStatistics]:
         """Errors of every kind where the fit is."""
         found = {}
         x, sources = self.unknowns.shared, self.sources
@@ -114,36 +115,38 @@ class JointFit:
             found["decays"] = self.of_decays(sources.decays, self.decays)
         p = len(self.space.free)
         if sources.waves is not None:
-            there, self.inside = look(sources.waves, x)
+            there, self.inside = residuals_and_reach(sources.waves, x)
             groups = [np.asarray(group) for group in there]
             self.lengths = np.array([float(len(group)) for group in groups])
             bands = sources.waves.in_bands
-            independent = [len(g) if b else len(g) / memory(g) for g, b in zip(groups, bands)]
+            independent = [len(g) if b else len(g) / correlated_samples(g) for g, b in zip(groups, bands)]
             spare = sum(independent) / max(sum(independent) - p, 0.5 * sum(independent))
-            least = np.where(bands, LEAST["waves"] ** 2, LEAST_VARIANCE)
+            least = np.where(bands, MIN_ERROR["waves"] ** 2, MIN_VARIANCE)
             variance = np.maximum(spare * np.array([_mean_square(g, self.loss) for g in groups]), least)
-            found["waves"] = Errors(variance, np.array([1.0 if b else memory(g) for g, b in zip(groups, bands)]))
+            found["waves"] = ResidualStatistics(
+                variance, np.array([1.0 if b else correlated_samples(g) for g, b in zip(groups, bands)])
+            )
         if sources.offsets is not None:
             r = np.asarray(_offsets(sources.offsets, x))
-            least_offset = max(2.0 * _mean_square(r, self.loss), LEAST["offsets"] ** 2)
-            found["offsets"] = Errors(np.array([least_offset]), np.ones(1))
+            least_offset = max(2.0 * _mean_square(r, self.loss), MIN_ERROR["offsets"] ** 2)
+            found["offsets"] = ResidualStatistics(np.array([least_offset]), np.ones(1))
         if sources.periods is not None:
-            found["periods"] = Errors(np.ones(1), np.ones(1))
+            found["periods"] = ResidualStatistics(np.ones(1), np.ones(1))
         return found
 
-    def of_decays(self, problem: Problem, fit: Fit) -> Errors:
+    def of_decays(self, problem: DecayProblem, fit: DecayFit) -> ResidualStatistics:
         """Errors of every record's channels, not below their noise."""
         self.tests = series_of(problem, fit.records, self.unknowns)
         shape = fit.scored.shape
-        variance, inflation = np.full(shape, LEAST_VARIANCE), np.ones(shape)
+        variance, inflation = np.full(shape, MIN_VARIANCE), np.ones(shape)
         for i, (test, record) in enumerate(zip(self.tests, fit.records, strict=True)):
             for series in test.series:
                 j = problem.data.dofs.index(DOFS.index(series.channel))
                 r = series.simulated - series.measured
                 n = len(r)
                 variance[i, j] = max(_mean_square(r, self.loss) * n / max(n - 3, 1), record.noise[series.channel] ** 2)
-                inflation[i, j] = memory(r)
-        return Errors(variance, inflation)
+                inflation[i, j] = correlated_samples(r)
+        return ResidualStatistics(variance, inflation)
 
     def weigh(self) -> Weights:
         """Weights of all kinds by their errors."""
@@ -156,33 +159,33 @@ class JointFit:
             samples = np.asarray(fit.problem.data.present).sum(axis=-1)
             stated = np.array([record.test.weight for record in fit.records])
             known = np.where(counts, samples * spread**2 / (variance * inflation), 0.0).sum(axis=1)
-            of_decays = jnp.asarray(weights(fit.records, fit.problem.data, counts, spread, stated * known))
+            of_decays = jnp.asarray(record_weights(fit.records, fit.problem.data, counts, spread, stated * known))
         return Weights(of_decays, *(found.get(kind, none) for kind in ("waves", "offsets", "periods")))
 
     def run(self) -> None:
         """All rounds."""
-        for number in range(ROUNDS):
+        for number in range(MAX_ROUNDS):
             sources = self.sources
             if self.loss == "cauchy":
                 sources = _with_tails(sources, self.errors)
             until = jnp.zeros(0) if self.decays is None else self.decays.ends
             args = (sources, self.weights, until, (self.mean, jnp.asarray(self.width)))
-            for i, now in enumerate(descend(_objective, self.unknowns, args, TOLERANCE, TRUST)):
+            for i, now in enumerate(descend(_objective, self.unknowns, args, TOLERANCE, INITIAL_TRUST)):
                 self.unknowns, self.converged = now.unknowns, now.settled
                 there = [kind for kind, source in zip(get_args(Kind), sources, strict=True) if source is not None]
                 self.products = {kind: np.asarray(one) for kind, one in zip(there, now.aux, strict=True)}
                 self.iterations += 1
                 self.history.append(self.level())
-                self.report(f"round {number + 1}", self.iterations, self.history[-1], (number + min(1.0, i / 10)) / ROUNDS)
+                self.report(f"round {number + 1}", self.iterations, self.history[-1], (number + min(1.0, i / 10)) / MAX_ROUNDS)
             before, self.errors = self.errors, self.estimate()
             if not bool(self.inside):
                 assert self.sources.waves is not None
                 model = self.space.model(self.sources.waves.model, self.unknowns.shared)
-                self.sources, self.converged = self.sources._replace(waves=self.pose(model)), False
+                self.sources, self.converged = self.sources._replace(waves=self.set_up(model)), False
                 self.errors = self.estimate()
             self.weights = self.weigh()
             changes = [np.abs(np.log(self.errors[kind].variance / before[kind].variance)).max() for kind in self.errors]
-            if self.converged and max(changes) < SETTLED:
+            if self.converged and max(changes) < ERROR_TOLERANCE:
                 return
 
     def level(self) -> float:
@@ -238,7 +241,7 @@ class JointFit:
         ridge = 1 / self.width
         model = next(one for one in self.sources if one is not None).model
         x = np.asarray(self.unknowns.shared)
-        return stated(self.space, model, x, (products, parts[0], parts[1], parts[2]), ridge, self.width, source)
+        return identifiability_at(self.space, model, x, (products, parts[0], parts[1], parts[2]), ridge, self.width, source)
 
 
 @eqx.filter_jit
@@ -251,13 +254,13 @@ def _mean_square(residual: np.ndarray, loss: Loss) -> float:
     return float((1.4826 * np.median(np.abs(residual))) ** 2 if loss == "cauchy" else np.mean(residual**2))
 
 
-def _with_tails(sources: Sources, errors: dict[str, Errors]) -> Sources:
-    """The sources with residuals that count by Cauchy's loss beyond `TAIL` standard deviations."""
+def _with_tails(sources: Sources, errors: dict[str, ResidualStatistics]) -> Sources:
+    """The sources with residuals that count by Cauchy's loss beyond `CAUCHY_SCALE` standard deviations."""
 
     def tailed(kind: str, source):
         if source is None or kind == "periods":
             return source
-        tail = jnp.asarray(TAIL * np.sqrt(errors[kind].variance))
+        tail = jnp.asarray(CAUCHY_SCALE * np.sqrt(errors[kind].variance))
         return eqx.tree_at(lambda s: s.tail, source, tail, is_leaf=lambda leaf: leaf is None)
 
     return Sources(*(tailed(kind, source) for kind, source in zip(get_args(Kind), sources, strict=True)))

@@ -1,4 +1,4 @@
-"""Coefficients that depend on the sea: sea state by sea state, and as laws, of which seas held out choose one."""
+"""Choice of a law for coefficients that depend on the sea state, by held-out tests."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.fitting.decay_fit import Progress
-from calibration.fitting.law_parameters import LAWS, Law, base_of, of_law
+from calibration.fitting.law_parameters import LAWS, Law, base_label, is_law_parameter
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.identifiability.directions import Identifiability
 from calibration.residuals.measured_seas import Options, Seas, options_of, seas_of
@@ -23,13 +23,19 @@ from jaxhydro.platform.body import KeuleganCarpenter
 from jaxhydro.platform.drag_laws import drag_laws_of, parameter_label, surface_number
 from jaxhydro.waves.sea_state import SeaState
 
-CLOSE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
+HELD_OUT_TOLERANCE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
 
 
 @dataclass(frozen=True, eq=False)
 class LawFit:
-    """A law's calibration, and the root mean square of ln(simulated / measured energy) in the bands of the fitted tests and of
-    tests that it was not fitted to."""
+    """Calibration with one law, and its errors.
+
+    Attributes:
+        name: Name of the law.
+        calibration: The calibration.
+        fitted: Root mean square of ln(simulated / measured energy) in the bands of the fitted tests.
+        held_out: The same for tests that the law was not fitted to.
+    """
 
     name: str
     calibration: Calibration
@@ -38,7 +44,7 @@ class LawFit:
 
     def added(self) -> dict[str, float]:
         """Label -> value of what the law adds to coefficients."""
-        return {label: one.value for label, one in self.calibration.parameters.items() if of_law(label)}
+        return {label: one.value for label, one in self.calibration.parameters.items() if is_law_parameter(label)}
 
     def coefficient(self, label: str, state: SeaState) -> tuple[float, float]:
         """A coefficient in a sea state, and the standard deviation of its logarithm.
@@ -76,8 +82,15 @@ def _deviation(known: Identifiability, label: str, logs: Mapping[str, float]) ->
 
 
 @dataclass(frozen=True, eq=False)
-class OneSea:
-    """A test in irregular waves: what it is used for, its measured sea state, and the calibration to it alone."""
+class SeaStateFit:
+    """Calibration to one test in irregular waves.
+
+    Attributes:
+        id: Name of the test.
+        use: Use of the test: `fit`, `holdout` or `ignore`.
+        state: Measured sea state.
+        calibration: Calibration to this test alone.
+    """
 
     id: str
     use: str
@@ -87,11 +100,18 @@ class OneSea:
 
 @dataclass(frozen=True, eq=False)
 class SeaLaws:
-    """Laws in the order asked for, calibrations sea by sea, and the tests that judged: held out, or left out one by one. Where
-    the user stopped it, not `finished`, they are those that had been made."""
+    """Laws over the sea state, compared on tests that they were not fitted to.
+
+    Attributes:
+        laws: Calibrations by law, in the order asked for.
+        seas: Calibrations to single sea states.
+        judged_by: Names of the tests on which the laws are compared.
+        left_out: Whether these are fitted tests left out in turn, since no test is held out.
+        finished: False where the user stopped the comparison; then only what was done is there.
+    """
 
     laws: tuple[LawFit, ...]
-    seas: tuple[OneSea, ...]
+    seas: tuple[SeaStateFit, ...]
     judged_by: tuple[str, ...]
     left_out: bool
     finished: bool = True
@@ -100,11 +120,11 @@ class SeaLaws:
     def chosen(self) -> LawFit:
         """The law with the least held-out error; an earlier one that is as good to 2 % is preferred."""
         least = min(law.held_out for law in self.laws)
-        return next(law for law in self.laws if law.held_out <= (1 + CLOSE) * least)
+        return next(law for law in self.laws if law.held_out <= (1 + HELD_OUT_TOLERANCE) * least)
 
     def labels(self) -> list[str]:
         """The coefficients that any of the laws lets depend on the sea state or the motion."""
-        return list(dict.fromkeys(base_of(label) for law in self.laws for label in law.added()))
+        return list(dict.fromkeys(base_label(label) for law in self.laws for label in law.added()))
 
 
 def choose_law(
@@ -116,13 +136,27 @@ def choose_law(
     options: Options | None = None,
     progress: Callable[[Progress], None] | None = None,
 ) -> SeaLaws:
-    """Drag and damping coefficients sea state by sea state, as constants, as powers of the sea state, and drag as a power of
-    the Keulegan-Carpenter number or apart for slow and fast motion: `LawFit` of each.
+    """Choose a law over the sea state for drag and damping coefficients, by tests not fitted.
 
-    Every law is fitted to the tests in irregular waves marked `fit` and judged by those marked `holdout`; where none is, by the
-    fitted ones left out in turn. The energies in bands are the objective. Arguments are those of `calibrate_in_waves`; the laws
-    start where the constants ended, whose values also are the middle of the priors sea by sea. Raises InputError where there
-    are too few tests to judge, Interrupted where the user stops it before a law is fitted.
+    The laws are constants, powers of the sea state, and drag as a power of the Keulegan-Carpenter number or apart for slow
+    and fast motion. Every law is fitted to the tests in irregular waves marked `fit`. The laws are compared on the tests
+    marked `holdout`; where there is none, on the fitted ones left out in turn. Energies in bands are the objective. Other
+    laws start where the constants ended; their values are also the centre of the priors sea by sea.
+
+    Args:
+        campaign: The campaign.
+        laws: Names of the laws.
+        free: As in `calibrate_in_waves`.
+        start: As in `calibrate_in_waves`.
+        options: As in `calibrate_in_waves`.
+        progress: Function that is called with the progress after every iteration.
+
+    Returns:
+        A calibration by law, one by sea state, and the chosen law.
+
+    Raises:
+        InputError: If there are too few tests to compare laws.
+        Interrupted: If the user stops it before a law is fitted.
     """
     options = options_of(campaign) if options is None else options
     source = str(campaign.folder / "campaign.yaml")
@@ -143,7 +177,7 @@ def choose_law(
                 stage = f"{done + 1} of {count}, {name}: {now.stage}"
                 progress(replace(now, stage=stage, fraction=(done + now.fraction) / count))
 
-        used, seas = with_uses(campaign, made, uses)
+        used, seas = with_test_uses(campaign, made, uses)
         found = calibrate_in_waves(
             used, free=free, start=begin, options=options, over=over, drag=drag, made=seas, progress=report
         )
@@ -151,23 +185,23 @@ def choose_law(
         return found
 
     found: list[LawFit] = []
-    seas: list[OneSea] = []
+    seas: list[SeaStateFit] = []
     finished = False
     try:
         for name in laws:
             begin = {k: p.value for k, p in found[0].calibration.parameters.items()} if found else start
             whole = one(name, {}, begin, name)
             if held:
-                judged = [error(whole, held)]
+                judged = [energy_error(whole, held)]
             else:
-                judged = [error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
-            found.append(LawFit(name, whole, error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
-        values = {k: p.value for k, p in found[0].calibration.parameters.items() if not of_law(k)}
+                judged = [energy_error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
+            found.append(LawFit(name, whole, energy_error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
+        values = {k: p.value for k, p in found[0].calibration.parameters.items() if not is_law_parameter(k)}
         for id in [*fitted, *held]:
             alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
             record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)
             state = sea_state(run, record, options.low, options.cutoff)
-            seas.append(OneSea(id, record.use, state, one(f"{id} alone", alone, values)))
+            seas.append(SeaStateFit(id, record.use, state, one(f"{id} alone", alone, values)))
         finished = True
     except KeyboardInterrupt:
         stopping()
@@ -176,13 +210,13 @@ def choose_law(
     return SeaLaws(tuple(found), tuple(seas), tuple(held or fitted), not held, finished)
 
 
-def error(calibration: Calibration, tests: Sequence[str]) -> float:
+def energy_error(calibration: Calibration, tests: Sequence[str]) -> float:
     """Root mean square of ln(simulated / measured energy) over the bands of tests."""
     bands = [band for test in calibration.tests if test.id in tests for row in test.bands.values() for band in row.values()]
     return error_of_energies(band.after for band in bands)
 
 
-def with_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:
+def with_test_uses(campaign: Campaign, made: Seas, uses: Mapping[str, str]) -> tuple[Campaign, Seas]:
     """The campaign and its runs with tests used otherwise, id -> use; runs without a test left are left out."""
 
     def changed(records: Sequence[Any]) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""Laws that a declared model's drag and damping coefficients are given, to be fitted with them: all begin at their null."""
+"""Laws for drag and damping coefficients, added to a model at their neutral values."""
 
 import math
 from collections.abc import Sequence
@@ -20,33 +20,33 @@ Over = Literal["significant_height", "peak_period"]
 Drag = Literal["keulegan_carpenter", "high_pass"]
 Law = Literal["constant", "significant_height", "peak_period", "both", "keulegan_carpenter", "high_pass"]
 
-PLAIN = 1.0  # standard deviation of the prior of an exponent about 0
-WINDOW = 60.0  # s, of a Keulegan-Carpenter number, where no motion has a natural period
+EXPONENT_DEVIATION = 1.0  # standard deviation of the prior of an exponent about 0
+DEFAULT_WINDOW = 60.0  # s, of a Keulegan-Carpenter number, where no motion has a natural period
 
 
-def of_law(label: str) -> bool:
+def is_law_parameter(label: str) -> bool:
     """Whether a parameter is one that a law adds to a coefficient."""
     return is_exponent(label) or coefficient_label(label) is not None
 
 
-def base_of(label: str) -> str:
+def base_label(label: str) -> str:
     """The coefficient whose law a parameter belongs to."""
     return split(label)[0] if is_exponent(label) else coefficient_label(label) or label
 
 
-def reference_of(made: Seas, options: Options) -> SeaState:
+def reference_sea_state(made: Seas, options: Options) -> SeaState:
     """The geometric mean of the sea states of the tests that are fitted, to two digits."""
     states = [sea_state(run, r, options.low, options.cutoff) for run, _ in made for r in run.records if r.use == "fit"]
     return SeaState(*(float(f"{math.exp(value):.2g}") for value in np.log(states).mean(axis=0)))
 
 
-def with_laws(model: Model, labels: Sequence[str], over: Sequence[Over], reference: SeaState) -> Model:
+def with_sea_state_laws(model: Model, labels: Sequence[str], over: Sequence[Over], reference: SeaState) -> Model:
     """The model with powers of the sea state, of exponent 0, for some of its coefficients, where it has none of its own."""
     exponents = {label: 0.0 for one in labels for kind in over if (label := exponent_label(one, kind)) not in model.values}
     return replace(model, loads=with_exponents(model.loads, exponents, reference))
 
 
-def with_drag(model: Model, labels: Sequence[str], kind: Drag, state: SeaState, cutoff: float) -> tuple[Model, list[str]]:
+def with_drag_law(model: Model, labels: Sequence[str], kind: Drag, state: SeaState, cutoff: float) -> tuple[Model, list[str]]:
     """The model with a law in place of plain drag for those of `labels` that have it, and the labels of what is to be fitted.
 
     "keulegan_carpenter": the exponent, 0; its reference is the number of the waves' own motion at the surface in a sea `state`,
@@ -60,7 +60,9 @@ def with_drag(model: Model, labels: Sequence[str], kind: Drag, state: SeaState, 
         finite = [float(f"{period:.2g}") for period in np.asarray(periods) if np.isfinite(period)]
         for label in plain:
             number = float(f"{surface_number(model.hull, label, state.significant_height):.2g}")
-            laws[label] = KeuleganCarpenter(law=kind, exponent=0.0, reference=number, window=max(finite, default=WINDOW))
+            laws[label] = KeuleganCarpenter(
+                law=kind, exponent=0.0, reference=number, window=max(finite, default=DEFAULT_WINDOW)
+            )
         return with_drag_laws(model, laws), [parameter_label(label, "exponent") for label in plain]
     laws = {label: HighPass(law=kind, cutoff=cutoff, low_share=1.0) for label in plain}
     return with_drag_laws(model, laws), [parameter_label(label, "low_share") for label in plain]

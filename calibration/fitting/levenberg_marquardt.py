@@ -1,4 +1,4 @@
-"""The optimiser: optimistix's Levenberg-Marquardt with steps that cannot run away."""
+"""Levenberg-Marquardt optimiser with limited steps, on optimistix."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -52,7 +52,7 @@ class ClippedLevenbergMarquardt(optx.AbstractGaussNewton):
     def __init__(self, rtol: float, atol: float, longest: float = 0.7):
         self.rtol, self.atol, self.norm = rtol, atol, optx.max_norm
         self.descent = ClippedDescent(optx.DampedNewtonDescent(linear_solver=lx.QR()), longest)
-        self.search = _Region()
+        self.search = _TrustRegion()
         self.verbose = _silent
 
 
@@ -60,7 +60,7 @@ def _silent(**_: Any) -> None:
     return None
 
 
-class _Region(optx.ClassicalTrustRegion):
+class _TrustRegion(optx.ClassicalTrustRegion):
     """optimistix's trust region, its cutoffs chosen for residuals relative to the motion."""
 
     high_cutoff: float = 0.75
@@ -69,13 +69,13 @@ class _Region(optx.ClassicalTrustRegion):
     low_constant: float = 0.25
 
 
-PATIENCE = 60  # iterations at most
-TRUST = 100.0  # for residuals relative to the motion
-REFUSED = 8  # refused steps in a row after which there is nowhere to go
+MAX_ITERATIONS = 60  # iterations at most
+DEFAULT_TRUST = 100.0  # for residuals relative to the motion
+MAX_REFUSED_STEPS = 8  # refused steps in a row after which there is nowhere to go
 SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # `descend` ends by its own tolerance
 
 
-class Reached(NamedTuple):
+class DescentState(NamedTuple):
     """Where a descent is after an iteration: the unknowns, what the objective returned beside its residuals there, and whether
     it ended there of its own."""
 
@@ -95,25 +95,27 @@ def _step(objective: Callable, unknowns: PyTree, args: PyTree, state: Any):
     return SOLVER.step(objective, unknowns, args, {}, state, frozenset())
 
 
-def descend(objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float, trust: float = TRUST) -> Iterator[Reached]:
+def descend(
+    objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float, trust: float = DEFAULT_TRUST
+) -> Iterator[DescentState]:
     """Levenberg-Marquardt on the residuals that `objective(unknowns, args)` returns first, iteration by iteration. Its damping
     begins as 1 / `trust`.
 
     It is done where an accepted step gains less than `tolerance` of the sum of squares, where steps are refused however short
-    they are, or after `PATIENCE` iterations. One compilation serves all calls with arguments of the same shapes.
+    they are, or after `MAX_ITERATIONS` iterations. One compilation serves all calls with arguments of the same shapes.
     """
     state = _begin(objective, unknowns, args)
     state = eqx.tree_at(lambda s: s.search_state.step_size, state, jnp.asarray(trust))
     last, refused, accepted = math.inf, 0, 0
-    for _ in range(PATIENCE):
+    for _ in range(MAX_ITERATIONS):
         stop_if_asked()
         unknowns, state, _ = _step(objective, unknowns, args, state)
         cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
         taken = int(state.num_accepted_steps) > accepted
         accepted = int(state.num_accepted_steps)
         refused = 0 if taken else refused + 1
-        settled = (taken and last - cost < tolerance * cost) or refused >= REFUSED
+        settled = (taken and last - cost < tolerance * cost) or refused >= MAX_REFUSED_STEPS
         last = cost
-        yield Reached(unknowns, state.aux, settled and math.isfinite(cost))
+        yield DescentState(unknowns, state.aux, settled and math.isfinite(cost))
         if settled:
             return

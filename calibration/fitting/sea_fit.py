@@ -1,4 +1,4 @@
-"""Calibration in measured waves: free parameters fitted to the motions of tests in irregular and regular waves."""
+"""Calibration to the motions of tests in irregular and regular waves."""
 
 import math
 import time as clock
@@ -12,11 +12,19 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.fitting.decay_fit import Interrupted, Progress, labels_of, space_of
 from calibration.fitting.fit_conclusion import estimates, remarks
-from calibration.fitting.law_parameters import PLAIN, Drag, Over, of_law, reference_of, with_drag, with_laws
+from calibration.fitting.law_parameters import (
+    EXPONENT_DEVIATION,
+    Drag,
+    Over,
+    is_law_parameter,
+    reference_sea_state,
+    with_drag_law,
+    with_sea_state_laws,
+)
 from calibration.fitting.sea_descent import SeaFit
 from calibration.fitting.sea_remarks import sea_remarks
 from calibration.fitting.shooting_fit import ShootingFit
-from calibration.identifiability.directions import family
+from calibration.identifiability.directions import parameter_family
 from calibration.residuals.measured_seas import (
     Options,
     Seas,
@@ -29,7 +37,7 @@ from calibration.residuals.measured_seas import (
     with_diffraction,
 )
 from calibration.residuals.sea_errors import in_bands
-from calibration.residuals.seas import Objective, SeaProblem, pose_in_waves
+from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
 from calibration.result import BandError, Calibration, TestFit
 from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model
@@ -52,25 +60,40 @@ def calibrate_in_waves(
     drag: Drag | None = None,
     made: Seas | None = None,
 ) -> Calibration:
-    """Fit the declared model's coefficients to the tests in waves marked `fit`, all together, in their measured waves.
+    """Fit the baseline model's coefficients to all tests in waves marked `fit`, in their measured waves.
 
-    `objective` "bands": the logarithms of simulated over measured energy in the low and the wave-frequency band of every motion
-    that matters, which a sensor's clock and the phase of slow drift do not touch; "spectrum": the same in narrow cells of these
-    bands, up to eight of each, so that where a motion resonates and how sharply counts; "motion": simulated less measured,
-    sample by sample, over the measured standard deviation; "both", bands and motion; "blocks": the motion in blocks of three of
-    the slowest natural periods, each from an initial state of its own (multiple shooting, see `shooting`), for long tests, over
-    which a natural period that is slightly wrong puts slow motions out of phase. Of regular waves always the motion. Every free
-    parameter has a prior, a factor of 4.5 about where it starts unless the manifest says otherwise, weighed against the model's
-    own error, which is estimated from the residuals: energies in a few bands do not determine many coefficients, and say so by
-    their deviations.
+    Objectives:
+        "bands": ln(simulated / measured energy) in the low-frequency and the wave-frequency band of every motion that
+            matters. A sensor's clock and the phase of slow drift have no effect on it.
+        "spectrum": the same in up to eight narrow cells of each band. Frequency and sharpness of a resonance count.
+        "motion": simulated less measured over the measured standard deviation, sample by sample.
+        "both": bands and motion.
+        "blocks": the motion in blocks of three of the slowest natural periods, each from an initial state of its own
+            (multiple shooting, see `shooting`). For long tests, in which a slightly wrong natural period puts slow motions
+            out of phase.
 
-    `free` are labels or patterns (the manifest's by default), `start` values to begin from in place of the platform's.
-    `over`: free drag and damping coefficients become powers of significant height, peak period or both (`SeaStateLaw`), of
-    exponents with a prior of 0 +- 1; every test is then simulated with the coefficients of its own measured sea state. `drag`:
-    free coefficients of plain drag become powers of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`; the prior of an
-    exponent is 0 +- 1), or have a share of their own in motion slower than the waves (`HighPassDrag`): see `laws.with_drag`.
-    `made` are the campaign's runs and seas (`seas_of`), where they are at hand.
-    Raises InputError where there is nothing to fit, Interrupted with what was reached.
+    In regular waves the motion is always the objective. Every free parameter has a prior: by default a factor of 4.5 about
+    where it starts. The prior is weighed against the model's own error, which is estimated from the residuals.
+
+    Args:
+        campaign: The campaign.
+        free: Labels or patterns of the free parameters; None for those of the manifest.
+        progress: Function that is called with the progress after every iteration.
+        start: Values to begin from in place of the platform's, by label.
+        objective: The objective, see above.
+        options: How waves are made and act; None for the campaign's band of frequencies and defaults otherwise.
+        over: Sea-state variables. Free drag and damping coefficients become powers of these (`SeaStateLaw`), of exponents
+            with a prior of 0 +- 1. Every test is simulated with the coefficients of its own measured sea state.
+        drag: Law for free coefficients of plain drag: a power of the Keulegan-Carpenter number (`KeuleganCarpenterDrag`),
+            or a share of their own in motion slower than the waves (`HighPassDrag`). See `with_drag_law`.
+        made: Runs and seas of the campaign (`seas_of`), where they are at hand.
+
+    Returns:
+        The calibrated model, its parameters with their uncertainty, and all tests in waves.
+
+    Raises:
+        InputError: If there is nothing to fit.
+        Interrupted: If the user stops the fit; it holds what was reached.
     """
     begun = clock.monotonic()
     check(objective=(objective, get_args(Objective)), drag=(drag, (*get_args(Drag), None)))
@@ -87,19 +110,21 @@ def calibrate_in_waves(
     moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
     labels = list(labels_of(campaign, declared, moved, free))
     if over:
-        damping = [label for label in labels if family(label) == "damping"]
-        declared = with_laws(declared, damping, over, law_reference(declared.loads) or reference_of(made, options))
+        damping = [label for label in labels if parameter_family(label) == "damping"]
+        declared = with_sea_state_laws(
+            declared, damping, over, law_reference(declared.loads) or reference_sea_state(made, options)
+        )
     added = [label for label in declared.values if is_exponent(label) and label not in labels]
     if drag is not None:
-        state = reference_of(made, options)
-        declared, of_drag = with_drag(declared, labels, drag, state, options.low)
+        state = reference_sea_state(made, options)
+        declared, of_drag = with_drag_law(declared, labels, drag, state, options.low)
         if not of_drag:
             raise InputError(source, [Problem("calibrate.free", "a coefficient of plain drag", ", ".join(labels))])
         added += of_drag
     # what a law adds that is not asked for is left out
-    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not of_law(label)}
+    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not is_law_parameter(label)}
     declared = declared.with_values(begin)
-    exponents = {label: (0.0, PLAIN) for label in added if declared.about(label).null == 0}
+    exponents = {label: (0.0, EXPONENT_DEVIATION) for label in added if declared.about(label).null == 0}
     space = space_of(campaign, [*labels, *added], declared, exponents)
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:
@@ -108,8 +133,8 @@ def calibrate_in_waves(
 
     report("simulating the measured seas", 0, math.nan, 0.0)
 
-    def pose(model: Model) -> SeaProblem:
-        return pose_in_waves(
+    def set_up(model: Model) -> SeaProblem:
+        return set_up_waves(
             model,
             made,
             space,
@@ -120,7 +145,7 @@ def calibrate_in_waves(
             objective=objective,
         )
 
-    fit = (ShootingFit if objective == "blocks" else SeaFit)(pose, declared, report)
+    fit = (ShootingFit if objective == "blocks" else SeaFit)(set_up, declared, report)
     try:
         fit.run()
     except KeyboardInterrupt:

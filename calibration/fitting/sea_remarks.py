@@ -1,4 +1,4 @@
-"""What a calibration in waves adds in words: constants of its laws, short tests, held-out ones that it does not suit."""
+"""Remarks on a calibration in waves: constants of laws, short tests, held-out tests."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -9,8 +9,9 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.platform.drag_laws import drag_laws_of
 
-FEW = 10.0  # natural periods: the energy of a random motion in fewer says little (its relative deviation is some 1/sqrt(n))
-WORSE = 1.1  # of the error before, from which it is said
+# natural periods: the energy of a random motion in fewer says little (its relative deviation is some 1/sqrt(n))
+MIN_PERIODS = 10.0
+WORSE_RATIO = 1.1  # of the error before, from which it is said
 
 
 def sea_remarks(model: Model, tests: Sequence[TestFit]) -> tuple[str, ...]:
@@ -39,7 +40,7 @@ def _short(model: Model, tests: Sequence[TestFit]) -> Iterator[str]:
         few = [
             f"{length / period:.1f} of {channel}"
             for channel, period in periods.items()
-            if math.isfinite(period) and length < FEW * period
+            if math.isfinite(period) and length < MIN_PERIODS * period
         ]
         if few:
             alike.setdefault(f"{length:.0f} s are few natural periods ({', '.join(few)})", []).append(test.id)
@@ -56,7 +57,7 @@ def _held_out(tests: Sequence[TestFit]) -> Iterator[str]:
         if test.use != "holdout" or not pairs:
             continue
         before, after = map(error_of_energies, zip(*pairs, strict=True))
-        if after > WORSE * before:
+        if after > WORSE_RATIO * before:
             yield (
                 f"held out, {test.id} is followed worse than by the declared model: error of ln(energy) {number(before, 2)} "
                 f"before, {number(after, 2)} after"

@@ -1,4 +1,4 @@
-"""A calibration by blocks (`shooting`) under way: its unknowns eliminated, what they know, and how far blocks do not join."""
+"""State of a calibration in waves by blocks (multiple shooting)."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -7,25 +7,26 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.fitting.levenberg_marquardt import Reached, descend
+from calibration.fitting.levenberg_marquardt import DescentState, descend
 from calibration.fitting.sea_descent import TOLERANCE, SeaFit
 from calibration.formatting import listed, percent
-from calibration.identifiability.directions import Identifiability, stated
-from calibration.identifiability.information import inverse
-from calibration.identifiability.standard_deviations import Spread, assemble, memory
-from calibration.residuals.decays import Unknowns, condensed
+from calibration.identifiability.directions import Identifiability, identifiability_at
+from calibration.identifiability.information import pseudo_inverse
+from calibration.identifiability.standard_deviations import Spread, correlated_samples, gauss_newton_matrix
+from calibration.residuals.decays import Unknowns, condensed_decays
 from calibration.residuals.seas import SeaProblem
-from calibration.residuals.shooting import BlockProblem, pose_blocks, shoot, slowest
+from calibration.residuals.shooting import BlockProblem, set_up_blocks, simulate_blocks, slowest
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 
-PROMISE = 0.1  # error that a fit begins with at most: what is left at first is not the model's, but that of its coefficients
+# largest error that a fit begins with: at first the coefficients cause most of the residual, not the model
+INITIAL_ERROR = 0.1
 
 
 def objective(unknowns: Unknowns, args):
     """Residuals of the blocks with the priors of their own unknowns, of the other priors, for optimistix."""
     problem, weight, mean, ridge = args
-    rows, products = condensed(unknowns, problem, weight, jnp.zeros(len(weight)))
+    rows, products = condensed_decays(unknowns, problem, weight, jnp.zeros(len(weight)))
     return (rows, ridge * (unknowns.shared - mean)), products
 
 
@@ -35,16 +36,16 @@ class ShootingFit(SeaFit):
 
     problem: BlockProblem
 
-    def __init__(self, pose: Callable[[Model], SeaProblem], declared: Model, report: Callable[..., None]) -> None:
+    def __init__(self, set_up: Callable[[Model], SeaProblem], declared: Model, report: Callable[..., None]) -> None:
         self.period = 0.0
 
         def cut(model: Model) -> BlockProblem:
-            sea = pose(model)
+            sea = set_up(model)
             self.period = self.period or slowest(sea)  # as many blocks each time
-            return pose_blocks(sea, self.period)
+            return set_up_blocks(sea, self.period)
 
         super().__init__(cut, declared, report)
-        self.error = min(self.error, PROMISE)
+        self.error = min(self.error, INITIAL_ERROR)
 
     def begin(self) -> Unknowns:
         return self.problem.begin()
@@ -69,7 +70,7 @@ class ShootingFit(SeaFit):
         """The priors' rows, of parameters and constants."""
         return max(self.error, 1e-6) / np.append(self.width, np.ones(self.problem.observations))
 
-    def descent(self) -> Iterator[Reached]:
+    def descent(self) -> Iterator[DescentState]:
         self.problem = self.problem.continued(self.x)
         mean = jnp.append(self.mean, jnp.zeros(self.problem.observations))
         args = (self.problem, jnp.asarray(self.weight()), mean, jnp.asarray(self.ridge()))
@@ -78,8 +79,8 @@ class ShootingFit(SeaFit):
     def squares(self) -> float:
         return float(self.products[:, :-1, -1, -1].sum())
 
-    def left(self) -> tuple[float, bool]:
-        self.shot = shoot(self.problem, self.unknowns)
+    def residual_rms(self) -> tuple[float, bool]:
+        self.shot = simulate_blocks(self.problem, self.unknowns)
         residual, piece = np.asarray(self.shot.residual), np.asarray(self.problem.piece)
         present = np.concatenate(
             [
@@ -120,12 +121,14 @@ class ShootingFit(SeaFit):
         weight, piece, ridge = self.weight(), np.asarray(problem.piece), self.ridge()
         bread = np.einsum("bckl,bc->bkl", self.products[..., :-1, :-1], weight)
         own = bread.shape[-1] - p - m
-        data = assemble(self.products[:, :-1].sum(axis=1), p + m)
+        data = gauss_newton_matrix(self.products[:, :-1].sum(axis=1), p + m)
         prior = np.diag(np.concatenate([ridge**2, np.repeat(weight[:, -1], own)]))
         # what is there for all channels but no data stays as its prior has it
         used = float(np.trace(np.linalg.solve(data + prior, data)))
-        total = sum(len(g) / memory(g) for g in self.groups)
-        follow = np.stack([np.vstack([np.eye(p + m), -inverse(b[p + m :, p + m :]) @ b[p + m :, : p + m]]) for b in bread])
+        total = sum(len(g) / correlated_samples(g) for g in self.groups)
+        follow = np.stack(
+            [np.vstack([np.eye(p + m), -pseudo_inverse(b[p + m :, p + m :]) @ b[p + m :, : p + m]]) for b in bread]
+        )
         reduced = np.einsum("bkp,bckl,blq->bcpq", follow, self.products[..., :-1, :-1], follow)
         tests = piece.min(axis=1)
         priors = [reduced[tests == test, -1].sum(axis=0) for test in np.unique(tests)]
@@ -135,7 +138,9 @@ class ShootingFit(SeaFit):
         stack = np.pad(np.stack([*motions, *priors, constants]), ((0, 0), (0, 1), (0, 1)))
         weights = [*np.ones(m), *weights, ridge[-1] ** 2]
         variance = [float(np.mean(g**2)) * total / max(total - used, 1.0) for g in self.groups] + [1.0] * (len(priors) + 1)
-        inflation = [memory(g) for g in self.groups] + [1.0] * (len(priors) + 1)
+        inflation = [correlated_samples(g) for g in self.groups] + [1.0] * (len(priors) + 1)
         rows = (np.array(weights)[None], np.array(variance)[None], np.array(inflation)[None])
         source = "the tests in waves by blocks"
-        return stated(problem.space, problem.model, np.asarray(self.x), (stack[None], *rows), ridge[:p], self.width, source)
+        return identifiability_at(
+            problem.space, problem.model, np.asarray(self.x), (stack[None], *rows), ridge[:p], self.width, source
+        )

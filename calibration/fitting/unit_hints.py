@@ -1,13 +1,13 @@
-"""Fitted coefficients that are off by the ratio of two units, or by a sign."""
+"""Hints on fitted coefficients that are off by a ratio of units or by a sign."""
 
 import math
 from collections.abc import Iterable, Iterator
 
 from calibration.result import Estimate
 
-RATIOS = {180 / math.pi: "degrees and radians", 1000.0: "millimetres and metres"}
-NEAR = 0.05  # of a ratio's logarithm to base e, by which a coefficient may miss it
-SURE = 0.1  # of a coefficient: a larger standard deviation says nothing of its ratio
+UNIT_RATIOS = {180 / math.pi: "degrees and radians", 1000.0: "millimetres and metres"}
+RATIO_TOLERANCE = 0.05  # of a ratio's logarithm to base e, by which a coefficient may miss it
+MAX_RELATIVE_DEVIATION = 0.1  # of a coefficient: a larger standard deviation says nothing of its ratio
 
 
 def unit_hints(parameters: Iterable[Estimate]) -> Iterator[str]:
@@ -17,12 +17,18 @@ def unit_hints(parameters: Iterable[Estimate]) -> Iterator[str]:
     """
     for one in parameters:
         deviation = one.standard_deviation
-        if not one.identifiable or one.start == 0 or one.value == 0 or deviation is None or deviation > SURE * abs(one.value):
+        if (
+            not one.identifiable
+            or one.start == 0
+            or one.value == 0
+            or deviation is None
+            or deviation > MAX_RELATIVE_DEVIATION * abs(one.value)
+        ):
             continue
         ratio = one.value / one.start
-        if abs(math.log(abs(ratio))) < NEAR and ratio < 0:
+        if abs(math.log(abs(ratio))) < RATIO_TOLERANCE and ratio < 0:
             yield f"{one.label} has the declared size and the other sign: is an axis reversed in a record or the platform file?"
-        for factor, units in RATIOS.items():
-            if ratio > 0 and abs(abs(math.log(ratio)) - math.log(factor)) < NEAR:
+        for factor, units in UNIT_RATIOS.items():
+            if ratio > 0 and abs(abs(math.log(ratio)) - math.log(factor)) < RATIO_TOLERANCE:
                 times = f"{ratio:.3g} times" if ratio > 1 else f"1/{1 / ratio:.3g} of"
                 yield f"{one.label} is {times} the declared value: are {units} mixed up, in a record or the platform file?"

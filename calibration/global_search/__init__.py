@@ -1,6 +1,6 @@
-"""Global searches: one file each, interchangeable. `calibration.global_search.run_search` is how they are used."""
+"""Global searches for a starting point: interchangeable methods, run by `run_search`."""
 
-from calibration.global_search.base import AbstractSearch, Budget, History, Stop, Task
+from calibration.global_search.base import AbstractSearch, Budget, BudgetSpent, History, Task
 from calibration.global_search.cma_es import CMAES
 from calibration.global_search.differential_evolution import DifferentialEvolution
 from calibration.global_search.genetic import Genetic
@@ -15,10 +15,10 @@ __all__ = [
     "METHODS",
     "AbstractSearch",
     "Budget",
+    "BudgetSpent",
     "DifferentialEvolution",
     "Genetic",
     "History",
     "MultiStart",
-    "Stop",
     "Task",
 ]

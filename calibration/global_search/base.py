@@ -1,4 +1,4 @@
-"""What all searches share: a budget, the task that counts what is spent of it, and the history that comes out."""
+"""Base of all global searches: budget, counted objective, history."""
 
 import abc
 import time as clock
@@ -11,18 +11,23 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import Progress, scored
+from calibration.fitting.decay_fit import Progress, scored_channels
 from calibration.global_search.objective import coordinates, objectives
-from calibration.residuals.decays import Problem
+from calibration.residuals.decays import DecayProblem
 from jaxhydro.interrupts import stop_if_asked
 
-BAD = 1e6  # J of a simulation that is no number
-TOGETHER = 36  # points simulated at once at most: beyond, a point costs no less, and the arrays leave the cache
+FAILED_OBJECTIVE = 1e6  # J of a simulation that is no number
+MAX_BATCH = 36  # points simulated at once at most: beyond, a point costs no less, and the arrays leave the cache
 
 
 class Budget(NamedTuple):
-    """When a search ends: after so many CPU seconds of this process, compilation apart; after so many simulations of a record,
-    a part of one counting as that part; or where J comes down to `objective`. Whatever is first."""
+    """Budget of a search, which ends at the first of these limits.
+
+    Attributes:
+        seconds: CPU time of this process (s), compilation apart.
+        simulations: Number of simulations of a record; a part of one counts as that part.
+        objective: Objective J that is good enough.
+    """
 
     seconds: float = 60.0
     simulations: float = np.inf
@@ -30,7 +35,13 @@ class Budget(NamedTuple):
 
 
 class History(NamedTuple):
-    """The least J so far, whenever it became less: against simulations and CPU seconds. Its last entry is where it ended."""
+    """Lowest objective J during a search, one entry for every improvement; the last entry is the end.
+
+    Attributes:
+        simulations: Number of simulations so far.
+        seconds: CPU time so far (s).
+        objective: Lowest J so far.
+    """
 
     simulations: np.ndarray
     seconds: np.ndarray
@@ -42,8 +53,8 @@ class History(NamedTuple):
         return (float(self.simulations[there[0]]), float(self.seconds[there[0]])) if len(there) else None
 
 
-class Stop(Exception):
-    """The budget is spent, or the objective reached. Raised by a task, not to be caught by a method."""
+class BudgetSpent(Exception):
+    """End of a search: the budget is spent, or the objective reached. Methods must not catch it."""
 
 
 class Task:
@@ -54,14 +65,14 @@ class Task:
 
     def __init__(
         self,
-        problem: Problem,
+        problem: DecayProblem,
         records: Sequence[Record],
         own,
         budget: Budget,
         report: Callable[[Progress], None] = lambda _: None,
     ) -> None:
         self.problem, self.records, self.own, self.budget, self.report = problem, records, own, budget, report
-        counts, spread = scored(records, problem.data)
+        counts, spread = scored_channels(records, problem.data)
         self.weight = jnp.asarray(np.where(counts, 1 / spread, 0.0))
         self.begins, self.ends = np.asarray(problem.data.time[:, 0]), np.array([record.time[-1] for record in records])
         self.size, self.batch = len(problem.space.free), 1
@@ -77,11 +88,11 @@ class Task:
 
     @property
     def seconds(self) -> float:
-        """CPU time (s) since it began, less what was spent `apart`."""
+        """CPU time (s) since it began, less what was spent `untimed`."""
         return clock.process_time() - self._begun
 
     @contextmanager
-    def apart(self) -> Iterator[None]:
+    def untimed(self) -> Iterator[None]:
         """What is done within does not count as time."""
         before = clock.process_time()
         try:
@@ -94,7 +105,10 @@ class Task:
         return float(np.sum(np.asarray(until) - self.begins) / np.sum(self.ends - self.begins))
 
     def simulate(self, x: np.ndarray, own=None, until: np.ndarray | None = None) -> np.ndarray:
-        """J (n,) at coordinates (n, p), counted; BAD where it is no number. In batches of one size, which is compiled once."""
+        """Return J (n,) at coordinates (n, p); FAILED_OBJECTIVE where it is no number. The simulations are counted.
+
+        Batches have one size, which is compiled once.
+        """
         own, until = self.own if own is None else own, self.ends if until is None else until
         batch = self.batch if len(x) > 1 else 1
 
@@ -103,15 +117,17 @@ class Task:
             return np.asarray(objectives(self.problem, own, self.weight, jnp.asarray(until), full))[: len(points)]
 
         if batch not in self._compiled:
-            with self.apart():
+            with self.untimed():
                 run(x[:1])
             self._compiled.add(batch)
-        found = np.full(len(x), BAD)
+        found = np.full(len(x), FAILED_OBJECTIVE)
         for at in range(0, len(x), batch):
             stop_if_asked()
             points = x[at : at + batch]
             values = run(points)
-            found[at : at + batch] = np.where(np.isfinite(values), np.minimum(np.nan_to_num(values), BAD), BAD)
+            found[at : at + batch] = np.where(
+                np.isfinite(values), np.minimum(np.nan_to_num(values), FAILED_OBJECTIVE), FAILED_OBJECTIVE
+            )
             self.simulations += len(points) * len(self.records) * self.part(until)
             if until is self.ends:
                 least = int(np.argmin(found[at : at + batch]))
@@ -127,17 +143,17 @@ class Task:
     def note(self, x: np.ndarray, objective: float) -> None:
         """A point's J over whole records, the best so far or not; then `check`."""
         self.calls += 1
-        if objective < min(self.best, BAD):
+        if objective < min(self.best, FAILED_OBJECTIVE):
             self.best, self.x = objective, np.array(x)
             self._marks.append((self.simulations, self.seconds, objective))
         self.check()
 
     def check(self) -> None:
-        """Report. Raises Stop where the budget is spent or the objective reached."""
+        """Report. Raises BudgetSpent where the budget is spent or the objective reached."""
         spent = max(self.seconds / self.budget.seconds, self.simulations / self.budget.simulations)
         self.report(Progress(self.stage, self.calls, self.best, min(1.0, spent)))
         if spent >= 1 or self.best <= self.budget.objective:
-            raise Stop
+            raise BudgetSpent
 
     def history(self) -> History:
         """The history so far, its last entry now."""
@@ -159,14 +175,14 @@ class AbstractSearch(abc.ABC):
                 raise ValueError(f"{self.name}: expected {option.name} above 0, found {value!r}")
 
     @abc.abstractmethod
-    def together(self, size: int) -> int:
+    def batch_size(self, size: int) -> int:
         """How many points it asks for at once, of `size` coefficients."""
 
     @abc.abstractmethod
     def run(self, task: Task, random: np.random.Generator) -> None:
-        """Search until done, or until the task raises Stop. All chance comes from `random`."""
+        """Search until done, or until the task raises BudgetSpent. All chance comes from `random`."""
 
 
-def even(count: int) -> int:
+def even_batch(count: int) -> int:
     """The size of a batch that divides `count` points evenly into as few as may be."""
-    return -(-count // -(-count // TOGETHER))
+    return -(-count // -(-count // MAX_BATCH))

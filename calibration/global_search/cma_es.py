@@ -1,11 +1,11 @@
-"""CMA-ES by the package `cma` of its author."""
+"""Covariance matrix adaptation (CMA-ES), by the package `cma`."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even
+from calibration.global_search.base import AbstractSearch, Task, even_batch
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,10 @@ class CMAES(AbstractSearch):
     def _population(self, size: int) -> int:
         return 4 + int(3 * np.log(size))  # arXiv:1604.00772, eq. 48
 
-    def together(self, size: int) -> int:
+    def batch_size(self, size: int) -> int:
         if size == 1:
             raise ValueError("cma-es: expected two coefficients or more, found 1")
-        return even(self._population(size))
+        return even_batch(self._population(size))
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         import cma

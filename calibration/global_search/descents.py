@@ -1,4 +1,4 @@
-"""The package's least squares as part of a search: its iterations are counted, and its J is that of whole records."""
+"""Local least squares within a global search, with counted simulations."""
 
 import contextlib
 from collections.abc import Sequence
@@ -8,15 +8,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import CYCLES, GROWTH, Fit, run, weights
-from calibration.global_search.base import BAD, Stop, Task
+from calibration.fitting.decay_fit import FIRST_WINDOW_CYCLES, WINDOW_GROWTH, DecayFit, record_weights, run_fit
+from calibration.global_search.base import FAILED_OBJECTIVE, BudgetSpent, Task
 from calibration.global_search.objective import coordinates
-from calibration.residuals.decays import Problem, Unknowns, first_guess
+from calibration.residuals.decays import DecayProblem, Unknowns, first_guess
 
-FEW = 5  # 2^5 points to begin with
+FIRST_POINTS_POWER = 5  # 2^5 points to begin with
 
 
-class WindowedFit(Fit):
+class WindowedFit(DecayFit):
     """A fit that knows which part of the records' time its present stage simulates."""
 
     part = 1.0
@@ -27,14 +27,14 @@ class WindowedFit(Fit):
         return super().minimise(stage, weight, until, *rest, **named)
 
     @property
-    def each(self) -> int:
+    def simulations_per_iteration(self) -> int:
         """Simulations that a whole iteration counts as: of every record one, and one for each of its unknowns, as finite
         differences would take; forward mode takes less time than that."""
         unknowns = self.unknowns
         return len(self.records) * (1 + unknowns.shared.shape[0] + unknowns.own.shape[1])
 
 
-def fit_from(problem: Problem, records: Sequence[Record], x: np.ndarray, report) -> WindowedFit:
+def fit_from(problem: DecayProblem, records: Sequence[Record], x: np.ndarray, report) -> WindowedFit:
     """A fit that begins, and has its vague priors, at coordinates x."""
     fit = WindowedFit(problem, records, Unknowns(jnp.asarray(x), first_guess(records, problem.data)), report)
     mean, precision = fit.prior
@@ -43,53 +43,55 @@ def fit_from(problem: Problem, records: Sequence[Record], x: np.ndarray, report)
     return fit
 
 
-def short(fit: Fit, until: np.ndarray) -> None:
+def short_fit(fit: DecayFit, until: np.ndarray) -> None:
     """Least squares up to `until`, coefficients and releases free. Next to no prior: it would be the releases' error."""
-    weight = weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(len(fit.records)), until)
+    weight = record_weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(len(fit.records)), until)
     fit.minimise("first cycles", weight, until, 1e-4, (0.0, 0.0), samples=1e12)
 
 
-def judged(task: Task, x: np.ndarray) -> np.ndarray:
+def rank_points(task: Task, x: np.ndarray) -> np.ndarray:
     """The points (n, p), the best first by J over the first window from a first guess of the releases."""
     guess = fit_from(task.problem, task.records, x[0], lambda *_: None)
-    return x[np.argsort(task.simulate(x, guess.unknowns.own, guess.window(CYCLES)), kind="stable")]
+    return x[np.argsort(task.simulate(x, guess.unknowns.own, guess.window(FIRST_WINDOW_CYCLES)), kind="stable")]
 
 
 def compile_fit(task: Task) -> None:
     """One iteration over next to nothing, so that what follows needs no compilation."""
 
     def stop(*_) -> None:
-        raise Stop
+        raise BudgetSpent
 
-    with task.apart():
+    with task.untimed():
         fit = fit_from(task.problem, task.records, np.asarray(task.problem.space.start), stop)
-        with contextlib.suppress(Stop):
-            short(fit, task.begins + 1e-3 * (fit.window(CYCLES) - task.begins))
+        with contextlib.suppress(BudgetSpent):
+            short_fit(fit, task.begins + 1e-3 * (fit.window(FIRST_WINDOW_CYCLES) - task.begins))
 
 
-def releases(task: Task) -> Float[Array, "r 3*c"]:
+def fit_releases(task: Task) -> Float[Array, "r 3*c"]:
     """The records' releases by least squares over their first cycles (1.25, then 3.1 of them), whose coefficients, free too,
     are thrown away. Begun from the best of a few points, none of them by chance; first guesses where that gives no number.
     Counted."""
     from scipy.stats.qmc import Sobol
 
     task.stage = "releases"
-    x = coordinates(task.problem.space, Sobol(task.size, scramble=False).random_base2(FEW) + 0.5**FEW / 2)
-    x = judged(task, np.concatenate([np.asarray(task.problem.space.start)[None], x]))
+    x = coordinates(
+        task.problem.space, Sobol(task.size, scramble=False).random_base2(FIRST_POINTS_POWER) + 0.5**FIRST_POINTS_POWER / 2
+    )
+    x = rank_points(task, np.concatenate([np.asarray(task.problem.space.start)[None], x]))
     compile_fit(task)
 
     def report(*_) -> None:
-        task.simulations += fit.each * fit.part
+        task.simulations += fit.simulations_per_iteration * fit.part
         task.check()
 
     fit = fit_from(task.problem, task.records, x[0], report)
     guess = fit.unknowns.own
-    for cycles in (CYCLES, GROWTH * CYCLES):
-        short(fit, fit.window(cycles))
+    for cycles in (FIRST_WINDOW_CYCLES, WINDOW_GROWTH * FIRST_WINDOW_CYCLES):
+        short_fit(fit, fit.window(cycles))
     return fit.unknowns.own if bool(jnp.isfinite(fit.unknowns.own).all()) else guess
 
 
-class _Lost(Exception):
+class _Diverged(Exception):
     """A descent is where simulations give no number."""
 
 
@@ -98,10 +100,10 @@ def descend(task: Task, x: np.ndarray, name: str) -> None:
 
     def report(stage: str, *_) -> None:
         task.stage = f"{name}: {stage}"
-        task.simulations += fit.each * fit.part
-        if task.simulate(np.asarray(fit.unknowns.shared)[None], fit.unknowns.own)[0] >= BAD:
-            raise _Lost
+        task.simulations += fit.simulations_per_iteration * fit.part
+        if task.simulate(np.asarray(fit.unknowns.shared)[None], fit.unknowns.own)[0] >= FAILED_OBJECTIVE:
+            raise _Diverged
 
     fit = fit_from(task.problem, task.records, x, report)
-    with contextlib.suppress(_Lost):
-        run(fit)
+    with contextlib.suppress(_Diverged):
+        run_fit(fit)

@@ -1,11 +1,11 @@
-"""Differential evolution by scipy."""
+"""Differential evolution, by scipy."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even
+from calibration.global_search.base import AbstractSearch, Task, even_batch
 
 
 @dataclass(frozen=True)
@@ -17,8 +17,8 @@ class DifferentialEvolution(AbstractSearch):
     population: int = 15
     name: ClassVar[str] = "de"
 
-    def together(self, size: int) -> int:
-        return even(max(5, self.population * size))
+    def batch_size(self, size: int) -> int:
+        return even_batch(max(5, self.population * size))
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         from scipy.optimize import differential_evolution

@@ -1,11 +1,11 @@
-"""A genetic algorithm by pymoo."""
+"""Genetic algorithm, by pymoo."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even
+from calibration.global_search.base import AbstractSearch, Task, even_batch
 
 
 @dataclass(frozen=True)
@@ -18,8 +18,8 @@ class Genetic(AbstractSearch):
     name: ClassVar[str] = "ga"
     needs: ClassVar[str | None] = "pymoo"
 
-    def together(self, size: int) -> int:
-        return even(self.population)
+    def batch_size(self, size: int) -> int:
+        return even_batch(self.population)
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         from pymoo.algorithms.soo.nonconvex.ga import GA

@@ -1,4 +1,4 @@
-"""Multi-start least squares: many starts judged cheaply, the best few calibrated."""
+"""Multi-start least squares: many starts ranked cheaply, the best few calibrated."""
 
 import math
 from dataclasses import dataclass
@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even
-from calibration.global_search.descents import compile_fit, descend, judged
+from calibration.global_search.base import AbstractSearch, Task, even_batch
+from calibration.global_search.descents import compile_fit, descend, rank_points
 from calibration.global_search.objective import coordinates
 
 
@@ -28,8 +28,8 @@ class MultiStart(AbstractSearch):
     name: ClassVar[str] = "multistart"
     descends: ClassVar[bool] = True
 
-    def together(self, size: int) -> int:
-        return even(self.starts)
+    def batch_size(self, size: int) -> int:
+        return even_batch(self.starts)
 
     def run(self, task: Task, random: np.random.Generator) -> None:
         from scipy.stats.qmc import Sobol
@@ -39,6 +39,6 @@ class MultiStart(AbstractSearch):
         compile_fit(task)
         task.stage = f"{self.starts} starts"
         if self.starts > 1:
-            x = judged(task, x)
+            x = rank_points(task, x)
         for i, start in enumerate(x[: self.finalists]):
             descend(task, start, f"start {i + 1} of {min(self.finalists, self.starts)}")

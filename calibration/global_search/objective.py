@@ -1,4 +1,4 @@
-"""J of points in the unit cube: what every global search minimises, many points at once."""
+"""Objective of a global search: J of many points of the unit cube at once."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,17 +11,21 @@ from jaxtyping import Array, Float
 
 from calibration.parameters.space import ParameterSpace
 from calibration.parameters.transforms import Interval, LogInterval
-from calibration.residuals.decays import Problem, shortened
+from calibration.residuals.decays import DecayProblem, shortened
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
 
-BRINK = 1e-6  # shares of a range are kept this far from its ends, where the coordinate is infinite
+EDGE_SHARE = 1e-6  # shares of a range are kept this far from its ends, where the coordinate is infinite
 
 
 @eqx.filter_jit
 def objectives(
-    problem: Problem, own: Float[Array, "r 3*c"], weight: Float[Array, "r c"], until: Float[Array, " r"], x: Float[Array, "n p"]
+    problem: DecayProblem,
+    own: Float[Array, "r 3*c"],
+    weight: Float[Array, "r c"],
+    until: Float[Array, " r"],
+    x: Float[Array, "n p"],
 ) -> Float[Array, " n"]:
     """J = sum of weight times RMSE over records and channels, over the samples up to `until` (s, by record), of n points.
 
@@ -57,7 +61,7 @@ def _scales(space: ParameterSpace) -> np.ndarray:
 
 def coordinates(space: ParameterSpace, shares: np.ndarray) -> np.ndarray:
     """Coordinates (n, p) of points in the unit cube: shares of every range, of its logarithm's where positive."""
-    inside = np.clip(shares, BRINK, 1 - BRINK)
+    inside = np.clip(shares, EDGE_SHARE, 1 - EDGE_SHARE)
     return _scales(space) * np.log(inside / (1 - inside))
 
 

@@ -1,4 +1,4 @@
-"""Global search over the coefficients of a campaign's decays, where it is not known where to begin."""
+"""Global search over the coefficients that a campaign's decays determine."""
 
 import importlib.util
 import math
@@ -11,25 +11,31 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import Progress, prepare
-from calibration.global_search import METHODS, AbstractSearch, Budget, History, Stop, Task
-from calibration.global_search.descents import releases
+from calibration.fitting.decay_fit import Progress, prepare_fit
+from calibration.global_search import METHODS, AbstractSearch, Budget, BudgetSpent, History, Task
+from calibration.global_search.descents import fit_releases
 from calibration.global_search.objective import ranges
 from calibration.parameters.space import parameter_space
-from calibration.residuals.decays import Problem
+from calibration.residuals.decays import DecayProblem
 from jaxhydro.errors import suggest
 from jaxhydro.interrupts import stopping
 
-FACTOR = 10.0  # a coefficient without bounds is searched from a tenth to ten times of what the platform declares
+DEFAULT_FACTOR = 10.0  # a coefficient without bounds is searched from a tenth to ten times of what the platform declares
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a search came to.
+    """Result of a global search.
 
-    `values` by label, to go on from by `calibrate(campaign, start=found.values)`, and `objective`, their J over whole records
-    with the releases that it was judged with. `simulations` of a record, a part of one counting as that part; CPU `seconds`,
-    compilation apart. `ended`: "settled" of its own, "reached" the objective asked for, "budget", or "interrupted".
+    Attributes:
+        method: Name of the method.
+        seed: Seed of the random numbers.
+        values: Coefficients of the lowest J by label; continue with `calibrate(campaign, start=found.values)`.
+        objective: Their J over whole records, with the releases that the search used.
+        simulations: Number of simulations of a record; a part of one counts as that part.
+        seconds: CPU time (s), compilation apart.
+        history: Lowest J against simulations and time.
+        ended: "settled" by itself, "reached" the objective asked for, "budget" or "interrupted".
     """
 
     method: str
@@ -43,7 +49,11 @@ class Found:
 
 
 class SearchInterrupted(KeyboardInterrupt):
-    """Ctrl-C during a search; `partial` holds what was reached, None if nothing was."""
+    """Interruption of a search by the user (Ctrl-C).
+
+    Attributes:
+        partial: Result that was reached; None if there is none.
+    """
 
     def __init__(self, partial: Found | None) -> None:
         super().__init__("search interrupted")
@@ -57,26 +67,36 @@ def search(
     seed: int = 0,
     budget: Budget = Budget(),
     free: Sequence[str] | None = None,
-    factor: float = FACTOR,
+    factor: float = DEFAULT_FACTOR,
     progress: Callable[[Progress], None] | None = None,
 ) -> Found:
-    """The coefficients of least J that a global search finds for the decay records marked `fit`.
+    """Search globally for the coefficients of lowest J for the decay records marked `fit`.
 
-    J is the contract's sum of RMSE / standard deviation over the records' released degrees of freedom. Searched are the
-    manifest's bounds, and where it has none from 1/`factor` to `factor` times of the platform's value, positive coefficients on
-    a logarithmic scale. Priors are not used, nor where in there the platform's own values lie.
+    J is the sum of RMSE / standard deviation over the records' released degrees of freedom. The search covers the
+    manifest's bounds. Where it has none, it covers 1/`factor` to `factor` times the platform's value. Positive coefficients
+    are on a logarithmic scale. Priors are not used. Population searches do not fit releases: initial positions and rates
+    are fitted first, by least squares over the first 3 cycles (`fit_releases`), and offsets are eliminated in J.
+    Multi-start fits them with the coefficients.
 
-    `method` is "multistart" (least squares from the best of many starts), "cma-es", "ga" or "de", or one of their classes with
-    its options. Population searches know nothing of releases. So the records' initial positions and rates are fitted first, by
-    least squares over the first 3 cycles whose coefficients are thrown away (`releases`), and offsets are eliminated in J;
-    multi-start fits them with the coefficients. The same `seed` gives the same search; only where a budget of seconds ends it
-    differs. Simulations that give no number count as bad ones.
+    Args:
+        campaign: The campaign.
+        method: "multistart" (least squares from the best of many starts), "cma-es", "ga" or "de", or one of their classes.
+        seed: Seed of the random numbers. The same seed gives the same search, unless seconds end it.
+        budget: When the search ends.
+        free: Labels or patterns of the free parameters; None for those of the manifest.
+        factor: Factor of the range of coefficients without bounds.
+        progress: Function that is called with the progress.
 
-    Raises ValueError for a method, seed, budget or factor that is none, InputError where there is nothing to search or no
-    bounds, SearchInterrupted (a KeyboardInterrupt) with what was reached.
+    Returns:
+        The coefficients of lowest J, and the history of the search.
+
+    Raises:
+        ValueError: If the method, seed, budget or factor is invalid.
+        InputError: If there is nothing to search, or bounds are missing.
+        SearchInterrupted: If the user stops the search (a KeyboardInterrupt); it holds what was reached.
     """
     chosen = _checked(method, seed, budget, factor)
-    problem, records = posed(campaign, free, factor)
+    problem, records = set_up_search(campaign, free, factor)
     task = Task(problem, records, None, budget, progress or (lambda _: None))
     return run(task, chosen, seed)
 
@@ -87,13 +107,13 @@ def run(task: Task, method: AbstractSearch, seed: int) -> Found:
     Raises ValueError where the budget is too small for anything, SearchInterrupted with what was reached.
     """
     ended: Literal["settled", "reached", "budget", "interrupted"] = "settled"
-    task.batch = method.together(task.size)
+    task.batch = method.batch_size(task.size)
     try:
         task.begin()
         if task.own is None and not method.descends:
-            task.own = releases(task)
+            task.own = fit_releases(task)
         method.run(task, np.random.default_rng(seed))
-    except Stop:
+    except BudgetSpent:
         ended = "reached" if task.best <= task.budget.objective else "budget"
     except KeyboardInterrupt:
         stopping()
@@ -111,9 +131,11 @@ def run(task: Task, method: AbstractSearch, seed: int) -> Found:
     return found
 
 
-def posed(campaign: Campaign, free: Sequence[str] | None = None, factor: float = FACTOR) -> tuple[Problem, tuple[Record, ...]]:
+def set_up_search(
+    campaign: Campaign, free: Sequence[str] | None = None, factor: float = DEFAULT_FACTOR
+) -> tuple[DecayProblem, tuple[Record, ...]]:
     """What is searched, and its records. Raises InputError where there is nothing to search, or no bounds."""
-    fit = prepare(campaign, free=free)
+    fit = prepare_fit(campaign, free=free)
     model, labels, source = fit.problem.model, fit.problem.space.labels, str(campaign.folder / "campaign.yaml")
     bounds = ranges(model, labels, dict(campaign.manifest.calibrate.bounds), factor, source)
     space = parameter_space(model, labels, bounds, None, source)
@@ -137,11 +159,11 @@ def _checked(method: str | AbstractSearch, seed: int, budget: Budget, factor: fl
         raise ValueError(f"method: expected one of {', '.join(METHODS)}, found {method!r}. {hint}".strip())
     if not chosen.descends and math.isinf(budget.seconds) and math.isinf(budget.simulations) and budget.objective <= 0:
         raise ValueError(f"budget: expected a limit, as {chosen.name} does not end of its own, found none")
-    _look_for(chosen)
+    _require_package(chosen)
     return chosen
 
 
-def _look_for(method: AbstractSearch) -> None:
+def _require_package(method: AbstractSearch) -> None:
     """Raises ValueError where the package that a method needs is not there."""
     if method.needs is not None and importlib.util.find_spec(method.needs) is None:
         install = "pip install 'jaxhydro[search]'"

@@ -1,1 +1,1 @@
-"""What records determine: information, covariance, weak directions, findings."""
+"""Identifiability: information, covariance, weak directions, statements."""

@@ -1,4 +1,4 @@
-"""What the records of a calibration tell together and what they do not: directions, combinations, what to fix, what to test.
+"""Identifiability of the parameters: weak directions, known combinations, what to fix.
 
 Everything is local and linear, about the fitted values, in the coordinates of the fit: logarithms of positive parameters
 within their bounds. Information is that of the records alone; the fit's prior enters only where `covariance` is named.
@@ -16,38 +16,49 @@ import numpy as np
 
 from calibration.formatting import listed, number, percent
 from calibration.identifiability.information import (
-    CLEAR,
+    IDENTIFIABLE_DEVIATION,
     collinearity,
-    deviations,
-    eliminated,
-    inverse,
-    principal,
+    deviations_of,
+    principal_directions,
+    pseudo_inverse,
+    shared_information,
+    submatrix,
     varimax,
-    within,
 )
-from calibration.identifiability.standard_deviations import Spread, spread
+from calibration.identifiability.standard_deviations import Spread, sandwich_covariance
 from calibration.identifiability.statements import Collinear, Combination, Direction, Fix, Parameters
-from calibration.parameters.space import VAGUE, ParameterSpace, slopes
+from calibration.parameters.space import VAGUE_DEVIATION, ParameterSpace, slopes
 from jaxhydro.dynamics.model import Model
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.platform.drag_laws import coefficient_label
 
-Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # products, weight, variance, inflation: see `spread`
+# products, weight, variance, inflation: see `sandwich_covariance`
+WeightedProducts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
-NOTHING = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
-TOLD = 4  # weak directions in words
-LEAST = 0.01  # of the others' summed variance: what takes less away is no advice
-NAMED = 0.5 * CLEAR  # a parameter that a direction leaves uncertain by less than this is not named in it
+ZERO_VARIANCE = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
+MAX_REPORTED_DIRECTIONS = 4  # weak directions in words
+MIN_VARIANCE_GAIN = 0.01  # of the others' summed variance: what takes less away is no advice
+# a parameter that a direction leaves uncertain by less than this is not named in it
+MIN_NAMED_DEVIATION = 0.5 * IDENTIFIABLE_DEVIATION
 
 
 @dataclass(frozen=True, eq=False)
 class Identifiability:
-    """What a calibration's records determine. Rows and columns are in the order of `parameters`.
+    """What the records of a calibration determine. Rows and columns are in the order of `parameters`.
 
-    `information` (p, p) is the records' own, without prior, their own unknowns eliminated; `covariance` (p, p) the posterior
-    one, with the prior. `spectrum` are the standard deviations along `axes` (columns, unit length), best known first, inf
-    where nothing is said: 1 over the singular values of the scaled Jacobian. `fixes` go with `weak`, in order: each supposes
-    those before it. `collinear` holds all groups of two and three of one family, worst first.
+    Attributes:
+        parameters: The free parameters.
+        information: (p, p) information of the records, without prior; each record's own unknowns are eliminated.
+        covariance: (p, p) posterior covariance, with the prior.
+        source: Description of the records.
+        spectrum: (p,) standard deviations along `axes`, ascending; inf where the records say nothing.
+        axes: (p, p) principal directions, as columns of unit length.
+        correlation: (p, p) correlation matrix.
+        collinear: Collinear groups of two and three parameters of one family, worst first.
+        weak: Directions that the records do not determine.
+        fixes: Parameter to fix for each entry of `weak`; each supposes those before it.
+        untouched: Labels of parameters that the records do not respond to.
+        at_bound: Labels of parameters at a bound.
     """
 
     parameters: Parameters
@@ -65,8 +76,10 @@ class Identifiability:
 
     def sentences(self) -> tuple[str, ...]:
         """In plain words, most important first."""
-        clear, total = int((self.spectrum < CLEAR).sum()), len(self.spectrum)
-        known = f"{clear} of {total} independent combinations of parameters known to better than {percent(CLEAR)}"
+        clear, total = int((self.spectrum < IDENTIFIABLE_DEVIATION).sum()), len(self.spectrum)
+        known = (
+            f"{clear} of {total} independent combinations of parameters known to better than {percent(IDENTIFIABLE_DEVIATION)}"
+        )
         said = [f"{self.source}: {known}"]
         if bound := self.at_bound:
             verbs = ("stands", "is") if len(bound) == 1 else ("stand", "are")
@@ -75,14 +88,16 @@ class Identifiability:
             it = "it" if len(idle) == 1 else "them"
             said.append(f"no record responds to {listed(idle)}: fix {it}, or add tests that move {it}")
         known_of: set[str] = set()
-        for weak, fix in list(zip(self.weak, self.fixes, strict=True))[:TOLD]:
+        for weak, fix in list(zip(self.weak, self.fixes, strict=True))[:MAX_REPORTED_DIRECTIONS]:
             # one combination may be what is known of several directions
             again = str(weak.known) in known_of
-            said += [weak.sentence(self.source, again), *([str(fix)] if fix.share >= LEAST else [])]
+            said += [weak.sentence(self.source, again), *([str(fix)] if fix.share >= MIN_VARIANCE_GAIN else [])]
             known_of.add(str(weak.known))
-        if rest := self.weak[TOLD:]:
+        if rest := self.weak[MAX_REPORTED_DIRECTIONS:]:
             labels = listed(list(dict.fromkeys(label for weak in rest for label in weak.movement)))
-            said.append(f"{len(rest)} further combinations of {labels} are not known to {percent(CLEAR)} either")
+            said.append(
+                f"{len(rest)} further combinations of {labels} are not known to {percent(IDENTIFIABLE_DEVIATION)} either"
+            )
         told = [set(a.movement) for a in self.weak]
         alike: list[tuple[set[str], float]] = []  # groups with parameters in common are one
         for group in sorted(self.collinear, key=lambda group: len(group.labels)):
@@ -110,18 +125,18 @@ def identifiability(
 ) -> Identifiability:
     """The statement on parameters with the records' `information` and the posterior `covariance` of their coordinates."""
     labels, d = parameters.labels, np.sqrt(np.diag(covariance))
-    active, untouched = active_of(parameters, information, at_bound)
-    spectrum, axes = principal(within(information, active))
+    active, untouched = active_parameters(parameters, information, at_bound)
+    spectrum, axes = principal_directions(submatrix(information, active))
     groups = [
         Collinear(tuple(labels[i] for i in g), collinearity(information[np.ix_(g, g)]))
         for size in (2, 3)
         for g in combinations(active, size)
-        if len({family(labels[i]) for i in g}) == 1
+        if len({parameter_family(labels[i]) for i in g}) == 1
     ]
     weak = weak_directions(parameters, information, active)
     # what no record responds to is as wide as its prior whatever is fixed, and no measure of anything
     fixes: list[Fix] = []
-    left = within(covariance, active)
+    left = submatrix(covariance, active)
     for direction in weak:
         open_ = [label for label in direction.movement if label not in {fix.label for fix in fixes}]
         fix, left = _best_fix(labels, left, open_ or list(direction.movement))
@@ -143,20 +158,20 @@ def identifiability(
 
 
 def weak_directions(parameters: Parameters, information: np.ndarray, active: Sequence[int]) -> tuple[Direction, ...]:
-    """Principal directions that are not known to CLEAR, least known first, among the `active` parameters.
+    """Principal directions that are not known to IDENTIFIABLE_DEVIATION, least known first, among the `active` parameters.
 
-    Those beyond VAGUE are equally unknown: any basis of what they span is as good, and the one with the fewest parameters in
-    each direction is told (varimax: Kaiser 1958, Psychometrika 23, 187-200).
+    Those beyond VAGUE_DEVIATION are equally unknown, and any basis of what they span is as good. The basis with the fewest
+    parameters in each direction is reported (varimax: Kaiser 1958, Psychometrika 23, 187-200).
     """
     active = list(active)
     core = information[np.ix_(active, active)]
-    deviation, axes = principal(core)
-    blind = deviation > VAGUE
+    deviation, axes = principal_directions(core)
+    blind = deviation > VAGUE_DEVIATION
     axes[:, blind] = varimax(axes[:, blind])
-    deviation = deviations(np.einsum("ik,ij,jk->k", axes, core, axes), np.abs(core).max(initial=0.0))
-    order = [int(k) for k in np.argsort(-deviation, kind="stable") if deviation[k] > CLEAR]
-    reach = np.abs(axes) * np.minimum(deviation, VAGUE)
-    named = [[int(i) for i in np.flatnonzero(reach[:, k] >= min(NAMED, reach[:, k].max()))] for k in order]
+    deviation = deviations_of(np.einsum("ik,ij,jk->k", axes, core, axes), np.abs(core).max(initial=0.0))
+    order = [int(k) for k in np.argsort(-deviation, kind="stable") if deviation[k] > IDENTIFIABLE_DEVIATION]
+    reach = np.abs(axes) * np.minimum(deviation, VAGUE_DEVIATION)
+    named = [[int(i) for i in np.flatnonzero(reach[:, k] >= min(MIN_NAMED_DEVIATION, reach[:, k].max()))] for k in order]
     found = []
     for k, mine in zip(order, named, strict=True):
         known = _combination(parameters, core, active, mine) if len(mine) > 1 else None
@@ -171,20 +186,26 @@ def weak_directions(parameters: Parameters, information: np.ndarray, active: Seq
     return tuple(found)
 
 
-def stated(
-    space: ParameterSpace, model: Model, x: np.ndarray, parts: Parts, ridge: np.ndarray, width: np.ndarray, source: str
+def identifiability_at(
+    space: ParameterSpace,
+    model: Model,
+    x: np.ndarray,
+    parts: WeightedProducts,
+    ridge: np.ndarray,
+    width: np.ndarray,
+    source: str,
 ) -> tuple[Spread, Identifiability]:
-    """Covariance and statement at coordinates (p,); `parts`, `ridge` and `width` are the arguments of `spread`."""
-    found = spread(*parts, ridge, width)
+    """Covariance and statement at coordinates (p,); `parts`, `ridge` and `width` are the arguments of `sandwich_covariance`."""
+    found = sandwich_covariance(*parts, ridge, width)
     values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
     units = tuple(model.about(label).unit for label in space.labels)
     bound = [p.label for p, c in zip(space.free, x, strict=True) if p.transform.at_bound(float(c))]
     parameters = Parameters(space.labels, values, slopes(space, x), units)
     posterior = found.covariance[: len(x), : len(x)]
-    return found, identifiability(parameters, eliminated(*parts, len(x)), posterior, source, bound)
+    return found, identifiability(parameters, shared_information(*parts, len(x)), posterior, source, bound)
 
 
-def family(label: str) -> str:
+def parameter_family(label: str) -> str:
     """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on sea or motion."""
     if is_exponent(label) or coefficient_label(label) is not None:
         return "exponent"
@@ -194,24 +215,28 @@ def family(label: str) -> str:
     return "damping" if head.endswith("damping") or name.startswith("Cd") else "restoring"
 
 
-def active_of(parameters: Parameters, information: np.ndarray, at_bound: Sequence[str]) -> tuple[list[int], tuple[str, ...]]:
+def active_parameters(
+    parameters: Parameters, information: np.ndarray, at_bound: Sequence[str]
+) -> tuple[list[int], tuple[str, ...]]:
     """Parameters that the records respond to, and the labels of those where even alone a factor of 4.5 would go unseen."""
     free = [i for i, label in enumerate(parameters.labels) if label not in at_bound]
-    seen = [i for i in free if information[i, i] > 1 / VAGUE**2]
+    seen = [i for i in free if information[i, i] > 1 / VAGUE_DEVIATION**2]
     return seen, tuple(parameters.labels[i] for i in free if i not in seen)
 
 
 def _combination(parameters: Parameters, core: np.ndarray, active: Sequence[int], mine: Sequence[int]) -> Combination | None:
-    """The best known combination of some parameters, whatever the others are; None if it is not known to CLEAR."""
+    """The best known combination of some parameters, whatever the others are; None beyond IDENTIFIABLE_DEVIATION."""
     rest = [i for i in range(len(core)) if i not in mine]
     across = core[np.ix_(rest, mine)]
-    deviation, axes = principal(core[np.ix_(mine, mine)] - across.T @ inverse(core[np.ix_(rest, rest)]) @ across)
-    if not deviation[0] < CLEAR:
+    deviation, axes = principal_directions(
+        core[np.ix_(mine, mine)] - across.T @ pseudo_inverse(core[np.ix_(rest, rest)]) @ across
+    )
+    if not deviation[0] < IDENTIFIABLE_DEVIATION:
         return None
     at = [active[i] for i in mine]
     labels, units = [parameters.labels[i] for i in at], {parameters.unit[i] for i in at}
     value, slope, share = parameters.value[at], parameters.slope[at], axes[:, 0]
-    alike = len(units) == 1 and len({family(label) for label in labels}) == 1
+    alike = len(units) == 1 and len({parameter_family(label) for label in labels}) == 1
     product = not alike and bool((value > 0).all())
     raw = share / parameters.relative()[at] if product else share / slope
     leading = int(np.abs(raw if alike or product else share).argmax())
@@ -226,7 +251,7 @@ def _best_fix(labels: Sequence[str], covariance: np.ndarray, candidates: Sequenc
     """The candidate that takes most from the summed variance of the others, and the covariance (p, p) once it is fixed."""
 
     def fixed(i: int) -> np.ndarray:
-        if not covariance[i, i] > NOTHING:
+        if not covariance[i, i] > ZERO_VARIANCE:
             return np.zeros_like(covariance)
         shared = covariance[i] / np.sqrt(covariance[i, i])
         return np.outer(shared, shared)

@@ -1,36 +1,36 @@
-"""Algebra of information matrices: elimination of unknowns, principal directions, collinearity."""
+"""Algebra of information matrices: elimination, principal directions, collinearity."""
 
 import numpy as np
 
-LEAST_VARIANCE = 1e-20  # m2, rad2: a record made without noise is not known to better than a sensor's last digit
+MIN_VARIANCE = 1e-20  # m2, rad2: a record made without noise is not known to better than a sensor's last digit
 
-CLEAR = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
+IDENTIFIABLE_DEVIATION = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
 
 
-def eliminated(
+def shared_information(
     products: np.ndarray, weight: np.ndarray, variance: np.ndarray, inflation: np.ndarray, shared: int
 ) -> np.ndarray:
     """Information (p, p) of the shared coordinates; the records' own unknowns eliminated by a Schur complement each.
 
     `products` (record, channel, k, k) are the [J r]^T [J r]; `weight`, `variance` and `inflation` (record, channel) as in
-    `spread`, whose sandwich this is the inverse of, without the prior: H S^-1 H (Godambe 1960, Annals of Mathematical
-    Statistics 31, 1208-1211), which is J^T J / sigma^2 where every record was weighed by its noise.
+    `sandwich_covariance`, whose sandwich this is the inverse of, without the prior: H S^-1 H (Godambe 1960, Annals of
+    Mathematical Statistics 31, 1208-1211), which is J^T J / sigma^2 where every record was weighed by its noise.
     """
     hessian, scatter = np.zeros((shared, shared)), np.zeros((shared, shared))
-    power = weight**2 * np.maximum(variance, LEAST_VARIANCE) * inflation
+    power = weight**2 * np.maximum(variance, MIN_VARIANCE) * inflation
     for block, w, s in zip(products[..., :-1, :-1], weight, power, strict=True):
         bread, meat = np.einsum("ckl,c->kl", block, w), np.einsum("ckl,c->kl", block, s)
         # the shared unknowns, with the record's own at their best for each
-        follow = np.concatenate([np.eye(shared), -inverse(bread[shared:, shared:]) @ bread[shared:, :shared]])
+        follow = np.concatenate([np.eye(shared), -pseudo_inverse(bread[shared:, shared:]) @ bread[shared:, :shared]])
         hessian += follow.T @ bread @ follow
         scatter += follow.T @ meat @ follow
-    return hessian @ inverse(scatter) @ hessian
+    return hessian @ pseudo_inverse(scatter) @ hessian
 
 
-def principal(information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def principal_directions(information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Standard deviations along the principal directions, ascending, and these as columns."""
     values, axes = np.linalg.eigh(information)
-    return deviations(values[::-1], values.max(initial=0.0)), axes[:, ::-1]
+    return deviations_of(values[::-1], values.max(initial=0.0)), axes[:, ::-1]
 
 
 def collinearity(information: np.ndarray) -> float:
@@ -41,13 +41,13 @@ def collinearity(information: np.ndarray) -> float:
     return float(1 / np.sqrt(least)) if least > 1e-14 else np.inf
 
 
-def within(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
+def submatrix(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
     """The matrix with all but some rows and columns zero."""
     mask = np.isin(np.arange(len(matrix)), list(keep))
     return np.where(np.outer(mask, mask), matrix, 0.0)
 
 
-def inverse(matrix: np.ndarray, rcond: float = 1e-13) -> np.ndarray:
+def pseudo_inverse(matrix: np.ndarray, rcond: float = 1e-13) -> np.ndarray:
     """Pseudo-inverse of a positive semi-definite matrix, whatever the units of its rows. What is no more than `rcond` of the
     largest, once scaled, is taken for rounding, and what is not there at all stays at zero."""
     d = np.diag(matrix)
@@ -56,7 +56,7 @@ def inverse(matrix: np.ndarray, rcond: float = 1e-13) -> np.ndarray:
     return np.linalg.pinv(matrix * both, rcond=rcond, hermitian=True) * both
 
 
-def deviations(values: np.ndarray, largest: float) -> np.ndarray:
+def deviations_of(values: np.ndarray, largest: float) -> np.ndarray:
     """1 / sqrt of information; inf for what is no more than rounding."""
     there = values > 16 * np.finfo(float).eps * len(values) * largest
     return np.where(there, 1 / np.sqrt(np.where(there, values, 1.0)), np.inf)

@@ -1,4 +1,4 @@
-"""Spectra of residuals: how much of their variance lies where a parameter's effect on the motion lies.
+"""Spectra of residuals, for standard deviations under coloured errors.
 
 The standard deviation of an estimate rests on the scatter of its score J^T e, whose variance is that of the residual at the
 frequencies of the slope J: of a decay, near its natural frequency. White noise of the same total variance has most of it
@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize
 
-from calibration.identifiability.information import LEAST_VARIANCE
+from calibration.identifiability.information import MIN_VARIANCE
 
 
 class Periodogram(NamedTuple):
@@ -26,10 +26,10 @@ class Periodogram(NamedTuple):
     @property
     def variance(self) -> float:
         """Of the errors, from that of the residuals: the fit has taken away some."""
-        return float(max((self.number * self.power).sum() / (self.number * self.freedom).sum(), LEAST_VARIANCE))
+        return float(max((self.number * self.power).sum() / (self.number * self.freedom).sum(), MIN_VARIANCE))
 
 
-class Colour(NamedTuple):
+class NoiseColour(NamedTuple):
     """Density, relative to the variance, of a flat floor and one resonance: g^2 / ((f - f0)^2 + g^2) and its mirror image.
 
     With f0 = 0 it is an autoregression of first order, of correlation time 1 / (2 pi g); with f0 > 0, noise that rings at f0
@@ -58,7 +58,7 @@ def periodogram(residual: np.ndarray, leverage: np.ndarray, step: float) -> Peri
     return Periodogram(np.fft.rfftfreq(n, step), power, np.clip(1 - leverage, 0.0, 1.0), count)
 
 
-def colours(groups: Sequence[Sequence[Periodogram]]) -> list[tuple[Colour, np.ndarray]]:
+def fit_colours(groups: Sequence[Sequence[Periodogram]]) -> list[tuple[NoiseColour, np.ndarray]]:
     """`whittle` of groups of residuals: of all together, as where a basin is not still, unless they differ by more than chance,
     as where a model's error is in the motion that was released. Colour and variances by group."""
     whole, apart = whittle([one for group in groups for one in group]), [whittle(group) for group in groups]
@@ -68,16 +68,16 @@ def colours(groups: Sequence[Sequence[Periodogram]]) -> list[tuple[Colour, np.nd
     return [(whole.colour, variance) for variance in np.split(whole.variance, ends)]
 
 
-class Found(NamedTuple):
+class SpectralFit(NamedTuple):
     """Colour and variance (m2, rad2) of every residual; `misfit` is minus the log likelihood, and what the numbers in them cost
     (half the logarithm of how many frequencies there are for each: Schwarz 1978, Annals of Statistics 6, 461-464)."""
 
-    colour: Colour
+    colour: NoiseColour
     variance: np.ndarray
     misfit: float
 
 
-def whittle(found: Sequence[Periodogram]) -> Found:
+def whittle(found: Sequence[Periodogram]) -> SpectralFit:
     """The colour of several residuals of one kind, and the variance of each: one for all of them, unless they differ by more
     than chance.
 
@@ -93,10 +93,10 @@ def whittle(found: Sequence[Periodogram]) -> Found:
     price = 0.5 * float(np.log(0.5 * count.sum()))
     misfit = [one + price * numbers for (_, one), numbers in zip(tried, (1, len(found)))]
     best = int(np.argmin(misfit))
-    return Found(tried[best][0], (common, own)[best], misfit[best])
+    return SpectralFit(tried[best][0], (common, own)[best], misfit[best])
 
 
-def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[Colour, float]:
+def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[NoiseColour, float]:
     """The colour with given variances, and its misfit."""
     frequency = np.concatenate([one.frequency for one in found])
     power = np.concatenate([one.power / v for one, v in zip(found, variance, strict=True)])
@@ -105,8 +105,8 @@ def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[Colour
     level = sum(float(np.log(v) * (0.5 * one.number * one.freedom).sum()) for one, v in zip(found, variance, strict=True))
     first, last = min(one.frequency[1] for one in found), float(frequency.max())
 
-    def colour(z: np.ndarray) -> Colour:
-        return Colour(*map(float, np.exp(z)))
+    def colour(z: np.ndarray) -> NoiseColour:
+        return NoiseColour(*map(float, np.exp(z)))
 
     def misfit(z: np.ndarray) -> float:
         density = colour(z).density(frequency)
@@ -127,7 +127,7 @@ def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[Colour
     ]
     starts = [(place, 2 * first), (place, 0.3 * place), (0.1 * first, first), (0.1 * first, 0.1 * last)]
     tried = [minimize(misfit, np.log([floor, top, *start]), method="L-BFGS-B", bounds=limits) for start in starts]
-    best, white = min(tried, key=lambda one: one.fun), Colour(1.0, 0.0, 0.0, float(first))
+    best, white = min(tried, key=lambda one: one.fun), NoiseColour(1.0, 0.0, 0.0, float(first))
     flat = level + float(np.sum(half * power))
     # three numbers more than white noise has, one of them searched for over all frequencies: among so many one stands out by
     # chance, and does not count until it pays for them
@@ -135,7 +135,7 @@ def _whittle(found: Sequence[Periodogram], variance: np.ndarray) -> tuple[Colour
     return (colour(best.x), float(best.fun) + cost) if best.fun + cost < flat else (white, flat)
 
 
-def coloured(slope: np.ndarray, variance: float, colour: Colour, step: float) -> np.ndarray:
+def score_covariance(slope: np.ndarray, variance: float, colour: NoiseColour, step: float) -> np.ndarray:
     """Covariance (k, k) of J^T e for slopes J (n, k) and errors e of this colour: sum_f J^(f)* J^(f)^T S(f) / n."""
     n = len(slope)
     wave, frequency = np.fft.rfft(slope, axis=0), np.fft.rfftfreq(n, step)

@@ -1,12 +1,13 @@
-"""How well the records determine each parameter: standard deviations and a verdict, from the Jacobian."""
+"""Standard deviations of the parameters: sandwich covariance from the Jacobian."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from calibration.identifiability.information import inverse
+from calibration.identifiability.information import pseudo_inverse
 
-ROUNDING = 1e-14  # of the largest eigenvalue of a scaled matrix: a weak prior that is all there is of a coordinate is more
+# of the largest eigenvalue of a scaled matrix: a weak prior that is all there is of a coordinate is more
+ROUNDING_SHARE = 1e-14
 
 
 class Spread(NamedTuple):
@@ -25,7 +26,7 @@ class Spread(NamedTuple):
         return self.covariance[: self.shared, : self.shared] / np.outer(d, d)
 
 
-def assemble(products: np.ndarray, shared: int) -> np.ndarray:
+def gauss_newton_matrix(products: np.ndarray, shared: int) -> np.ndarray:
     """Gauss-Newton matrix of all unknowns from the records' own (record, k, k), whose last row and column are the residual."""
     records, size = products.shape[0], products.shape[1] - 1
     own = size - shared
@@ -39,7 +40,7 @@ def assemble(products: np.ndarray, shared: int) -> np.ndarray:
     return total
 
 
-def memory(residual: np.ndarray) -> float:
+def correlated_samples(residual: np.ndarray) -> float:
     """Integrated autocorrelation of a residual: how many samples count as one. At least 1.
 
     Initial positive sequence of paired autocorrelations (Geyer 1992, Statistical Science 7, 473-483, section 3.3).
@@ -56,7 +57,7 @@ def memory(residual: np.ndarray) -> float:
     return float(max(1.0, 2 * pairs[:stop].sum() - 1))
 
 
-def spread(
+def sandwich_covariance(
     products: np.ndarray,
     weight: np.ndarray,
     variance: np.ndarray,
@@ -71,9 +72,9 @@ def spread(
     its standard deviation: a parameter that no record touches is reported with that.
     """
     shared = len(ridge)
-    hessian = assemble(np.einsum("rckl,rc->rkl", products, weight), shared)
-    scatter = assemble(np.einsum("rckl,rc->rkl", products, weight**2 * variance * inflation), shared)
+    hessian = gauss_newton_matrix(np.einsum("rckl,rc->rkl", products, weight), shared)
+    scatter = gauss_newton_matrix(np.einsum("rckl,rc->rkl", products, weight**2 * variance * inflation), shared)
     own = np.zeros(len(hessian) - shared)
     square, wide = np.concatenate([ridge**2, own]), np.concatenate([width**2, own])
-    bread = inverse(hessian + np.diag(square), ROUNDING)
+    bread = pseudo_inverse(hessian + np.diag(square), ROUNDING_SHARE)
     return Spread(bread @ (scatter + np.diag(wide * square**2)) @ bread, shared)

@@ -1,13 +1,13 @@
-"""What is said of identifiability, as values and in words: directions, combinations that are known, what to fix."""
+"""Statements on identifiability, as values: directions, combinations, parameters to fix."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from calibration.formatting import listed, number, percent, readable_unit, with_deviation
-from calibration.parameters.space import VAGUE
+from calibration.parameters.space import VAGUE_DEVIATION
 
-SMALL = 0.005  # weight of a combination, the largest 1, that is not told
+MIN_SHOWN_WEIGHT = 0.005  # weight of a combination, the largest 1, that is not told
 
 
 class Parameters(NamedTuple):
@@ -38,10 +38,14 @@ class Combination(NamedTuple):
 
     def __str__(self) -> str:
         if self.product:
-            powers = " ".join(f"{label}^{weight:.2f}" for label, weight in self.weights.items() if abs(weight) >= SMALL)
+            powers = " ".join(
+                f"{label}^{weight:.2f}" for label, weight in self.weights.items() if abs(weight) >= MIN_SHOWN_WEIGHT
+            )
             return f"the product {powers} is known to {percent(self.standard_deviation)}"
         terms = " ".join(
-            f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}" for label, w in self.weights.items() if abs(w) >= SMALL
+            f"{'-' if w < 0 else '+'} {number(abs(w), 3)} {label}"
+            for label, w in self.weights.items()
+            if abs(w) >= MIN_SHOWN_WEIGHT
         )
         unit = f" {readable_unit(self.unit)}".rstrip()
         value = with_deviation(self.value, self.standard_deviation)
@@ -59,7 +63,7 @@ class Direction(NamedTuple):
         """In words; what is known instead is not said `again`."""
         labels = list(self.movement)
         if len(labels) == 1:
-            if self.standard_deviation > VAGUE:
+            if self.standard_deviation > VAGUE_DEVIATION:
                 return f"{source} cannot say what {labels[0]} is"
             return f"{source} can say {labels[0]} to {percent(self.standard_deviation)} only"
         verb = "cannot tell" if self.standard_deviation > 1 else "can hardly tell"

@@ -1,4 +1,4 @@
-"""Which of a model's parameters are free, between which bounds, and with which prior."""
+"""Free parameters of a model: choice, bounds, priors."""
 
 import fnmatch
 import math
@@ -17,12 +17,16 @@ from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.hull.coefficient_labels import shared_hint
 from jaxhydro.loads.sea_state_law import is_exponent
 
-VAGUE = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
-RANGE = 1000.0  # a positive parameter may move by this factor from where it starts, within what its load allows
-NEVER = ("mooring.", "stiffness.", "guided_masses.")  # what a decay cannot tell from inertia is left alone unless asked for
+VAGUE_DEVIATION = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
+DEFAULT_RANGE_FACTOR = 1000.0  # a positive parameter may move by this factor from where it starts, within what its load allows
+NOT_FREE_BY_DEFAULT = (
+    "mooring.",
+    "stiffness.",
+    "guided_masses.",
+)  # what a decay cannot tell from inertia is left alone unless asked for
 
 
-class Free(NamedTuple):
+class FreeParameter(NamedTuple):
     """One free parameter: where it starts, how it is transformed, and a Gaussian prior on its coordinate."""
 
     label: str
@@ -35,7 +39,7 @@ class Free(NamedTuple):
 class ParameterSpace(NamedTuple):
     """Free parameters of a model, in order."""
 
-    free: tuple[Free, ...]
+    free: tuple[FreeParameter, ...]
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -44,7 +48,7 @@ class ParameterSpace(NamedTuple):
     @property
     def moves_equilibrium(self) -> bool:
         """Whether the platform's static equilibrium depends on them."""
-        return any(label.startswith(NEVER) for label in self.labels)
+        return any(label.startswith(NOT_FREE_BY_DEFAULT) for label in self.labels)
 
     @property
     def start(self) -> Float[Array, " p"]:
@@ -53,10 +57,10 @@ class ParameterSpace(NamedTuple):
 
     @property
     def prior(self) -> tuple[Float[Array, " p"], np.ndarray]:
-        """Mean and standard deviation of the coordinates: as declared, else VAGUE about where they start."""
+        """Mean and standard deviation of the coordinates: as declared, else VAGUE_DEVIATION about where they start."""
         declared = [math.isfinite(p.prior_deviation) for p in self.free]
         mean = jnp.array([p.prior_mean if known else s for p, s, known in zip(self.free, self.start, declared)])
-        return mean, np.array([p.prior_deviation if known else VAGUE for p, known in zip(self.free, declared)])
+        return mean, np.array([p.prior_deviation if known else VAGUE_DEVIATION for p, known in zip(self.free, declared)])
 
     def values(self, x: Float[Array, " p"]) -> dict[str, Float[Array, ""]]:
         """Parameter values at coordinates."""
@@ -75,7 +79,7 @@ def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
     labels = []
     for label, value in model.values.items():
         lumped = label.split(".")[0] in ("linear_damping", "quadratic_damping", "added_mass")
-        if label.startswith(NEVER) or is_exponent(label) or ".drag_" in label or float(value) == 0:
+        if label.startswith(NOT_FREE_BY_DEFAULT) or is_exponent(label) or ".drag_" in label or float(value) == 0:
             continue
         if lumped and not digits >= set(label[-2:]):
             continue
@@ -83,7 +87,7 @@ def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
     return tuple(labels)
 
 
-def choose(
+def match_free_labels(
     model: Model,
     released: Sequence[str],
     free: Sequence[str] | None = None,
@@ -140,8 +144,8 @@ def parameter_space(
         transform: AbstractTransform
         if about.lower >= 0:
             size = start if start > 0 else (upper if math.isfinite(upper) else 1.0)
-            lower = max(lower, size / RANGE)
-            transform = LogInterval(lower, min(upper, size * RANGE) if label not in bounds else upper)
+            lower = max(lower, size / DEFAULT_RANGE_FACTOR)
+            transform = LogInterval(lower, min(upper, size * DEFAULT_RANGE_FACTOR) if label not in bounds else upper)
             # at the end of a logarithmic scale nothing moves
             start = start if start > 0 else math.sqrt(transform.lower * transform.upper)
         elif math.isfinite(lower) and math.isfinite(upper):
@@ -157,7 +161,7 @@ def parameter_space(
                 continue
             mean = transform.inverse(value)
             deviation = width / float(jax.grad(transform.forward)(jnp.asarray(mean)))
-        free.append(Free(label, start, transform, mean, deviation))
+        free.append(FreeParameter(label, start, transform, mean, deviation))
     if problems:
         raise InputError(source, problems)
     return ParameterSpace(tuple(free))

@@ -1,4 +1,4 @@
-"""Maps between a parameter's value and the unbounded coordinate that is optimised."""
+"""Transforms between a parameter's value and its unbounded coordinate."""
 
 import abc
 import math
@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-EDGE = 0.005  # a value nearer than this share of its range to a bound is taken from there: beyond, the map is flat
+EDGE_SHARE = 0.005  # a value nearer than this share of its range to a bound is taken from there: beyond, the map is flat
 Scalar = Float[Array, ""]
 
 
@@ -46,7 +46,7 @@ class LogInterval(AbstractTransform):
 
     def inverse(self, value: float) -> float:
         share = math.log(max(value, 1e-300) / self.lower) / self.span
-        share = min(max(share, EDGE), 1 - EDGE)
+        share = min(max(share, EDGE_SHARE), 1 - EDGE_SHARE)
         return 0.25 * self.span * math.log(share / (1 - share))
 
     def at_bound(self, x: float) -> bool:
@@ -64,7 +64,7 @@ class Interval(AbstractTransform):
         return self.lower + (self.upper - self.lower) * jax.nn.sigmoid(x)
 
     def inverse(self, value: float) -> float:
-        share = min(max((value - self.lower) / (self.upper - self.lower), EDGE), 1 - EDGE)
+        share = min(max((value - self.lower) / (self.upper - self.lower), EDGE_SHARE), 1 - EDGE_SHARE)
         return math.log(share / (1 - share))
 
     def at_bound(self, x: float) -> bool:

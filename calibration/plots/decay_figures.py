@@ -1,4 +1,4 @@
-"""The figures of a calibration: every test, decay against amplitude, and the parameters."""
+"""Figures of a calibration: tests, decay against amplitude, parameters."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -19,9 +19,9 @@ from jaxhydro.plots.style import BEFORE, GREY, MEASURED, SIMULATED, WIDTH, heade
 from jaxhydro.units import for_people, unit_of
 
 _USE = {"fit": "fitted", "holdout": "held out", "ignore": "ignored"}
-HIGHEST, DECADES = 0.2, 4.5  # Hz that spectra are drawn to, and of their largest value downwards
+MAX_FREQUENCY, DECADES = 0.2, 4.5  # Hz that spectra are drawn to, and of their largest value downwards
 BAND_COLOURS = ("#ece3cf", "#dbe9ee")
-CLEAR = 25  # times the noise: an amplitude from which decrement and period are well measured
+CLEAR_AMPLITUDE = 25  # times the noise: an amplitude from which decrement and period are well measured
 
 
 def figures(calibration: Calibration) -> Iterator[tuple[str, str, Figure]]:
@@ -63,12 +63,12 @@ def spectra_figure(test: TestFit) -> Figure:
         rows = [("measured", series.measured, MEASURED, 1.5), ("calibrated", series.simulated, SIMULATED, 0.9)]
         for label, values, colour, size in [*rows, *([("before", before, BEFORE, 0.9)] if before is not None else [])]:
             found = power_spectrum(test.time, for_people(channel, values))
-            seen = (found.frequency > 0) & (found.frequency <= HIGHEST)
+            seen = (found.frequency > 0) & (found.frequency <= MAX_FREQUENCY)
             artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=size)[0]
             top = max(top, float(found.density[seen].max()))
         ax.set_yscale("log")
         ax.set_ylim(top * 10**-DECADES, 2.5 * top)
-        ax.set_xlim(0, HIGHEST)
+        ax.set_xlim(0, MAX_FREQUENCY)
         ax.set_ylabel(f"{channel.capitalize()}\n({unit_of(channel)}²/Hz)")
     axes[-1].set_xlabel("Frequency (Hz)")
     header(figure, f"{test.id} ({_USE[test.use]})", artists)
@@ -112,7 +112,7 @@ def _compare(ax: Axes, time: np.ndarray, series: Series, before: np.ndarray | No
     }
 
 
-class Decay(NamedTuple):
+class DecayCycles(NamedTuple):
     """Half cycles of one test, amplitudes in m or deg: measured, calibrated, before; `clear`: well above the noise."""
 
     measured: Cycles
@@ -122,7 +122,7 @@ class Decay(NamedTuple):
     held: bool
 
     @classmethod
-    def of(cls, test: TestFit) -> "Decay":
+    def of(cls, test: TestFit) -> "DecayCycles":
         """From a test's main channel."""
         main = test.main
 
@@ -136,7 +136,7 @@ class Decay(NamedTuple):
             cycles(main.measured),
             cycles(main.simulated),
             cycles(test.start.get(main.channel)),
-            CLEAR * float(for_people(main.channel, main.noise)),
+            CLEAR_AMPLITUDE * float(for_people(main.channel, main.noise)),
             test.use != "fit",
         )
 
@@ -149,10 +149,10 @@ class Decay(NamedTuple):
 def decay_figure(dof: str, tests: list[TestFit]) -> Figure | None:
     """Decrement and period against amplitude of all decays of one motion; None where none has a whole cycle.
 
-    Cycles of small amplitude scatter by the noise: the axes are for those of `CLEAR` times the noise and more, and what
-    is beyond stands at the edge as a triangle.
+    Cycles of small amplitude scatter by the noise. The axes are for those of `CLEAR_AMPLITUDE` times the noise and more.
+    Cycles beyond the axes are triangles at the edge.
     """
-    decays = [Decay.of(test) for test in tests]
+    decays = [DecayCycles.of(test) for test in tests]
     amplitudes = np.concatenate([decay.measured.amplitude for decay in decays])
     if not len(amplitudes):
         return None
@@ -176,7 +176,7 @@ def decay_figure(dof: str, tests: list[TestFit]) -> Figure | None:
     return figure
 
 
-def _dots(ax: Axes, artists: dict[str, Artist], decay: Decay, quantity: str, limits: tuple[float, float]) -> None:
+def _dots(ax: Axes, artists: dict[str, Artist], decay: DecayCycles, quantity: str, limits: tuple[float, float]) -> None:
     """Measured cycles; those beyond the limits as triangles at the edge."""
     low, high = limits
     x, y = decay.measured.amplitude, getattr(decay.measured, quantity)
@@ -190,7 +190,7 @@ def _dots(ax: Axes, artists: dict[str, Artist], decay: Decay, quantity: str, lim
                 artists["held out" if decay.held else "measured"] = line
 
 
-def _limits(decays: list[Decay], quantity: str) -> tuple[float, float]:
+def _limits(decays: list[DecayCycles], quantity: str) -> tuple[float, float]:
     """Limits that hold the clear cycles: all calibrated ones, nine tenths of the measured ones, those before
     calibration where they are not far off. Those of a period are at least 2 % apart."""
     measured, simulated, before = (

@@ -1,4 +1,4 @@
-"""The figures of a diagnosis: errors, residuals and spectra, before what was missing is in the model and after."""
+"""Figures of a diagnosis: errors, residuals and spectra before and after."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -12,8 +12,8 @@ from matplotlib.patches import Patch
 from calibration.discovery.diagnosis import Diagnosis, Effect
 from calibration.discovery.effects.effect_names import called
 from calibration.formatting import percent
-from calibration.plots.decay_figures import BAND_COLOURS, DECADES, HIGHEST
-from calibration.plots.search_figures import LEAST, anatomy_figure, latent_figure, scores_figure
+from calibration.plots.decay_figures import BAND_COLOURS, DECADES, MAX_FREQUENCY
+from calibration.plots.search_figures import MIN_SHOWN_GAIN, anatomy_figure, latent_figure, scores_figure
 from calibration.result import Calibration, Series, TestFit
 from calibration.vocabulary import USE
 from jaxhydro.analysis.spectral import power_spectrum
@@ -22,9 +22,9 @@ from jaxhydro.files import safe_name
 from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, WIDTH, header, stack
 from jaxhydro.units import for_people, unit_of
 
-EXCERPT = {"surge": 1200.0, "sway": 1200.0, "yaw": 1200.0}  # s of a record in waves that are shown
-SHORT = 600.0  # of the other motions
-SHADES = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
+EXCERPT_LENGTHS = {"surge": 1200.0, "sway": 1200.0, "yaw": 1200.0}  # s of a record in waves that are shown
+SHORT_EXCERPT = 600.0  # of the other motions
+BAND_NAMES = {"low_frequency": "low frequency", "wave_frequency": "wave frequency"}
 
 
 def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, str, Figure]]:
@@ -37,19 +37,19 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
         yield "anatomy.png", _ANATOMY, anatomy_figure(diagnosis.anatomy_before, diagnosis.anatomy_after)
     shown: set[tuple[str, str]] = set()
     for effect in diagnosis.effects:
-        row = most_telling([row for row in rows if (row.test.id, row.series.channel) not in shown], effect)
+        row = clearest_row([row for row in rows if (row.test.id, row.series.channel) not in shown], effect)
         if row is not None:
             shown.add((row.test.id, row.series.channel))
             name = "-".join(filter(None, ("effect", effect.effect, effect.degree_of_freedom)))
             title = called(effect.effect, effect.degree_of_freedom)
             yield f"{safe_name(name)}.png", _EFFECT.format(title=title, id=row.test.id), effect_figure(row, title)
-    if any(max(one.gain, one.refitted or 0.0) > LEAST for one in diagnosis.scores):
+    if any(max(one.gain, one.refitted or 0.0) > MIN_SHOWN_GAIN for one in diagnosis.scores):
         yield "scores.png", _SCORES, scores_figure(diagnosis)
     if diagnosis.latent:
         largest = max(diagnosis.latent, key=lambda one: one.relative)
         yield "latent-force.png", _LATENT.format(motion=largest.motion, id=largest.shown.test), latent_figure(largest)
     for test in compared.tests:
-        if test.kind == "irregular" and spectral(test):
+        if test.kind == "irregular" and series_with_spectra(test):
             yield f"spectra-{safe_name(test.id)}.png", _SPECTRA.format(id=test.id), spectra_figure(test)
 
 
@@ -70,7 +70,7 @@ _LATENT = (
 _SPECTRA = "Test {id}: spectra of the motions, measured and simulated without what was missing and with it; bands shaded."
 
 
-class Row(NamedTuple):
+class MotionRow(NamedTuple):
     """One motion of one test that counts, and its simulation before."""
 
     test: TestFit
@@ -90,17 +90,17 @@ class Row(NamedTuple):
         return first, second
 
 
-def compared_series(compared: Calibration) -> list[Row]:
+def compared_series(compared: Calibration) -> list[MotionRow]:
     """The motions that count in J, or of a test without any the main one; fitted tests first."""
     rows = []
     for use in USE:
         for test in compared.tests:
             counted = [s for s in test.series if s.scored] or ([test.main] if test.series else [])
-            rows += [Row(test, s, test.start[s.channel]) for s in counted if test.use == use and s.channel in test.start]
+            rows += [MotionRow(test, s, test.start[s.channel]) for s in counted if test.use == use and s.channel in test.start]
     return [row for row in rows if np.isfinite(row.errors).all()]
 
 
-def before_after_figure(rows: list[Row]) -> Figure:
+def before_after_figure(rows: list[MotionRow]) -> Figure:
     """Two bars for every motion of every test, held-out tests apart."""
     places, labels, heads, at = [], [], [], 0.0
     for i, row in enumerate(rows):
@@ -143,10 +143,10 @@ def _shortened(text: str, most: int = 18) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
-def most_telling(rows: list[Row], effect: Effect) -> Row | None:
+def clearest_row(rows: list[MotionRow], effect: Effect) -> MotionRow | None:
     """Where the effect shows best: the largest fall of the error, in its own motion if that falls anywhere."""
 
-    def fall(row: Row) -> float:
+    def fall(row: MotionRow) -> float:
         before, after = row.errors
         return before - after
 
@@ -155,10 +155,10 @@ def most_telling(rows: list[Row], effect: Effect) -> Row | None:
     return max(mine or falling, key=fall, default=None)
 
 
-def excerpt(row: Row) -> slice:
+def excerpt(row: MotionRow) -> slice:
     """The samples that are shown: all of a decay; of a test in waves where most is gained."""
     time, (before, after) = row.test.time, row.residuals
-    count = int(np.searchsorted(time - time[0], EXCERPT.get(row.series.channel, SHORT)))
+    count = int(np.searchsorted(time - time[0], EXCERPT_LENGTHS.get(row.series.channel, SHORT_EXCERPT)))
     if row.test.kind == "decay" or count >= len(time):
         return slice(0, len(time))
     gained = np.concatenate([[0.0], np.cumsum(before**2 - after**2)])
@@ -166,7 +166,7 @@ def excerpt(row: Row) -> slice:
     return slice(begin, begin + count)
 
 
-def effect_figure(row: Row, title: str) -> Figure:
+def effect_figure(row: MotionRow, title: str) -> Figure:
     """The measured motion, and below it what is left before and after on one scale."""
     name, seen = row.series.channel, excerpt(row)
     time = row.test.time[seen] - row.test.time[0]
@@ -189,7 +189,7 @@ def effect_figure(row: Row, title: str) -> Figure:
     return figure
 
 
-def spectral(test: TestFit) -> list[Series]:
+def series_with_spectra(test: TestFit) -> list[Series]:
     """The motions whose spectra are shown: those with bands, or surge, heave and pitch."""
     names = [dof for dof in DOFS if dof in test.bands] or ["surge", "heave", "pitch"]
     return [series for series in test.series if series.channel in names]
@@ -197,13 +197,13 @@ def spectral(test: TestFit) -> list[Series]:
 
 def spectra_figure(test: TestFit) -> Figure:
     """Densities measured, before and after; the bands of slow motion and of waves shaded."""
-    shown = spectral(test)
+    shown = series_with_spectra(test)
     figure, axes = stack([1.1] * len(shown))
     artists: dict[str, Artist] = {}
     for ax, series in zip(axes, shown):
         channel, top, before = series.channel, 0.0, test.start.get(series.channel)
         for shade, (band, limits) in zip(BAND_COLOURS, test.bands.get(channel, {}).items()):
-            artists[SHADES.get(band, band)] = ax.axvspan(limits.low, limits.high, color=shade, lw=0, zorder=0.5)
+            artists[BAND_NAMES.get(band, band)] = ax.axvspan(limits.low, limits.high, color=shade, lw=0, zorder=0.5)
         rows = [
             ("measured", series.measured, MEASURED, 1.6),
             ("before", before, BEFORE, 1.0),
@@ -213,7 +213,7 @@ def spectra_figure(test: TestFit) -> Figure:
             if values is None:
                 continue
             found = power_spectrum(test.time, for_people(channel, values))
-            seen = (found.frequency > 0) & (found.frequency <= HIGHEST)
+            seen = (found.frequency > 0) & (found.frequency <= MAX_FREQUENCY)
             artists[label] = ax.plot(found.frequency[seen], found.density[seen], color=colour, lw=size)[0]
             top = max(top, float(found.density[seen].max()))
         if top > 0:
@@ -221,7 +221,7 @@ def spectra_figure(test: TestFit) -> Figure:
             ax.set_ylim(top * 10**-DECADES, 2.5 * top)
             ax.set_yticks([10.0**n for n in range(-15, 12) if top * 10**-DECADES <= 10.0**n <= top * 2.5][::2])
             ax.minorticks_off()
-        ax.set_xlim(0, HIGHEST)
+        ax.set_xlim(0, MAX_FREQUENCY)
         ax.set_ylabel(f"{channel.capitalize()}\n({unit_of(channel)}²/Hz)")
     axes[-1].set_xlabel("Frequency (Hz)")
     order = ["measured", "low frequency", "before", "wave frequency", "after"]  # a legend is filled column by column

@@ -1,4 +1,4 @@
-"""Coefficients against the sea state: sea by sea, and by the laws."""
+"""Figures of coefficients against the sea state."""
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -13,7 +13,7 @@ from jaxhydro.waves.sea_state import SeaState
 COLOURS = (BEFORE, SIMULATED, WAVE, GREY)
 
 
-def coefficient(found: SeaLaws, label: str) -> Figure:
+def coefficient_figure(found: SeaLaws, label: str) -> Figure:
     """A coefficient against significant height: of every sea alone, by the constants, and by the chosen law.
 
     Bars and the band are one standard deviation. Along the height the period goes as in the tests (a line through the

@@ -1,4 +1,4 @@
-"""The figures of tests in waves: spectra with their bands, and an excerpt of the record, measured against simulated."""
+"""Figures of tests in waves: spectra with their bands, and an excerpt of the record."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,9 +14,9 @@ from jaxhydro.files import safe_name
 from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
 from jaxhydro.units import unit_of
 
-HIGHEST = 0.2  # Hz, that spectra are drawn to; of waves shorter than 10 s 2.5 times their peak
+MAX_FREQUENCY = 0.2  # Hz, that spectra are drawn to; of waves shorter than 10 s 2.5 times their peak
 DECADES = 4.5  # of a spectrum, under its largest value
-EXCERPT = 400.0  # s about the highest crest
+EXCERPT_LENGTH = 400.0  # s about the highest crest
 LOW_BAND, WAVE_BAND = "#ece3cf", "#dbe9ee"
 
 
@@ -24,9 +24,9 @@ def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
     """File name, caption and figure, one after the other. Call within `jaxhydro.plot.style()`."""
     for test in tests:
         name = safe_name(test.fit.id)
-        yield f"spectra-{name}.png", f"Test {test.fit.id}: spectra, measured and simulated; bands shaded.", spectra(test)
-        caption = f"Test {test.fit.id}: {EXCERPT:g} s about the highest crest, measured and simulated."
-        yield f"excerpt-{name}.png", caption, excerpt(test)
+        yield f"spectra-{name}.png", f"Test {test.fit.id}: spectra, measured and simulated; bands shaded.", spectra_figure(test)
+        caption = f"Test {test.fit.id}: {EXCERPT_LENGTH:g} s about the highest crest, measured and simulated."
+        yield f"excerpt-{name}.png", caption, excerpt_figure(test)
 
 
 def _title(test: SeaTest) -> str:
@@ -36,9 +36,9 @@ def _title(test: SeaTest) -> str:
     return f"{test.fit.id}: {height}, Tp {number(test.peak_period, 3)} s"
 
 
-def spectra(test: SeaTest, names: Sequence[str] | None = None, title: str | None = None) -> Figure:
+def spectra_figure(test: SeaTest, names: Sequence[str] | None = None, title: str | None = None) -> Figure:
     """Densities of the wave and of what moves."""
-    both, highest = channels(test), max(HIGHEST, 2.5 / test.peak_period)
+    both, highest = channels(test), max(MAX_FREQUENCY, 2.5 / test.peak_period)
     shown = ["wave", *moving(test)] if names is None else list(names)
     figure, axes = stack([0.95] * len(shown))
     artists: dict[str, Artist] = {}
@@ -65,10 +65,10 @@ def spectra(test: SeaTest, names: Sequence[str] | None = None, title: str | None
     return figure
 
 
-def excerpt(test: SeaTest) -> Figure:
+def excerpt_figure(test: SeaTest) -> Figure:
     """Part of the record, about the wave's highest crest."""
     both, time = channels(test), test.fit.time
-    crest, width = float(time[np.argmax(test.wave)]), min(EXCERPT, float(time[-1] - time[0]))
+    crest, width = float(time[np.argmax(test.wave)]), min(EXCERPT_LENGTH, float(time[-1] - time[0]))
     begin = min(max(crest - 0.5 * width, time[0]), time[-1] - width)
     seen = (time >= begin) & (time <= begin + width)
     shown = ["wave", *moving(test)]

@@ -1,4 +1,4 @@
-"""The figures of a diagnosis that show how it was made: scores of the candidates, and where the residual lives."""
+"""Figures of the search in a diagnosis: candidate scores, residuals, latent forces."""
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -16,13 +16,13 @@ from calibration.formatting import PREFIXES
 from jaxhydro.plots.style import GREY, MEASURED, SIMULATED, WAVE, WIDTH, header, stack
 from jaxhydro.units import for_people, unit_of
 
-MOST, FEW = 8, 5  # candidates shown of a round; of more than two rounds
-LEAST = 1.0  # of -2 ln L: what gains less is not worth a bar
+MAX_CANDIDATES, MAX_CANDIDATES_PER_ROUND = 8, 5  # candidates shown of a round; of more than two rounds
+MIN_SHOWN_GAIN = 1.0  # of -2 ln L: what gains less is not worth a bar
 COLOURS = "YlOrRd"
-EXCERPT = 600.0  # s of a latent force in waves
+EXCERPT_LENGTH = 600.0  # s of a latent force in waves
 
 
-def chosen(diagnosis: Diagnosis) -> dict[int, Score]:
+def chosen_effects(diagnosis: Diagnosis) -> dict[int, Score]:
     """What each round took into the model: of the effects found, the round that was the last to score it."""
     found = {(effect.effect, effect.degree_of_freedom) for effect in diagnosis.effects}
     last = {(score.effect, score.degree_of_freedom): score for score in sorted(diagnosis.scores, key=lambda one: one.round)}
@@ -32,18 +32,22 @@ def chosen(diagnosis: Diagnosis) -> dict[int, Score]:
 
 def scores_figure(diagnosis: Diagnosis) -> Figure:
     """A panel for every round: candidates by what they gain at first order, those refitted with a dot."""
-    took = chosen(diagnosis)
+    took = chosen_effects(diagnosis)
     rounds = {n: _best(diagnosis, n, took.get(n)) for n in sorted({score.round for score in diagnosis.scores})}
     heights = [0.165 * len(rows) + 0.1 for rows in rounds.values()]
     figure = Figure(figsize=(WIDTH, sum(heights) + 0.27 * len(heights) + 0.8), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
-    largest = max([LEAST * 10, *(_gain(gain) for rows in rounds.values() for s in rows for gain in (s.gain, s.refitted))])
+    largest = max(
+        [MIN_SHOWN_GAIN * 10, *(_gain(gain) for rows in rounds.values() for s in rows for gain in (s.gain, s.refitted))]
+    )
     artists: dict[str, Artist] = {}
     for ax, (n, rows) in zip(axes, rounds.items()):
         for i, score in enumerate(rows):
             mine = score is took.get(n)
-            ax.barh(i, _gain(score.gain) - LEAST, left=LEAST, height=0.68, color=SIMULATED if mine else "#c3c9d1")
+            ax.barh(
+                i, _gain(score.gain) - MIN_SHOWN_GAIN, left=MIN_SHOWN_GAIN, height=0.68, color=SIMULATED if mine else "#c3c9d1"
+            )
             if score.refitted is not None:
                 dot = Line2D([_gain(score.refitted)], [i], marker="o", ms=3.5, color=MEASURED, ls="", clip_on=False)
                 artists["refitted"] = ax.add_line(dot)
@@ -60,14 +64,16 @@ def _best(diagnosis: Diagnosis, n: int, kept: Score | None) -> list[Score]:
     """A round's candidates, the largest gain first; the one kept and those refitted among them."""
     rows = sorted((score for score in diagnosis.scores if score.round == n), key=lambda one: -_gain(one.gain))
     several = len({score.round for score in diagnosis.scores}) > 2
-    told = [one for one in rows if one.refitted is not None or _gain(one.gain) > LEAST] or rows[:1]
-    wanted = sorted(told, key=lambda one: (one is not kept, one.refitted is None))[: FEW if several else MOST]
+    told = [one for one in rows if one.refitted is not None or _gain(one.gain) > MIN_SHOWN_GAIN] or rows[:1]
+    wanted = sorted(told, key=lambda one: (one is not kept, one.refitted is None))[
+        : MAX_CANDIDATES_PER_ROUND if several else MAX_CANDIDATES
+    ]
     return [score for score in rows if any(score is one for one in wanted)]
 
 
 def _gain(value: float | None) -> float:
     """What a log axis can show."""
-    return max(LEAST, value) if value is not None and np.isfinite(value) else LEAST
+    return max(MIN_SHOWN_GAIN, value) if value is not None and np.isfinite(value) else MIN_SHOWN_GAIN
 
 
 def _named(score: Score) -> str:
@@ -77,7 +83,7 @@ def _named(score: Score) -> str:
 
 def _scores_axes(ax: Axes, labels: list[str], highest: float) -> None:
     ax.set_xscale("log")
-    ax.set_xlim(LEAST, highest)
+    ax.set_xlim(MIN_SHOWN_GAIN, highest)
     ax.minorticks_off()
     ax.set_ylim(len(labels) - 0.4, -0.6)
     ax.set_yticks(range(len(labels)), labels, fontsize=7)
@@ -142,7 +148,7 @@ def latent_figure(one: LatentForce) -> Figure:
     """A latent force over time, with its law, and below it the velocity or the wave: of a test in waves where it is largest."""
     shown, seen = one.shown, slice(None)
     step = float(shown.time[1] - shown.time[0])
-    if shown.beside == "wave" and (count := round(EXCERPT / step)) < len(shown.time):
+    if shown.beside == "wave" and (count := round(EXCERPT_LENGTH / step)) < len(shown.time):
         power = np.concatenate([[0.0], np.cumsum(shown.force**2)])
         seen = slice(begin := int(np.argmax(power[count:] - power[:-count])), begin + count)
     time, highest = shown.time[seen], float(np.abs(shown.force[seen]).max())

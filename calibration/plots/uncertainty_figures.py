@@ -1,4 +1,4 @@
-"""Figures of uncertainty: a profile, draws of two parameters. Call within `jaxhydro.plot.style()`."""
+"""Figures of uncertainty: likelihood profiles, and draws of two parameters."""
 
 import numpy as np
 from matplotlib.figure import Figure

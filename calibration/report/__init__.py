@@ -1,1 +1,1 @@
-"""HTML pages, tables and sentences for people."""
+"""HTML pages, tables and sentences of the results."""

@@ -1,4 +1,4 @@
-"""A calibration as one self-contained HTML page: its result in one sentence, coefficients, tests, damping, notes, figures."""
+"""HTML page of a calibration."""
 
 from collections.abc import Iterator
 from html import escape
@@ -8,8 +8,8 @@ from calibration.campaign.manifest import IN_WAVES
 from calibration.report import tables
 from calibration.report.summary import calibration_sentence, summary_of
 from calibration.report.web_page import UNCONVERGED, figures, folded, framed, images, listed, result_box, table, warning_box
-from calibration.results.read_calibration import Saved
-from calibration.results.result_folder import RESULT
+from calibration.results.read_calibration import SavedCalibration
+from calibration.results.result_folder import RESULT_FILE
 
 _ERRORS = """<p>RMSE of the simulated motion over the standard deviation of the measured motion, before and after the
 calibration.</p>"""
@@ -18,13 +18,13 @@ _DAMPING = """<p>x'' + p x' + q x'|x'| + w² x = 0, fitted to the decrements of 
 Ships and Offshore Structures, chapter 7). Measured and simulated decays should agree.</p>"""
 
 
-def page(saved: Saved, folder: Path) -> str:
+def page(saved: SavedCalibration, folder: Path) -> str:
     """The page's text."""
-    parts = _parts(saved, folder, str(folder / RESULT))
+    parts = _parts(saved, folder, str(folder / RESULT_FILE))
     return framed(saved.campaign, f"Calibration by jaxhydro {saved.jaxhydro}", parts, saved.jaxhydro)
 
 
-def _parts(saved: Saved, folder: Path, source: str) -> Iterator[str]:
+def _parts(saved: SavedCalibration, folder: Path, source: str) -> Iterator[str]:
     fitted = saved.baseline
     summary = summary_of(saved, source)
     sentence = calibration_sentence(summary)
@@ -38,7 +38,7 @@ def _parts(saved: Saved, folder: Path, source: str) -> Iterator[str]:
     yield table(*tables.parameters(saved), 2, 4, vague)
     if saved.truth:
         yield f"<h2>Against the true coefficients</h2><p>{escape(tables.agreement_with_truth(saved))}</p>"
-        heads, rows = tables.against(saved)
+        heads, rows = tables.comparison_with_truth(saved)
         yield table(heads, rows, 1)
     yield f"<h2>Tests</h2>{_ERRORS}"
     yield table(*tables.errors(saved, source), 5)
@@ -55,9 +55,9 @@ def _parts(saved: Saved, folder: Path, source: str) -> Iterator[str]:
         yield f"<h2>Figures</h2>{drawn}"
 
 
-def _how(saved: Saved) -> str:
+def _how(saved: SavedCalibration) -> str:
     """The objective, and how it was reached."""
-    said = f"{tables.outcome(saved)}."
+    said = f"{tables.outcome_sentence(saved)}."
     if any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values()):
         said += " Tests in waves are fitted by the objective that was asked for, by default energy in bands."
     return said

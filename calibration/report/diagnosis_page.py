@@ -1,4 +1,4 @@
-"""A diagnosis as one self-contained HTML page, for the one who decides what is measured next."""
+"""HTML page of a diagnosis."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -9,8 +9,8 @@ from calibration.formatting import number
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
 from calibration.report.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
-from calibration.results.read_diagnosis import Found, SavedDiagnosis
-from calibration.results.result_folder import DIAGNOSIS
+from calibration.results.read_diagnosis import SavedDiagnosis, SavedEffect
+from calibration.results.result_folder import DIAGNOSIS_FILE
 from calibration.vocabulary import KINDS, USE
 
 _ANATOMY = """<p>The residual of the declared model after its coefficients are fitted, the largest first: its root mean
@@ -40,7 +40,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
         yield warning_box(f"{words.capital(words.STOPPED)}.")
     elif not saved.converged:
         yield warning_box(UNCONVERGED.format("a diagnosis"))
-    yield result_box(words.verdict(saved))
+    yield result_box(words.verdict_sentence(saved))
     yield "<h2>What was measured</h2>"
     yield f"<p>{escape(_measured(saved))}</p>"
     yield table(*tables.tests(saved), 4)
@@ -54,7 +54,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
         yield from _effect(saved, one)
     if not saved.missing.effects:
         yield "<p>No effect.</p>"
-    yield f"<p>{escape(words.left_over(saved))}</p>"
+    yield f"<p>{escape(words.describe_unexplained(saved))}</p>"
     if forces := saved.missing.unexplained.forces:
         yield _LATENT
         yield listed([one.words for one in forces])
@@ -64,7 +64,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
     yield taken("effect-")
     yield "<h2>Error before and after</h2>"
     yield f"<p>{escape(_objectives(saved))}</p>"
-    yield table(*tables.errors(saved, str(folder / DIAGNOSIS)), 3)
+    yield table(*tables.errors(saved, str(folder / DIAGNOSIS_FILE)), 3)
     if (rows := tables.bands(saved))[1]:
         yield _BANDS
         yield table(*rows, 4)
@@ -98,22 +98,22 @@ def _measured(saved: SavedDiagnosis) -> str:
     return f"{tests}{platform}, {number(seconds / span, 2)} {unit} together at the platform file's scale ({said})."
 
 
-def _effect(saved: SavedDiagnosis, one: Found) -> Iterator[str]:
+def _effect(saved: SavedDiagnosis, one: SavedEffect) -> Iterator[str]:
     name = words.called(one.effect, one.degree_of_freedom)
     yield f"<h3>{escape(words.capital(name))}</h3>"
-    sizes = "; ".join(words.size(key, value) for key, value in words.by_certainty(one.parameters))
+    sizes = "; ".join(words.describe_parameter(key, value) for key, value in words.sorted_by_certainty(one.parameters))
     yield f'<p class="size"><b>Size:</b> {escape(sizes)}.</p>' if sizes else ""
     if one.meaning:
         source = f" ({one.source})" if one.source else ""
         yield f"<p>{escape(words.capital(one.meaning.rstrip('.')) + source)}.</p>"
-    yield f"<p><b>How sure:</b> {escape(' '.join(words.sureness(saved, one)))}</p>"
-    yield f"<p><b>What else it could be:</b> {escape(words.alternatives(one))}</p>"
+    yield f"<p><b>How sure:</b> {escape(' '.join(words.describe_certainty(saved, one)))}</p>"
+    yield f"<p><b>What else it could be:</b> {escape(words.describe_alternatives(one))}</p>"
 
 
 def _objectives(saved: SavedDiagnosis) -> str:
     """J before and after, fitted and held out."""
     before, after = saved.baseline.objective, saved.augmented.objective
-    said = f"The error of the fitted tests {words.change(before.fit, after.fit)}"
+    said = f"The error of the fitted tests {words.describe_change(before.fit, after.fit)}"
     if before.holdout is not None and after.holdout is not None:
-        said += f", that of the held-out tests {words.change(before.holdout, after.holdout)}"
+        said += f", that of the held-out tests {words.describe_change(before.holdout, after.holdout)}"
     return f"{said}. J is the sum of RMSE over the motion's standard deviation; the table has every part of it."

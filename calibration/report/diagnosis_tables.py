@@ -1,15 +1,21 @@
-"""Heads and rows of the tables of a diagnosis, for the terminal and the page."""
+"""Tables of a diagnosis, for the terminal and the page."""
 
 from calibration.discovery.effects.effect_names import called
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.formatting import number, percent, quantity, readable_unit, with_deviation
-from calibration.report.diagnosis_words import by_certainty, checked_on, determined, plain, strength
+from calibration.report.diagnosis_words import (
+    evidence_strength,
+    is_determined,
+    plain_name,
+    sorted_by_certainty,
+    validation_tests,
+)
 from calibration.results.read_calibration import Parameter
 from calibration.results.read_diagnosis import SavedDiagnosis
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
-ORDER = list(USE)
-STILL = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
+USE_ORDER = list(USE)
+MAX_RELATIVE_ERROR = 5.0  # a residual so many times its motion is of one that hardly moves: no share of it says anything
 NEARLY_KNOWN = ("mass_properties.", "static_offset.", "mooring.", "covered_ends.")  # that a search lets vary by a little
 VARIED = (
     f"Properties that are nearly known, fitted near their declared values (one standard deviation: mass {percent(MASS)}, "
@@ -32,11 +38,11 @@ def effects(saved: SavedDiagnosis) -> Rows:
     """What was found: a row for every parameter."""
     rows = []
     for one in saved.missing.effects:
-        first = (called(one.effect, one.degree_of_freedom), strength(one.evidence), percent(one.evidence.holdout_gain))
-        for i, (name, value) in enumerate(by_certainty(one.parameters)):
-            said = quantity(value.value, value.standard_deviation, value.unit) if determined(value) else UNDETERMINED
-            rows.append((first[0] if i == 0 else "", plain(name), said, *(first[1:] if i == 0 else ("", ""))))
-    return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", f"Gain over {checked_on(saved)}"), rows
+        first = (called(one.effect, one.degree_of_freedom), evidence_strength(one.evidence), percent(one.evidence.holdout_gain))
+        for i, (name, value) in enumerate(sorted_by_certainty(one.parameters)):
+            said = quantity(value.value, value.standard_deviation, value.unit) if is_determined(value) else UNDETERMINED
+            rows.append((first[0] if i == 0 else "", plain_name(name), said, *(first[1:] if i == 0 else ("", ""))))
+    return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", f"Gain over {validation_tests(saved)}"), rows
 
 
 def errors(saved: SavedDiagnosis, source: str = "diagnosis.json") -> Rows:
@@ -70,7 +76,7 @@ def coefficients(saved: SavedDiagnosis) -> Rows:
     """Every fitted parameter as declared, before and after, the effects' own among those after."""
     rows = []
     for label, was, now in _parameters(saved, nearly_known=False):
-        known = was is not None and now is not None and determined(was) and determined(now) and was.value != 0
+        known = was is not None and now is not None and is_determined(was) and is_determined(now) and was.value != 0
         moved = _moved(now.value / was.value - 1) if known and was and now else ""
         rows.append((*_of_parameter(label, was, now), moved))
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
@@ -91,7 +97,7 @@ def _parameters(saved: SavedDiagnosis, nearly_known: bool) -> list[tuple[str, Pa
     before, after = saved.baseline.parameters, saved.augmented.parameters
     labels = [label for label in dict.fromkeys([*before, *after]) if label.startswith(NEARLY_KNOWN) == nearly_known]
     rows = [(label, before.get(label), after.get(label)) for label in labels]
-    return sorted(rows, key=lambda row: row[0] not in before and row[2] is not None and not determined(row[2]))
+    return sorted(rows, key=lambda row: row[0] not in before and row[2] is not None and not is_determined(row[2]))
 
 
 def _of_parameter(label: str, was: Parameter | None, now: Parameter | None) -> tuple[str, ...]:
@@ -121,7 +127,7 @@ def anatomy(saved: SavedDiagnosis) -> Rows:
                 one.channel,
                 one.words,
                 f"{number(one.rms, 2)} {one.unit}",
-                percent(one.relative if (one.relative or 0.0) < STILL else None),
+                percent(one.relative if (one.relative or 0.0) < MAX_RELATIVE_ERROR else None),
                 number(one.over_noise, 2),
                 number(now.over_noise if now else None, 2),
             )
@@ -132,7 +138,7 @@ def anatomy(saved: SavedDiagnosis) -> Rows:
 def _value(one: Parameter | None) -> str:
     if one is None:
         return "–"
-    text = with_deviation(one.value, one.standard_deviation) if determined(one) else UNDETERMINED
+    text = with_deviation(one.value, one.standard_deviation) if is_determined(one) else UNDETERMINED
     return f"{text}, at its bound" if one.at_bound else text
 
 
@@ -142,4 +148,4 @@ def _use(saved: SavedDiagnosis, id: str) -> str:
 
 def _order(saved: SavedDiagnosis, id: str) -> int:
     use = _use(saved, id)
-    return ORDER.index(use) if use in ORDER else len(ORDER)
+    return USE_ORDER.index(use) if use in USE_ORDER else len(USE_ORDER)

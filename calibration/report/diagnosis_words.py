@@ -1,4 +1,4 @@
-"""A diagnosis in words and readable numbers, for the terminal and the page."""
+"""Sentences and readable numbers of a diagnosis, for the terminal and the page."""
 
 from collections.abc import Mapping
 
@@ -6,51 +6,56 @@ from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER
 from calibration.discovery.effects.effect_names import called, capital
 from calibration.formatting import listed, number, percent, quantity
 from calibration.results.read_calibration import Parameter
-from calibration.results.read_diagnosis import Found, Grounds, SavedDiagnosis
+from calibration.results.read_diagnosis import SavedDiagnosis, SavedEffect, SavedEvidence
 from calibration.vocabulary import UNDETERMINED
 
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
 UNFINISHED = "The search did not come to its end: until then nothing was found that the declared model lacks."
 WHERE = "in the motion and at the frequencies where the error falls most"
-CLEAR = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
-SMALL = 0.25  # of the value it began from: a deviation below is small, whatever the value
-STRENGTHS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "positive"), (0.0, "weak"))  # Kass and Raftery 1995, table in 3.2
+NEAR_ZERO_DEVIATIONS = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
+SMALL_DEVIATION = 0.25  # of the value it began from: a deviation below is small, whatever the value
+EVIDENCE_STRENGTHS = (
+    (10.0, "very strong"),
+    (6.0, "strong"),
+    (2.0, "positive"),
+    (0.0, "weak"),
+)  # Kass and Raftery 1995, table in 3.2
 
 
-def plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """A parameter's name in words: `column.exponent` is "column exponent"."""
     return name.replace(".", " ").replace("_", " ")
 
 
-def determined(one: Parameter) -> bool:
+def is_determined(one: Parameter) -> bool:
     """Whether the records determine a parameter: its deviation is below its value, or small against where it began."""
     deviation = one.standard_deviation or 0.0
-    return one.identifiable and (deviation <= abs(one.value) or deviation < SMALL * abs(one.start or 0.0))
+    return one.identifiable and (deviation <= abs(one.value) or deviation < SMALL_DEVIATION * abs(one.start or 0.0))
 
 
-def by_certainty(parameters: Mapping[str, Parameter]) -> list[tuple[str, Parameter]]:
+def sorted_by_certainty(parameters: Mapping[str, Parameter]) -> list[tuple[str, Parameter]]:
     """Parameters of an effect, those that the records determine first."""
-    return sorted(parameters.items(), key=lambda item: not determined(item[1]))
+    return sorted(parameters.items(), key=lambda item: not is_determined(item[1]))
 
 
-def size(name: str, one: Parameter) -> str:
+def describe_parameter(name: str, one: Parameter) -> str:
     """A parameter of an effect: its name, value, deviation and unit; or that it is not determined, and what was fitted."""
     text = quantity(one.value, one.standard_deviation, one.unit)
-    if not determined(one):
-        return f"{plain(name)} {UNDETERMINED}" + (f": fitted {text}" if one.identifiable else "")
+    if not is_determined(one):
+        return f"{plain_name(name)} {UNDETERMINED}" + (f": fitted {text}" if one.identifiable else "")
     more = ", at its bound" if one.at_bound else ""
-    if one.standard_deviation and abs(one.value) < CLEAR * one.standard_deviation:
-        more += f", less than {CLEAR:g} standard deviations from zero"
-    return f"{plain(name)} {text}{more}"
+    if one.standard_deviation and abs(one.value) < NEAR_ZERO_DEVIATIONS * one.standard_deviation:
+        more += f", less than {NEAR_ZERO_DEVIATIONS:g} standard deviations from zero"
+    return f"{plain_name(name)} {text}{more}"
 
 
-def checked_on(saved: SavedDiagnosis) -> str:
+def validation_tests(saved: SavedDiagnosis) -> str:
     """What the gain of an effect was found on: tests that were held out, or blocks of the fitted tests left out in turn."""
     held = any(row.get("use") == "holdout" for row in saved.augmented.error.values())
     return "held-out tests" if held else "blocks of the fitted tests left out in turn"
 
 
-def verdict(saved: SavedDiagnosis) -> str:
+def verdict_sentence(saved: SavedDiagnosis) -> str:
     """What a project lead has to know, in one sentence."""
     missing = saved.missing
     named = [(called(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
@@ -60,28 +65,28 @@ def verdict(saved: SavedDiagnosis) -> str:
     if missing.verdict == "found":
         more = f" {capital(doubted)} may stand for something else (see below)." if doubted else ""
         until = "" if saved.complete else " This is what was found until the search was stopped."
-        return f"The declared model lacks {names}: {fall(saved)}.{more}{until}"
+        return f"The declared model lacks {names}: {error_reduction(saved)}.{more}{until}"
     if not saved.converged and not named:
         return UNFINISHED
     if missing.verdict == "nothing_missing":
         return "These records show nothing that the declared model lacks: no effect that was tried survives."
     lacks = "The declared model lacks something, and no effect that was tried explains it"
-    return f"{lacks}; {doubted} may stand for it: {fall(saved)}." if doubted else f"{lacks}."
+    return f"{lacks}; {doubted} may stand for it: {error_reduction(saved)}." if doubted else f"{lacks}."
 
 
-def fall(saved: SavedDiagnosis) -> str:
+def error_reduction(saved: SavedDiagnosis) -> str:
     """How much smaller errors are, of the held-out tests where there are any."""
     before, after = saved.baseline.objective, saved.augmented.objective
     many, doubted = len(saved.missing.effects) > 1, any(one.in_doubt is not None for one in saved.missing.effects)
     added = f"with {'all that was found' if many and doubted else 'them' if many else 'it'} in the model, the error"
     if before.holdout and after.holdout is not None:
-        return f"{added} of tests that were not fitted {change(before.holdout, after.holdout)}"
-    said = f"{added} of the fitted tests {change(before.fit, after.fit)}"
+        return f"{added} of tests that were not fitted {describe_change(before.holdout, after.holdout)}"
+    said = f"{added} of the fitted tests {describe_change(before.fit, after.fit)}"
     checked = any(one.evidence.holdout_gain is not None for one in saved.missing.effects)
     return said if checked else f"{said}; no test was held out to check it"
 
 
-def change(before: float, after: float) -> str:
+def describe_change(before: float, after: float) -> str:
     """falls by 61 % (J from 0.57 to 0.22)"""
     if not before > 0:
         return f"is {number(after, 3)} (J)"
@@ -92,27 +97,27 @@ def change(before: float, after: float) -> str:
     return f"{word} by {percent(abs(share))} (J from {number(before, 3)} to {number(after, 3)})"
 
 
-def strength(evidence: Grounds) -> str:
+def evidence_strength(evidence: SavedEvidence) -> str:
     """The evidence's weight by BIC, in the words of Kass and Raftery."""
     if evidence.delta_bic is None:
         return "unknown"
-    return next((word for limit, word in STRENGTHS if evidence.delta_bic > limit), "none")
+    return next((word for limit, word in EVIDENCE_STRENGTHS if evidence.delta_bic > limit), "none")
 
 
-def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
+def describe_certainty(saved: SavedDiagnosis, one: SavedEffect) -> list[str]:
     """How sure an effect is: sentences with their numbers."""
     evidence = one.evidence
     said = []
     if evidence.delta_bic is not None:
         fell = f"BIC falls by {number(evidence.delta_bic, 3)} (above 10 is very strong)"
-        said.append(f"{strength(evidence).capitalize()} evidence on the fitted tests: {fell}.")
+        said.append(f"{evidence_strength(evidence).capitalize()} evidence on the fitted tests: {fell}.")
     gain = evidence.holdout_gain
     if gain is None:
         said.append("No test was held out to check it.")
     elif gain >= 0:
-        said.append(f"The squared error of {checked_on(saved)} falls by {percent(gain)} {WHERE}.")
+        said.append(f"The squared error of {validation_tests(saved)} falls by {percent(gain)} {WHERE}.")
     else:
-        said.append(f"The squared error of {checked_on(saved)} grows by {percent(-gain)}.")
+        said.append(f"The squared error of {validation_tests(saved)} grows by {percent(-gain)}.")
     share = one.share_of_residual_explained
     whole = share is not None and 0.99 < share < 1
     part = "more than 99 %" if whole else percent(share)
@@ -126,7 +131,7 @@ def sureness(saved: SavedDiagnosis, one: Found) -> list[str]:
     return said
 
 
-def alternatives(one: Found) -> str:
+def describe_alternatives(one: SavedEffect) -> str:
     """What else it could be, and the test that would tell."""
     names = listed([called(other) for other in one.indistinguishable_from])
     said = f"These records cannot tell it from {names}." if names else ""
@@ -152,7 +157,7 @@ def alternatives(one: Found) -> str:
     return said.strip()
 
 
-def left_over(saved: SavedDiagnosis) -> str:
+def describe_unexplained(saved: SavedDiagnosis) -> str:
     """What nothing explains."""
     left = saved.missing.unexplained
     share = f"{percent(left.share)} of the squared error above the noise, motion by motion, is left unexplained"

@@ -1,4 +1,4 @@
-"""Laws over the sea state, as tables and in a sentence."""
+"""Tables and a sentence on laws over the sea state."""
 
 from collections.abc import Iterator
 

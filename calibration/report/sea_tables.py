@@ -8,12 +8,12 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.signals import wave_height
 from calibration.formatting import number, percent
-from calibration.residuals.measured_seas import Compared
+from calibration.residuals.measured_seas import Comparison
 from calibration.residuals.sea_errors import amplitude, channels, in_bands, moving
 from calibration.vocabulary import Rows
 from jaxhydro.units import unit_of
 
-NAMES = {"low_frequency": "low", "wave_frequency": "wave"}
+BAND_NAMES = {"low_frequency": "low", "wave_frequency": "wave"}
 
 
 def counted(campaign: Campaign) -> str:
@@ -23,7 +23,7 @@ def counted(campaign: Campaign) -> str:
     return f"{waves} {'test' if waves == 1 else 'tests'} in waves" + (f"; left aside: {others}" if others else "")
 
 
-def seas_table(found: Compared) -> Rows:
+def seas_table(found: Comparison) -> Rows:
     """Height of every sea as stated, measured and simulated at the gauge."""
     rows = []
     for test in found.tests:
@@ -34,7 +34,7 @@ def seas_table(found: Compared) -> Rows:
     return ("Test", "Waves", "Use", "Height stated (m)", "Measured (m)", "Simulated (m)", "Period (s)"), rows
 
 
-def motions_table(found: Compared) -> Rows:
+def motions_table(found: Comparison) -> Rows:
     """Mean, standard deviation and RMSE of the motions that matter."""
     rows = []
     for test in found.tests:
@@ -46,7 +46,7 @@ def motions_table(found: Compared) -> Rows:
     return heads, rows
 
 
-def bands_table(found: Compared) -> Rows:
+def bands_table(found: Comparison) -> Rows:
     """Band integrals per sea state and motion; of regular waves amplitudes."""
     rows = []
     for test in found.tests:
@@ -59,7 +59,7 @@ def bands_table(found: Compared) -> Rows:
         for name, row in in_bands(test).items():
             if name == "wave" or name in moving(test):
                 for key, band in row.items():
-                    limits = f"{NAMES[key]}, {band.low:g}-{band.high:g} Hz"
+                    limits = f"{BAND_NAMES[key]}, {band.low:g}-{band.high:g} Hz"
                     rows.append((test.fit.id, f"{name} ({unit_of(name)}²)", limits, *_cells(band.measured, band.simulated)))
     return ("Test", "Channel", "Band", "Measured", "Simulated", "Error"), rows
 

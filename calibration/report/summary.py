@@ -1,18 +1,18 @@
-"""The result of a calibration in one sentence: how well tests are followed, and which coefficients are determined."""
+"""Result of a calibration in one sentence."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from calibration.fitting.fit_conclusion import LOST
+from calibration.fitting.fit_conclusion import NOT_FOLLOWED_ERROR
 from calibration.formatting import counted, listed, percent, percent_span
-from calibration.results.read_calibration import Error, Parameter, Saved
+from calibration.results.read_calibration import ChannelError, Parameter, SavedCalibration
 
 KINDS = {"decay": "decay", "regular": "test", "irregular": "test"}
-WATERS = {"regular": " in regular waves", "irregular": " in irregular waves"}
+WAVES_PHRASES = {"regular": " in regular waves", "irregular": " in irregular waves"}
 BANDS = {"low_frequency": "low-frequency", "wave_frequency": "wave-frequency"}
-OFF = 1.0  # relative error of the energy in a band beyond which a test in waves is not followed
-NAMED = 3  # tests or coefficients that a sentence names; of more it says how many
+FAR_OFF_ERROR = 1.0  # relative error of the energy in a band beyond which a test in waves is not followed
+MAX_NAMED = 3  # tests or coefficients that a sentence names; of more it says how many
 Bands = Mapping[str, Mapping[str, tuple[float | None, float]]]
 
 
@@ -40,7 +40,7 @@ class FarOff(NamedTuple):
 
 class CalibrationSummary(NamedTuple):
     """What the sentence says. `not_followed` are fitted decays by id, with RMSE over standard deviation; `far_off` are fitted
-    tests in irregular waves whose energy is off by more than `OFF` in a band."""
+    tests in irregular waves whose energy is off by more than `FAR_OFF_ERROR` in a band."""
 
     converged: bool
     not_followed: dict[str, float]
@@ -56,7 +56,7 @@ class CalibrationSummary(NamedTuple):
         return self.converged and not self.not_followed and not self.far_off
 
 
-def summary_of(saved: Saved, source: str) -> CalibrationSummary:
+def summary_of(saved: SavedCalibration, source: str) -> CalibrationSummary:
     """The summary of a calibration.json. Raises InputError for errors in the file that are none, `source` being its name."""
     errors, bands = saved.errors(source), saved.bands(source)
     groups: dict[tuple[str, str], list[str]] = {}
@@ -67,11 +67,11 @@ def summary_of(saved: Saved, source: str) -> CalibrationSummary:
         if use in ("fit", "holdout"):
             groups.setdefault((use, kind), []).append(id)
         scored = [one.relative for one in channels.values() if one.in_objective]
-        if use == "fit" and kind == "decay" and scored and max(scored) >= LOST:
+        if use == "fit" and kind == "decay" and scored and max(scored) >= NOT_FOLLOWED_ERROR:
             lost[id] = max(scored)
         energies = [FarOff(name, band, abs(after)) for name, row in bands[id].items() for band, (_, after) in row.items()]
         worst = max(energies, key=lambda one: one.error, default=None)
-        if use == "fit" and worst is not None and worst.error > OFF:
+        if use == "fit" and worst is not None and worst.error > FAR_OFF_ERROR:
             far[id] = worst
     agreements = tuple(
         _agreement(kind, use, [errors[id] for id in ids], [bands[id] for id in ids])
@@ -87,7 +87,7 @@ def _is_determined(one: Parameter) -> bool:
     return one.identifiable and not one.at_bound and (one.standard_deviation or 0.0) <= abs(one.value)
 
 
-def _kind(saved: Saved, id: str) -> str:
+def _kind(saved: SavedCalibration, id: str) -> str:
     return saved.tests[id].kind if id in saved.tests else ""
 
 
@@ -100,7 +100,7 @@ def _others(parameters: Mapping[str, Parameter], determined: Sequence[str]) -> t
     )
 
 
-def _agreement(kind: str, use: str, errors: Sequence[Mapping[str, Error]], bands: Sequence[Bands]) -> Agreement:
+def _agreement(kind: str, use: str, errors: Sequence[Mapping[str, ChannelError]], bands: Sequence[Bands]) -> Agreement:
     relative = tuple(one.relative for channels in errors for one in channels.values() if one.in_objective)
     energies: dict[str, list[float]] = {}
     for channels in bands:
@@ -140,7 +140,7 @@ def _failures(summary: CalibrationSummary) -> Iterator[str]:
 
 def _followed(one: Agreement) -> str:
     held = "held-out " if one.use == "holdout" else ""
-    tests = counted(one.tests, f"{held}{KINDS.get(one.kind, 'test')}") + WATERS.get(one.kind, "")
+    tests = counted(one.tests, f"{held}{KINDS.get(one.kind, 'test')}") + WAVES_PHRASES.get(one.kind, "")
     if one.bands:
         parts = [f"{BANDS.get(band, band)} energy off by {percent_span(values)}" for band, values in one.bands.items()]
         return f"{tests}: {listed(parts)}"
@@ -164,4 +164,4 @@ def _determined(summary: CalibrationSummary) -> str:
 
 def _named(names: Sequence[str], noun: str) -> str:
     """Names while they are few, else how many."""
-    return listed(names) if len(names) <= NAMED else counted(len(names), noun)
+    return listed(names) if len(names) <= MAX_NAMED else counted(len(names), noun)

@@ -1,4 +1,4 @@
-"""A sweep as one self-contained HTML page: the result in one sentence, statistics over the life, what was run, what failed."""
+"""HTML page of a sweep: extremes, statistics over the life, failed runs."""
 
 from collections.abc import Iterator
 from html import escape
@@ -10,7 +10,7 @@ from pydantic import Field
 from calibration.formatting import counted, number, percent
 from calibration.formatting import listed as joined
 from calibration.report.web_page import embedded, figures, framed, listed, result_box, table, warning_box
-from calibration.results.read_calibration import Open, Reference
+from calibration.results.read_calibration import ReferenceSeaState, ResultModel
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import Number
 from jaxhydro.sweep.cases import runs_in_words
@@ -29,7 +29,7 @@ from seed to seed; the maximum of a seed is the largest of its runs, averaged ov
 Equivalent ranges do the same damage as all cycles{frequency}, for S-N curves of the exponent m.</p>"""
 
 
-class Runs(Open):
+class Runs(ResultModel):
     """How many there are, and what became of them."""
 
     total: int
@@ -37,7 +37,7 @@ class Runs(Open):
     failed: int
 
 
-class Life(Open):
+class Life(ResultModel):
     """Lifetime statistics of a channel, in its unit."""
 
     unit: str
@@ -52,7 +52,7 @@ class Life(Open):
     damage_equivalent_range: dict[str, Number | None] = Field(default_factory=dict)
 
 
-class Failure(Open):
+class Failure(ResultModel):
     """Runs of a sea state (m, s) that failed alike, from headings (deg) with seeds, and why."""
 
     hs: Number
@@ -64,14 +64,14 @@ class Failure(Open):
     reason: str
 
 
-class Heading(Open):
+class Heading(ResultModel):
     """Where waves run to (deg), and its share of the life."""
 
     heading: Number
     probability: Number
 
 
-class Options(Open):
+class Options(ResultModel):
     """What all runs share: s, Hz."""
 
     duration: Number
@@ -88,15 +88,15 @@ class Options(Open):
     equivalent_frequency: Number
 
 
-class Used(Open):
+class Used(ResultModel):
     """A calibration's file, and the values that were used of it, by label."""
 
     file: str
     values: dict[str, Number]
-    sea_state_reference: Reference | None = None
+    sea_state_reference: ReferenceSeaState | None = None
 
 
-class SavedSweep(Open):
+class SavedSweep(ResultModel):
     """sweep.json."""
 
     sweep: str

@@ -1,23 +1,23 @@
-"""Tables of a campaign and of a calibration, for the terminal and the page: headings, and rows of text."""
+"""Tables of a campaign and of a calibration, for the terminal and the page."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from calibration.campaign.checks import Finding
-from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.formatting import LARGEST_PERCENT, counted, number, percent, readable_unit, with_deviation
 from calibration.result import Calibration
-from calibration.results.read_calibration import Error, Parameter, Saved
+from calibration.results.read_calibration import ChannelError, Parameter, SavedCalibration
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
 CLASSICAL = "Classical analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
-SURE = 2.0  # standard deviations within which a value agrees with the true one
+AGREEMENT_DEVIATIONS = 2.0  # standard deviations within which a value agrees with the true one
 
 
-def tests_counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
+def count_tests(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
     """How many tests there are of each use, and how many of other kinds are left out."""
     tests = campaign.manifest.tests
     count = Counter(USE[t.use] if t.use == "ignore" or t.kind in kinds else f"left out ({t.kind})" for t in tests)
@@ -28,25 +28,27 @@ def tests_counted(campaign: Campaign, kinds: Sequence[str] = ("decay",)) -> str:
 
 def findings(found: Iterable[Finding]) -> Rows:
     """The warnings about the records, each once."""
-    return ("Test", "File", "Channel", "Warning"), [(one.where, one.source, one.channel, one.message) for one in grouped(found)]
+    return ("Test", "File", "Channel", "Warning"), [
+        (one.where, one.source, one.channel, one.message) for one in group_findings(found)
+    ]
 
 
-def parameters(saved: Saved) -> Rows:
+def parameters(saved: SavedCalibration) -> Rows:
     """Meaning, start, value and standard deviation of every coefficient."""
     rows = [
-        (label, one.meaning, number(one.start, 3), value_of(one), readable_unit(one.unit))
+        (label, one.meaning, number(one.start, 3), value_text(one), readable_unit(one.unit))
         for label, one in saved.baseline.parameters.items()
     ]
     return ("Parameter", "Meaning", "Start", "Calibrated ± 1 sd", "Unit"), rows
 
 
-def value_of(one: Parameter) -> str:
+def value_text(one: Parameter) -> str:
     """A calibrated value with its standard deviation, or what it is instead."""
     text = with_deviation(one.value, one.standard_deviation) if one.identifiable else UNDETERMINED
     return f"{text}, at its bound" if one.at_bound else text
 
 
-def errors(saved: Saved, source: str) -> Rows:
+def errors(saved: SavedCalibration, source: str) -> Rows:
     """Errors of the motions that count in the fit, of every test."""
     rows = []
     for id, channels in saved.errors(source).items():
@@ -57,7 +59,7 @@ def errors(saved: Saved, source: str) -> Rows:
     return ("Test", "Kind", "Length", "Use", "Motion", "Before", "After", "RMSE"), rows
 
 
-def other_motions(saved: Saved, source: str) -> Rows:
+def other_motions(saved: SavedCalibration, source: str) -> Rows:
     """Errors of the motions beside those that count in the fit."""
     rows = []
     for id, channels in saved.errors(source).items():
@@ -65,7 +67,7 @@ def other_motions(saved: Saved, source: str) -> Rows:
     return ("Test", "Use", "Motion", "Before", "After", "RMSE"), rows
 
 
-def _test(saved: Saved, id: str) -> tuple[str, str, str]:
+def _test(saved: SavedCalibration, id: str) -> tuple[str, str, str]:
     """Kind, length and use of a test."""
     about = saved.tests.get(id)
     kind = " in ".join(filter(None, (KINDS.get(about.kind, about.kind), about.degree_of_freedom))) if about else ""
@@ -73,18 +75,18 @@ def _test(saved: Saved, id: str) -> tuple[str, str, str]:
     return kind, length, _use(saved, id)
 
 
-def _use(saved: Saved, id: str) -> str:
+def _use(saved: SavedCalibration, id: str) -> str:
     use = str(saved.baseline.error[id].get("use", ""))
     return USE.get(use, use)
 
 
-def _error(error: Error) -> tuple[str, str, str]:
+def _error(error: ChannelError) -> tuple[str, str, str]:
     """Before and after calibration, over the motion's standard deviation; RMSE after."""
     before = percent(error.before.relative) if error.before is not None else "–"
     return before, percent(error.relative), f"{number(error.rmse, 2)} {error.unit}"
 
 
-def linear_quadratic(saved: Saved) -> Rows:
+def linear_quadratic(saved: SavedCalibration) -> Rows:
     """The classical linear and quadratic damping of every decay with enough cycles, measured and simulated."""
     rows = []
     for id, about in saved.tests.items():
@@ -99,7 +101,7 @@ def linear_quadratic(saved: Saved) -> Rows:
     return (*heads, "Unit of q"), rows
 
 
-def bands(saved: Saved, source: str) -> Rows:
+def bands(saved: SavedCalibration, source: str) -> Rows:
     """Errors of energy in bands, of tests in irregular waves."""
     rows = [
         (id, _use(saved, id), channel, BANDS.get(band, band.replace("_", " ")), *map(_signed, both))
@@ -118,7 +120,7 @@ def _signed(ratio: float | None) -> str:
     return f"{whole:+d} %" if (whole := round(100 * ratio)) else "0 %"
 
 
-def outcome(saved: Saved) -> str:
+def outcome_sentence(saved: SavedCalibration) -> str:
     """One line: the objective and how it was reached. Of tests in waves J is no objective: they are fitted by others."""
     fitted = saved.baseline
     in_waves = any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values())
@@ -132,7 +134,7 @@ def outcome(saved: Saved) -> str:
     return ", ".join(parts)
 
 
-def against(saved: Saved) -> Rows:
+def comparison_with_truth(saved: SavedCalibration) -> Rows:
     """Calibrated values beside the true ones."""
     rows = []
     for label, true in saved.truth.items():
@@ -144,7 +146,7 @@ def against(saved: Saved) -> Rows:
         if one.identifiable:
             away = deviations_away(one, true)
             sizes = (percent((one.value - true) / true) if true else "–", "–" if away is None else f"{away:+.1f} sd")
-        rows.append((label, number(true, 3), value_of(one), readable_unit(one.unit), *sizes))
+        rows.append((label, number(true, 3), value_text(one), readable_unit(one.unit), *sizes))
     return ("Parameter", "True", "Calibrated ± 1 sd", "Unit", "Off by", "Off by, in sd"), rows
 
 
@@ -154,16 +156,17 @@ def deviations_away(one: Parameter, true: float) -> float | None:
     return (one.value - true) / sd if one.identifiable and sd is not None and sd > 0 else None
 
 
-def agreement_with_truth(saved: Saved) -> str:
+def agreement_with_truth(saved: SavedCalibration) -> str:
     """How many coefficients lie near the true values, in a sentence."""
     known = {label: saved.baseline.parameters.get(label) for label in saved.truth}
     away = [None if one is None else deviations_away(one, saved.truth[label]) for label, one in known.items()]
-    near = sum(one is not None and abs(one) <= SURE for one in away)
+    near = sum(one is not None and abs(one) <= AGREEMENT_DEVIATIONS for one in away)
     largest = max((abs(one) for one in away if one is not None), default=None)
     farthest = "" if largest is None else f"; the farthest is {largest:.1f} away"
-    return f"{near} of {len(away)} coefficients lie within {SURE:g} standard deviations of the true values{farthest}."
+    limit = f"{AGREEMENT_DEVIATIONS:g} standard deviations"
+    return f"{near} of {len(away)} coefficients lie within {limit} of the true values{farthest}."
 
 
-def unfinished(partial: Calibration) -> Calibration:
+def mark_unfinished(partial: Calibration) -> Calibration:
     """What was reached when the user stopped the fit, marked as not converged."""
     return replace(partial, converged=False, notes=("stopped by the user before it converged", *partial.notes))

@@ -1,10 +1,17 @@
-"""Intervals of a calibration's parameters as one self-contained HTML page: the result in one sentence first."""
+"""HTML page of the intervals of a calibration's parameters."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
 from calibration.report.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
-from calibration.results.read_uncertainty import WAYS, SavedUncertainty, interval_sentence, intervals, other_ways, summary_of
+from calibration.results.read_uncertainty import (
+    INTERVAL_METHODS,
+    SavedUncertainty,
+    interval_sentence,
+    intervals_table,
+    other_intervals_table,
+    summary_of,
+)
 
 _MEANING = """<p>What a {percent} interval means: were the same tests made and fitted again and again, about
 {share} in 100 of the intervals would hold the value with which this model follows such tests best.</p>
@@ -35,10 +42,10 @@ def _parts(saved: SavedUncertainty, folder: Path) -> Iterator[str]:
     yield "<h2>Parameters</h2>"
     yield _parameters(saved)
     yield _INTERVALS
-    heads, rows = other_ways(saved)
+    heads, rows = other_intervals_table(saved)
     if rows:
         yield f"<h2>{saved.percent} intervals in other ways</h2>"
-        yield listed(f"{WAYS[way]}: {_how(saved, way)}." for way in saved.ways())
+        yield listed(f"{INTERVAL_METHODS[way]}: {_how(saved, way)}." for way in saved.ways())
         yield table(heads, rows)
     yield f"<h2>What the intervals mean</h2>{_MEANING.format(share=f'{100 * saved.level:.4g}', percent=saved.percent)}"
     yield f"<h2>What was calibrated</h2>{listed(_calibrated(saved))}"
@@ -57,7 +64,7 @@ def _calibrated(saved: SavedUncertainty) -> Iterator[str]:
 
 
 def _parameters(saved: SavedUncertainty) -> str:
-    (first, *heads, _), found = intervals(saved)
+    (first, *heads, _), found = intervals_table(saved)
     several = list(saved.parameters.values())
     rows = [
         (label, "; ".join(filter(None, (one.meaning, flag))), *row)

@@ -1,4 +1,4 @@
-"""Parts of the HTML pages of reports. Text is escaped here; the pages need no script, no network and no other file.
+"""Parts of the HTML pages: frame, boxes, tables, figures.
 
 Tables fit the screen: columns wrap, and on a narrow screen a table with more than two columns shows each row as a block.
 """
@@ -10,12 +10,12 @@ from html import escape
 from pathlib import Path
 from string import Template
 
-from calibration.results.read_calibration import Drawn
-from calibration.results.result_folder import FIGURES, GENERATOR
+from calibration.results.read_calibration import Figure
+from calibration.results.result_folder import FIGURES_FOLDER, GENERATOR
 
 _PNG = b"\x89PNG\r\n\x1a\n"
-FEW = 2  # columns that fit on a narrow screen
-SHORT = 20  # characters of a cell that stay on one line
+NARROW_COLUMNS = 2  # columns that fit on a narrow screen
+SHORT_CELL = 20  # characters of a cell that stay on one line
 UNCONVERGED = "The fit did not converge: what follows is where it stopped, not {}."
 
 
@@ -54,9 +54,9 @@ def folded(title: str, content: str) -> str:
     return f"<details><summary>{escape(title)}</summary>{content}</details>"
 
 
-def images(stated: Iterable[Drawn], folder: Path) -> dict[str, str]:
+def images(stated: Iterable[Figure], folder: Path) -> dict[str, str]:
     """Figures by name in their stated order, then others that are there; only PNG files of the folder itself are taken."""
-    there = {path.name: path for path in sorted((folder / FIGURES).glob("*.png")) if path.is_file()}
+    there = {path.name: path for path in sorted((folder / FIGURES_FOLDER).glob("*.png")) if path.is_file()}
     captions = {Path(figure.file).name: figure.caption for figure in stated}
     names = [name for name in captions if name in there] + [name for name in there if name not in captions]
     parts = {}
@@ -102,13 +102,13 @@ def table(
     for k, row in enumerate(rows):
         cells = "".join(_cell(heads[i], text, i in numbers) for i, text in enumerate(row))
         body += f"<tr{' class=muted' if k in muted else ''}>{cells}</tr>"
-    many = " class=many" if len(heads) > FEW else ""
+    many = " class=many" if len(heads) > NARROW_COLUMNS else ""
     return f"<div class=scroll><table{many}><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
 
 
 def _cell(head: str, text: str, number: bool) -> str:
     label = f' data-label="{escape(head)}"' if head else ""
-    short = len(text) <= SHORT
+    short = len(text) <= SHORT_CELL
     kind = _right(number) or (" class=short" if short else "")
     return f"<td{kind}{label}>{escape(text) if short else breakable(text)}</td>"
 

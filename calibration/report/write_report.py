@@ -1,10 +1,10 @@
-"""One self-contained HTML page of what is in a result folder."""
+"""Writing of report.html for the results in a folder."""
 
 from os import PathLike
 from pathlib import Path
 
 from calibration.results.read_calibration import read_as, read_saved
-from calibration.results.result_folder import DIAGNOSIS, REPORT, RESULT, UNCERTAINTY
+from calibration.results.result_folder import DIAGNOSIS_FILE, REPORT_FILE, RESULT_FILE, UNCERTAINTY_FILE
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import write_whole
 
@@ -15,7 +15,11 @@ def write_report(folder: str | PathLike[str]) -> Path:
     """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
     folder = Path(folder)
     try:
-        there = [name for name in (DIAGNOSIS, RESULT, UNCERTAINTY, SWEEP) if folder.is_dir() and (folder / name).is_file()]
+        there = [
+            name
+            for name in (DIAGNOSIS_FILE, RESULT_FILE, UNCERTAINTY_FILE, SWEEP)
+            if folder.is_dir() and (folder / name).is_file()
+        ]
     except (OSError, ValueError):
         there = []
     if not there and (folder / RESULTS).is_dir():
@@ -23,19 +27,19 @@ def write_report(folder: str | PathLike[str]) -> Path:
         raise InputError(str(folder), [Problem("", "a sweep that is done", found)])
     if not there:
         found = "a file" if folder.is_file() else "no such folder"
-        found = f"no {RESULT}, {DIAGNOSIS}, {UNCERTAINTY} or {SWEEP}" if folder.is_dir() else found
+        found = f"no {RESULT_FILE}, {DIAGNOSIS_FILE}, {UNCERTAINTY_FILE} or {SWEEP}" if folder.is_dir() else found
         expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
         raise InputError(str(folder), [Problem("", expected, found)])
-    if there[0] == DIAGNOSIS:
+    if there[0] == DIAGNOSIS_FILE:
         from calibration.report.diagnosis_page import page as diagnosis_page
         from calibration.results.read_diagnosis import read_diagnosis
 
-        text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS), folder)
-    elif there[0] == UNCERTAINTY:
+        text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS_FILE), folder)
+    elif there[0] == UNCERTAINTY_FILE:
         from calibration.report.uncertainty_page import page as uncertainty_page
         from calibration.results.read_uncertainty import SavedUncertainty
 
-        text = uncertainty_page(read_as(SavedUncertainty, folder / UNCERTAINTY), folder)
+        text = uncertainty_page(read_as(SavedUncertainty, folder / UNCERTAINTY_FILE), folder)
     elif there[0] == SWEEP:
         from calibration.report.sweep_page import SavedSweep
         from calibration.report.sweep_page import page as sweep_page
@@ -44,6 +48,6 @@ def write_report(folder: str | PathLike[str]) -> Path:
     else:
         from calibration.report.calibration_page import page as calibration_page
 
-        text = calibration_page(read_saved(folder / RESULT), folder)
-    write_whole(folder / REPORT, text)
-    return folder / REPORT
+        text = calibration_page(read_saved(folder / RESULT_FILE), folder)
+    write_whole(folder / REPORT_FILE, text)
+    return folder / REPORT_FILE

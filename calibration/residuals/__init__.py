@@ -1,1 +1,1 @@
-"""Residuals of a model against measurements: decays, seas, blocks, static offsets."""
+"""Residuals of a model against measurements: decays, seas, blocks, offsets, periods."""

@@ -1,4 +1,4 @@
-"""Tests in waves cut into blocks, for `shooting`."""
+"""Tests in waves cut into blocks, for multiple shooting."""
 
 import math
 from collections.abc import Sequence
@@ -10,14 +10,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-from calibration.residuals.seas import Piece, SeaRun
+from calibration.residuals.seas import SeaRun, TestMotion
 from jaxhydro.dynamics.model import State
 
-CYCLES = 3.0  # periods in a block, of the slowest natural motion that is fitted
-LEAST = 2  # blocks of a test
-LOOSE = 0.5  # standard deviation of the prior of an initial position or rate, over that of the motion's
-EARLY = 0.125  # share of the mean period of a motion's rate, either way, over which its record is smoothed
-FEWEST = 5  # samples there
+PERIODS_PER_BLOCK = 3.0  # periods in a block, of the slowest natural motion that is fitted
+MIN_BLOCKS = 2  # blocks of a test
+INITIAL_STATE_DEVIATION = 0.5  # standard deviation of the prior of an initial position or rate, over that of the motion's
+SMOOTHING_SHARE = 0.125  # share of the mean period of a motion's rate, either way, over which its record is smoothed
+MIN_SMOOTHING_SAMPLES = 5  # samples there
 
 
 class Blocks(eqx.Module):
@@ -35,7 +35,7 @@ class Blocks(eqx.Module):
     steps: int = eqx.field(static=True)
 
 
-class Cutting(NamedTuple):
+class RunInBlocks(NamedTuple):
     """A run while it is cut. Blocks begin `lag` (s) before their samples: the recorded motions are that late."""
 
     run: SeaRun
@@ -49,12 +49,12 @@ class Cutting(NamedTuple):
         off = (np.asarray(self.run.times)[samples] - self.lag - float(self.run.times[0])) / float(self.run.step)
         return np.clip(np.floor(off + 1e-6).astype(int), 0, self.run.steps)
 
-    def cut(self, pieces: Sequence[Piece], numbers: Sequence[int], period: float, none: int) -> None:
+    def cut(self, pieces: Sequence[TestMotion], numbers: Sequence[int], period: float, none: int) -> None:
         """Cut the motions of one test, of these numbers, into equal blocks."""
         times = np.asarray(self.run.times)
         between, count = float(times[1] - times[0]), pieces[0].measured.shape[0]
         samples = np.arange(count)
-        parts = np.array_split(samples, max(LEAST, round(count * between / (CYCLES * period))))
+        parts = np.array_split(samples, max(MIN_BLOCKS, round(count * between / (PERIODS_PER_BLOCK * period))))
         begins = [int(self.step_of(pieces[0].begin + part[:1])[0]) for part in parts]
         for i, part in enumerate(parts):
             span = begins[i + 1] - begins[i] if i + 1 < len(parts) else 0
@@ -93,9 +93,11 @@ def smoothed(times: np.ndarray, x: np.ndarray, at: float) -> tuple[np.ndarray, n
     rates = np.gradient(x, times)
     deviation, rate = float(x.std()), float(rates.std())
     pace = float(np.gradient(rates, times).std()) / rate
-    near = np.abs(times - at) <= EARLY * 2 * math.pi / pace
-    near[np.argsort(np.abs(times - at))[:FEWEST]] = True
+    near = np.abs(times - at) <= SMOOTHING_SHARE * 2 * math.pi / pace
+    near[np.argsort(np.abs(times - at))[:MIN_SMOOTHING_SAMPLES]] = True
     coefficients = np.polyfit(times[near] - at, x[near], 2)
     scatter = float(np.std(x[near] - np.polyval(coefficients, times[near] - at)))
-    loose = np.array([math.hypot(LOOSE * deviation, scatter), math.hypot(LOOSE * rate, pace * scatter)])
+    loose = np.array(
+        [math.hypot(INITIAL_STATE_DEVIATION * deviation, scatter), math.hypot(INITIAL_STATE_DEVIATION * rate, pace * scatter)]
+    )
     return coefficients[:0:-1], loose

@@ -1,4 +1,4 @@
-"""Decay records against the model: residuals, their Jacobian, and what of both least squares needs.
+"""Residuals of decays: model less measured, with Jacobian products.
 
 A record's residual is model less measured at the recorded times, channel by channel. Its unknowns are the model's parameters,
 shared by all records, and its own: initial position, initial rate and sensor offset of every measured channel. Least squares
@@ -26,7 +26,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea import StillWater
 
 
-class Data(eqx.Module):
+class DecayData(eqx.Module):
     """Decay records in arrays of one shape: record first, then channel or sample. SI."""
 
     time: Float[Array, "r t"]  # s; beyond the last sample the last one again
@@ -47,7 +47,7 @@ class Unknowns(NamedTuple):
     own: Float[Array, "r 3*c"]
 
 
-def gather(records: Sequence[Record], model: Model, step: float, exact: bool = False) -> Data:
+def gather_decays(records: Sequence[Record], model: Model, step: float, exact: bool = False) -> DecayData:
     """Records as arrays, of sizes that records of nearly the same length share. `step` (s) is the largest time step.
 
     `exact`: as many samples as the longest record has, for Fourier lines that are this record's.
@@ -77,7 +77,7 @@ def gather(records: Sequence[Record], model: Model, step: float, exact: bool = F
     arrays = (time, measured, present, size, count, unit, pace)
     names = ("time", "measured", "present", "step", "count", "unit", "pace")
     fields: dict[str, Any] = dict(zip(names, map(jnp.asarray, arrays), strict=True))
-    return Data(**fields, capacity=capacity, dofs=tuple(DOFS.index(channel) for channel in channels))
+    return DecayData(**fields, capacity=capacity, dofs=tuple(DOFS.index(channel) for channel in channels))
 
 
 def dominant_period(record: Record) -> float:
@@ -94,7 +94,7 @@ def dominant_period(record: Record) -> float:
     return float(2 * np.diff(record.time[flips]).mean())
 
 
-def first_guess(records: Sequence[Record], data: Data) -> Float[Array, "r 3*c"]:
+def first_guess(records: Sequence[Record], data: DecayData) -> Float[Array, "r 3*c"]:
     """Position and rate at every record's start, from a quadratic through its first eighth of a period; no offset."""
     own = np.zeros((len(records), 3, len(data.dofs)))
     for i, record in enumerate(records):
@@ -111,27 +111,27 @@ def first_guess(records: Sequence[Record], data: Data) -> Float[Array, "r 3*c"]:
     return jnp.asarray(own.reshape(len(records), -1))
 
 
-def shortened(record: Data, until: Float[Array, ""]) -> Data:
-    """One record of `Data` that is simulated no further than `until` (s)."""
+def shortened(record: DecayData, until: Float[Array, ""]) -> DecayData:
+    """One record of `DecayData` that is simulated no further than `until` (s)."""
     needed = jnp.ceil((until - record.time[0]) / record.step - 1e-9).astype(int)
     return eqx.tree_at(lambda d: d.count, record, jnp.minimum(record.count, jnp.maximum(needed, 1)))
 
 
-class Problem(eqx.Module):
+class DecayProblem(eqx.Module):
     """A calibration's fixed part: the model that starts, its free parameters, and the records.
 
     `from_rest`: measured motion counts from the static equilibrium, otherwise from the reference position. `tail` (m, rad), by
-    record and channel, is where residuals cease to count by their squares (`softened`); None: nowhere.
+    record and channel, is where residuals cease to count by their squares (`cauchy_residual`); None: nowhere.
     """
 
     model: Model
-    data: Data
+    data: DecayData
     space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
     rest: Float[Array, "6"] | None  # None where free parameters move the equilibrium
     tail: Float[Array, "r c"] | None = None
 
-    def motion(self, x: Float[Array, " p"], own: Float[Array, " o"], record: Data) -> Float[Array, "c t"]:
+    def motion(self, x: Float[Array, " p"], own: Float[Array, " o"], record: DecayData) -> Float[Array, "c t"]:
         """What the sensors of one record should have read: the model's motion, and the sensors' offset."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model) if self.rest is None else self.rest
@@ -159,7 +159,7 @@ class Problem(eqx.Module):
 
             def residual(z):
                 r = (self.motion(z[:split], z[split:], record) - record.measured) * (record.time <= until)
-                r = softened(r * record.present, None if tail is None else tail[:, None])
+                r = cauchy_residual(r * record.present, None if tail is None else tail[:, None])
                 return r, r
 
             slope, r = jax.jacfwd(residual, has_aux=True)(both)
@@ -169,7 +169,7 @@ class Problem(eqx.Module):
         return jax.lax.map(of_record, (unknowns.own, self.data, until, self.tail))
 
 
-def softened(r: Float[Array, "..."], tail: Float[Array, "..."] | None) -> Float[Array, "..."]:
+def cauchy_residual(r: Float[Array, "..."], tail: Float[Array, "..."] | None) -> Float[Array, "..."]:
     """The residual whose square is Cauchy's loss c^2 ln(1 + (r/c)^2), c the `tail`; r itself without one.
 
     Holland and Welsch 1977, Communications in Statistics A6, 813-827, table 1.
@@ -189,8 +189,8 @@ def square_root(products: Float[Array, "... k k"]) -> Float[Array, "... k k"]:
 
 
 @jax.custom_jvp
-def condensed(
-    unknowns: Unknowns, problem: Problem, weight: Float[Array, "r c"], until: Float[Array, " r"]
+def condensed_decays(
+    unknowns: Unknowns, problem: DecayProblem, weight: Float[Array, "r c"], until: Float[Array, " r"]
 ) -> tuple[Float[Array, "r k"], Float[Array, "r c k k"]]:
     """A residual vector with the norm, the gradient and the Gauss-Newton matrix of the weighted residuals of all records.
 
@@ -207,7 +207,7 @@ def _roots(unknowns, problem, weight, until):
     return square_root(jnp.einsum("rckl,rc->rkl", products, weight)), products
 
 
-@condensed.defjvp
+@condensed_decays.defjvp
 def _condensed_jvp(primals, tangents):
     roots, products = _roots(*primals)
     d_shared, d_own = tangents[0]
@@ -221,12 +221,12 @@ def group_products(
     x: Float[Array, " p"],
     tails: Float[Array, " g"] | None,
 ) -> Float[Array, "g k k"]:
-    """[J r]^T [J r] of every group of residuals, k the parameters and one; `softened` beyond the `tails`."""
+    """[J r]^T [J r] of every group of residuals, k the parameters and one; `cauchy_residual` beyond the `tails`."""
 
     def both(x):
         groups = residuals(x)
         each = [None] * len(groups) if tails is None else tails
-        found = tuple(softened(r, tail) for r, tail in zip(groups, each, strict=True))
+        found = tuple(cauchy_residual(r, tail) for r, tail in zip(groups, each, strict=True))
         return found, found
 
     slopes, found = jax.jacfwd(both, has_aux=True)(x)
@@ -234,7 +234,7 @@ def group_products(
     return jnp.stack([one.T @ one for one in full])
 
 
-class Groups(Protocol):
+class ResidualGroups(Protocol):
     """Residuals of the parameters alone, in groups."""
 
     def products(self, x: Float[Array, " p"]) -> Float[Array, "g k k"]:
@@ -244,9 +244,9 @@ class Groups(Protocol):
 
 @jax.custom_jvp
 def condensed_groups(
-    x: Float[Array, " p"], source: Groups, weight: Float[Array, " g"]
+    x: Float[Array, " p"], source: ResidualGroups, weight: Float[Array, " g"]
 ) -> tuple[Float[Array, " k"], Float[Array, "g k k"]]:
-    """`condensed` of residuals that have no unknowns of their own; `weight` multiplies the squares of a group."""
+    """`condensed_decays` of residuals that have no unknowns of their own; `weight` multiplies the squares of a group."""
     products = source.products(x)
     return square_root(jnp.einsum("gkl,g->kl", products, weight))[:, -1], products
 

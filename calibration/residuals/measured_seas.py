@@ -1,4 +1,4 @@
-"""Tests in measured waves: the run of each file, the sea of its wave record, and the model's motion against what was measured.
+"""Simulation of tests in their measured waves, compared with the measured motions.
 
 Windows of one file are one continuous run: its sea is made once, of the whole record, and the platform starts at rest with the
 file. Everything is SI at full scale.
@@ -19,7 +19,7 @@ from calibration.campaign.manifest import WAVE
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run, runs
 from calibration.campaign.wave_band import wave_band
-from calibration.residuals.stretches import stretches, walk, window
+from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.choices import check
@@ -35,8 +35,8 @@ from jaxhydro.waves.irregular_sea import Acting, IrregularSea
 from jaxhydro.waves.sea import Stretching
 from jaxhydro.waves.second_order import KINDS, Kind
 
-MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
-INSIDE = 0.95  # of its variance, that should lie in the band
+MAX_MISMATCH = 1e-3  # of a wave record, above which first and second order together do not follow it
+MIN_BAND_SHARE = 0.95  # of its variance, that should lie in the band
 NO_ZERO = "the campaign states no `zero`: motions are taken as measured from the reference position"
 
 
@@ -73,7 +73,7 @@ def options_of(campaign: Campaign) -> Options:
     return Options(order=campaign.manifest.records.order or 2, low=low, cutoff=cutoff)
 
 
-def unusual(options: Options, asked: Collection[str] = ()) -> str:
+def non_default_options(options: Options, asked: Collection[str] = ()) -> str:
     """What of seas is not as `Options` has it where nothing is said, in words, what was `asked` for left aside."""
     usual, words = Options(), []
     of_second = {
@@ -116,7 +116,7 @@ class SeaTest:
     heading: float
 
 
-class Compared(NamedTuple):
+class Comparison(NamedTuple):
     """What `compare` finds: tests, seas by run, and words of warning."""
 
     tests: tuple[SeaTest, ...]
@@ -155,12 +155,12 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
     )
     notes = []
     band = f"{options.low:g} to {options.cutoff:g} Hz"
-    if found.mismatch > MISMATCH:
+    if found.mismatch > MAX_MISMATCH:
         notes.append(
             f"{run.file}: first and second order miss {100 * found.mismatch:.2g} % of the wave record from {band} "
             "(root mean square); the nearest found is used. A lower cutoff, or order 1, would follow it"
         )
-    if inside < INSIDE:
+    if inside < MIN_BAND_SHARE:
         notes.append(
             f"{run.file}: only {100 * inside:.0f} % of the wave record's variance is within {band}; "
             "`wave_band` in campaign.yaml sets another band"
@@ -189,7 +189,7 @@ def compare(
     options: Options,
     say: Callable[[str], Any] = lambda _: None,
     made: Seas | None = None,
-) -> Compared:
+) -> Comparison:
     """Simulate every run and compare, test by test. `made` are the runs and their seas, where those are at hand.
 
     Raises InputError, and Diverged where a motion grows beyond all bounds.
@@ -204,9 +204,9 @@ def compare(
     for run, one in made:
         waves = one.sea.components
         say(f"{run.file}: {waves.omega.size} waves of {run.time[-1] - run.time[0]:.0f} s, order {options.order}; simulating")
-        parts = stretches(run, run.records, model, options.low, options.cutoff)
+        parts = run_segments(run, run.records, model, options.low, options.cutoff)
         try:
-            for part, found_there, _ in walk(model, run, parts, one.sea, step):
+            for part, found_there, _ in simulate_segments(model, run, parts, one.sea, step):
                 motion = np.full((len(run.time), 6), np.nan)
                 times = run.time[: part.end + 1]
                 readings = _observed(model, found_there.grid, jnp.asarray(times[part.begin :]), origin, in_waves=True)
@@ -222,7 +222,7 @@ def compare(
         notes += [*run.notes, *one.notes]
     notes += motion_hints(map(_moving, tests))
     order = [record.id for record in campaign.records]
-    return Compared(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step)
+    return Comparison(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step)
 
 
 _observed = eqx.filter_jit(observe)
@@ -232,7 +232,7 @@ class Diverged(ArithmeticError):
     """A simulated motion that is no result."""
 
 
-MOVES = 0.2  # of the largest motion of its unit: what moves less is in the files, and neither in tables nor fitted
+MOVING_SHARE = 0.2  # of the largest motion of its unit: what moves less is in the files, and neither in tables nor fitted
 
 
 def moving_channels(motions: Mapping[str, np.ndarray]) -> list[str]:
@@ -244,7 +244,7 @@ def moving(size: Mapping[str, float]) -> list[str]:
     """The same, by standard deviations (m, rad)."""
     angle = {name: DOFS.index(name) > 2 for name in size}
     largest = {kind: max((size[n] for n in size if angle[n] == kind), default=0.0) for kind in (False, True)}
-    return [name for name in size if size[name] >= MOVES * largest[angle[name]]]
+    return [name for name in size if size[name] >= MOVING_SHARE * largest[angle[name]]]
 
 
 def _moving(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -258,14 +258,14 @@ def peak_period(run: Run, record: Record, scale: float) -> float:
     stated = record.test.peak_period if record.kind == "irregular" else record.test.period
     if stated is not None:
         return stated * scale**0.5
-    whole = window(run, record)
+    whole = samples_after_transient(run, record)
     spectrum = power_spectrum(run.time[whole], run.wave[whole])
     return 1 / float(spectrum.frequency[1:][np.argmax(spectrum.density[1:])])
 
 
 def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale: float) -> SeaTest:
     """A test's samples after its transient, on the run's even clock."""
-    at, whole = run.samples(record), window(run, record)
+    at, whole = run.samples(record), samples_after_transient(run, record)
     series = tuple(
         Series(dof, np.interp(whole, at, record.values[dof]), motion[whole, DOFS.index(dof)], 0.0, record.noise[dof], False)
         for dof in DOFS

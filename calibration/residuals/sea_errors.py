@@ -1,4 +1,4 @@
-"""Errors in waves: integrals of spectra over bands, and amplitudes of regular waves, measured and simulated."""
+"""Errors in waves: spectra integrated over bands, and amplitudes in regular waves."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""Tests in measured waves against the model, as residuals with their Jacobian: energies in bands, spectra, or motions.
+"""Residuals of tests in waves: energies in bands, spectra, or motions.
 
 The windows of a file are one continuous run that starts at rest with it, in the sea of its own wave record, so its motions have
 no unknowns of their own: what is fitted is the model's parameters.
@@ -21,7 +21,7 @@ from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import group_products
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, peak_period
 from calibration.residuals.sea_errors import bands_of
-from calibration.residuals.stretches import stretches, walk, window
+from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
 from jaxhydro.dynamics.integrate import integrate
 from jaxhydro.dynamics.model import Model, State
@@ -34,12 +34,16 @@ from jaxhydro.waves.support_sea import SupportSea
 
 Objective = Literal["bands", "spectrum", "motion", "both", "blocks"]
 OF_ENERGY = ("bands", "spectrum", "both")
-CELLS, CYCLES, LEAST = 8, 10.0, 0.01  # of a spectrum: cells of a band, their least width times the record, least energy
+CELLS_PER_BAND, MIN_CELL_CYCLES, MIN_ENERGY_SHARE = (
+    8,
+    10.0,
+    0.01,
+)  # of a spectrum: cells of a band, their least width times the record, least energy
 # m, for a hull of the size of VolturnUS-S: that a motion may go beyond that of the declared model in one prepared sea
-MARGIN = 30.0
+SEA_MARGIN = 30.0
 
 
-class Energies(eqx.Module):
+class BandEnergies(eqx.Module):
     """Integrals of a motion's spectrum over bands: `analysis.BandWeights`, one row each, and what was measured (m2, rad2)."""
 
     starts: Int[Array, " g"]
@@ -56,11 +60,11 @@ class Energies(eqx.Module):
         return self.weight @ (inside.real**2 + inside.imag**2).mean(axis=0)
 
 
-class Piece(eqx.Module):
+class TestMotion(eqx.Module):
     """One motion of one test: its samples on the run's clock from `begin` on, and its energies in bands, if it has any."""
 
     measured: Float[Array, " n"]
-    energies: Energies | None
+    energies: BandEnergies | None
     begin: int = eqx.field(static=True)
     dof: int = eqx.field(static=True)
     test: str = eqx.field(static=True)
@@ -78,7 +82,7 @@ class SeaRun(eqx.Module):
     sea: SupportSea
     times: Float[Array, " t"]
     step: Float[Array, ""]
-    pieces: tuple[Piece, ...]
+    pieces: tuple[TestMotion, ...]
     start: State | None
     state: SeaState | None
     steps: int = eqx.field(static=True)
@@ -125,7 +129,7 @@ class SeaProblem(eqx.Module):
         energies = self.objective in OF_ENERGY and any(piece.energies is not None for piece in pieces)
         return (*([True] if energies else []), *[False] * len(motions))
 
-    def sample_by_sample(self, piece: Piece) -> bool:
+    def sample_by_sample(self, piece: TestMotion) -> bool:
         """Whether a motion itself is fitted: of regular waves, which have no bands, it always is."""
         return self.objective not in ("bands", "spectrum") or piece.energies is None
 
@@ -133,9 +137,9 @@ class SeaProblem(eqx.Module):
         """In one group ln(simulated / measured energy) by test, motion and band or cell of one; in others, motion by motion,
         simulated less measured over the measured standard deviation and the root of the number of samples, each about its
         mean."""
-        return self.look(x)[0]
+        return self.residuals_and_reach(x)[0]
 
-    def look(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
+    def residuals_and_reach(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
         """`residuals`, and whether the hull stays in the box that every sea was prepared for: beyond, its flow is wrong."""
         energies, motions = [], []
         found = self.motions(x)
@@ -157,12 +161,12 @@ class SeaProblem(eqx.Module):
 
 
 @eqx.filter_jit
-def look(problem: SeaProblem, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
-    """`SeaProblem.look`, compiled."""
-    return problem.look(x)
+def residuals_and_reach(problem: SeaProblem, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
+    """`SeaProblem.residuals_and_reach`, compiled."""
+    return problem.residuals_and_reach(x)
 
 
-def pose_in_waves(
+def set_up_waves(
     model: Model,
     made: Seas,
     space: ParameterSpace,
@@ -176,13 +180,15 @@ def pose_in_waves(
     """The fixed part of a calibration of `model` to the tests marked `fit` of runs; `step` (s) is the largest time step."""
     found = []
     for run, sea in made:
-        parts = stretches(run, run.records, model, options.low, options.cutoff)
+        parts = run_segments(run, run.records, model, options.low, options.cutoff)
         fitted = [[record for record in part.records if record.use == "fit"] for part in parts]
         last = max((i for i, records in enumerate(fitted) if records), default=-1)
         if len(parts) == 1 and last == 0:  # no further than what is fitted
             parts = (parts[0]._replace(end=max(int(run.samples(record)[-1]) for record in fitted[0])),)
-        margin = MARGIN * float(model.size)
-        for (part, taken, start), records in zip(walk(model, run, parts[: last + 1], sea.sea, step, margin), fitted):
+        margin = SEA_MARGIN * float(model.size)
+        for (part, taken, start), records in zip(
+            simulate_segments(model, run, parts[: last + 1], sea.sea, step, margin), fitted
+        ):
             if records:
                 pieces = tuple(piece for r in records for piece in _pieces(run, r, scale, part.begin, objective == "spectrum"))
                 times = jnp.asarray(run.time[part.begin : part.end + 1])
@@ -193,10 +199,10 @@ def pose_in_waves(
     return SeaProblem(model, tuple(found), rest, points, space, from_rest, objective)
 
 
-def _pieces(run: Run, record: Record, scale: float, begin: int, cut: bool) -> list[Piece]:
+def _pieces(run: Run, record: Record, scale: float, begin: int, cut: bool) -> list[TestMotion]:
     """The motions of a test that are worth fitting, after its transient, on the run's even clock from sample `begin` on, their
     bands `cut` into cells or not."""
-    at, whole = run.samples(record), window(run, record)
+    at, whole = run.samples(record), samples_after_transient(run, record)
     values = {dof: np.interp(whole, at, record.values[dof]) for dof in DOFS if dof in record.values}
     period = peak_period(run, record, scale)
     pieces = []
@@ -204,38 +210,38 @@ def _pieces(run: Run, record: Record, scale: float, begin: int, cut: bool) -> li
         limits = bands_of(dof, period) if record.kind == "irregular" else {}
         made = [(name, energies_of(values[dof], run.step, *limit, cut)) for name, limit in limits.items()]
         names = tuple(name for name, one in made for _ in one.measured)
-        energies = joined([one for _, one in made]) if made else None
+        energies = joined_bands([one for _, one in made]) if made else None
         first, stated = int(whole[0]) - begin, record.test.weight
-        pieces.append(Piece(jnp.asarray(values[dof]), energies, first, DOFS.index(dof), record.id, stated, names))
+        pieces.append(TestMotion(jnp.asarray(values[dof]), energies, first, DOFS.index(dof), record.id, stated, names))
     return pieces
 
 
-def energies_of(x: Float[np.ndarray, " n"], step: float, low: float, high: float, cut: bool) -> Energies:
+def energies_of(x: Float[np.ndarray, " n"], step: float, low: float, high: float, cut: bool) -> BandEnergies:
     """The energy of a record, sampled every `step` (s), between `low` and `high` (Hz): in one band, or `cut` into equal cells.
 
-    A cell is no narrower than 1 / `CYCLES` of the record allows, by which its energy is that of `CYCLES` periods at least, and
-    two lines of the spectrum; there are `CELLS` at most. Cells with less than `LEAST` of the largest one's energy are left out:
-    the logarithm of what hardly moves is that of the sensor's noise.
+    A cell's energy is that of `MIN_CELL_CYCLES` periods at least, and of two lines of the spectrum. There are at most
+    `CELLS_PER_BAND` cells. Cells with less than `MIN_ENERGY_SHARE` of the largest one's energy are left out, since there the
+    sensor's noise is most of the energy.
     """
     line = 1 / min(SEGMENT, len(x) * step)
-    narrowest = max(CYCLES / (len(x) * step), 2 * line)
-    count = int(np.clip((high - low) / narrowest, 1, CELLS)) if cut else 1
+    narrowest = max(MIN_CELL_CYCLES / (len(x) * step), 2 * line)
+    count = int(np.clip((high - low) / narrowest, 1, CELLS_PER_BAND)) if cut else 1
     edges = np.linspace(low, high, count + 1)
     made = [band_weights(len(x), step, *pair) for pair in pairwise(edges)]
     measured = np.array([one.integral(x) for one in made])
-    kept = [i for i in range(count) if measured[i] >= LEAST * measured.max()]
+    kept = [i for i in range(count) if measured[i] >= MIN_ENERGY_SHARE * measured.max()]
     first = min(made[i].first for i in kept)
     weight = np.zeros((len(kept), max(made[i].first + len(made[i].weight) for i in kept) - first))
     for row, i in zip(weight, kept):
         row[made[i].first - first :][: len(made[i].weight)] = made[i].weight
     starts, taper = jnp.asarray(made[0].starts), jnp.asarray(made[0].window)
-    return Energies(starts, taper, jnp.asarray(weight), jnp.asarray(measured[kept]), first)
+    return BandEnergies(starts, taper, jnp.asarray(weight), jnp.asarray(measured[kept]), first)
 
 
-def joined(parts: Sequence[Energies]) -> Energies:
+def joined_bands(parts: Sequence[BandEnergies]) -> BandEnergies:
     """Bands of one motion as one."""
     first = min(one.first for one in parts)
     end = max(one.first + one.weight.shape[1] for one in parts)
     rows = [jnp.pad(one.weight, ((0, 0), (one.first - first, end - one.first - one.weight.shape[1]))) for one in parts]
     measured = jnp.concatenate([one.measured for one in parts])
-    return Energies(parts[0].starts, parts[0].window, jnp.concatenate(rows), measured, first)
+    return BandEnergies(parts[0].starts, parts[0].window, jnp.concatenate(rows), measured, first)

@@ -1,4 +1,4 @@
-"""Multiple shooting: tests in waves fitted by blocks, each simulated from an initial state of its own.
+"""Residuals of tests in waves by multiple shooting: blocks with own initial states.
 
 Over an hour a natural period that is slightly wrong puts slow motions out of phase: the sum of squares of the whole motion has
 many minima, and is about phase alone. In a block of a few periods the phase cannot wander. What is unknown beside the
@@ -23,7 +23,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.blocks import Blocks, Cutting
+from calibration.residuals.blocks import Blocks, RunInBlocks
 from calibration.residuals.decays import Unknowns
 from calibration.residuals.seas import SeaProblem, SeaRun
 from jaxhydro.dynamics.integrate import EXTRA_STEPS, Grid, integrate, states
@@ -34,7 +34,7 @@ from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.environment import DOFS
 
 
-class Shot(NamedTuple):
+class BlockResiduals(NamedTuple):
     """What blocks come to: residuals, where they begin and where they are when the next one begins (m, rad), and how far the
     hull goes beyond the sea's box (m)."""
 
@@ -111,15 +111,15 @@ class BlockProblem(eqx.Module):
         readings = observe(model, grid, block.times, base, in_waves=True)[:, dofs]
         return (readings + constant).T, grid, constant
 
-    def shoot(self, unknowns: Unknowns) -> Shot:
+    def block_residuals(self, unknowns: Unknowns) -> BlockResiduals:
         """All blocks."""
         x, constants = jnp.split(unknowns.shared, [len(self.space.free)])
 
-        def one(own: Array, block: Blocks, run: SeaRun) -> Shot:
+        def one(own: Array, block: Blocks, run: SeaRun) -> BlockResiduals:
             seen, grid, _ = self.simulated(x, constants, own, block, run)
             ends = grid.position[:, jnp.array(self.dofs)]  # of the platform itself: what is to join
             beyond = farthest(grid.position, self.sea.points, run.sea) - run.sea.half
-            return Shot((seen - block.measured) * block.factor, ends[0], ends[block.span], beyond)
+            return BlockResiduals((seen - block.measured) * block.factor, ends[0], ends[block.span], beyond)
 
         found = self._by_run(unknowns.own, one)
         longest = max(shot.residual.shape[2] for shot in found)
@@ -168,13 +168,13 @@ def _of_pair(one: Callable[[Array, Blocks, SeaRun], Any], run: SeaRun, pair: tup
 
 
 @eqx.filter_jit
-def shoot(problem: BlockProblem, unknowns: Unknowns) -> Shot:
-    """`BlockProblem.shoot`, compiled."""
-    return problem.shoot(unknowns)
+def simulate_blocks(problem: BlockProblem, unknowns: Unknowns) -> BlockResiduals:
+    """`BlockProblem.block_residuals`, compiled."""
+    return problem.block_residuals(unknowns)
 
 
-def pose_blocks(sea: SeaProblem, period: float) -> BlockProblem:
-    """The tests of a problem in waves, cut into blocks of `CYCLES` times a period (s)."""
+def set_up_blocks(sea: SeaProblem, period: float) -> BlockProblem:
+    """The tests of a problem in waves, cut into blocks of `PERIODS_PER_BLOCK` times a period (s)."""
     dofs = _fitted(sea)
     total = sum(len(run.pieces) for run in sea.runs)
     origin = sea.model.seen(equilibrium(sea.model) if sea.from_rest else jnp.zeros(6))
@@ -186,7 +186,7 @@ def pose_blocks(sea: SeaProblem, period: float) -> BlockProblem:
     for run in sea.runs:
         path = _continuous(sea.model, run)
         readings = np.asarray(sea.model.seen(path.position) - origin)
-        made = Cutting(run, path, dofs, [], lag)
+        made = RunInBlocks(run, path, dofs, [], lag)
         for test in dict.fromkeys(piece.test for piece in run.pieces):
             pieces = [piece for piece in run.pieces if piece.test == test]
             made.cut(pieces, range(len(constant), len(constant) + len(pieces)), period, total)

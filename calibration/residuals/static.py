@@ -1,4 +1,4 @@
-"""Static offsets and natural periods against the model: residuals that need no simulation."""
+"""Residuals of static offsets and of natural periods."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -17,9 +17,9 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised, strain_energy
 from jaxhydro.environment import DOFS
 
-ALIKE = 0.7  # of a mode's largest share of strain energy: surge and sway of one period may come mixed
-NEAR = 1e-4  # of an eigenvalue, off which inverse iterations are shifted
-CORRECTIONS = 3  # steps of Newton's method, where sensors track another point
+MODE_SHARE = 0.7  # of a mode's largest share of strain energy: surge and sway of one period may come mixed
+EIGENVALUE_SHIFT = 1e-4  # of an eigenvalue, off which inverse iterations are shifted
+NEWTON_STEPS = 3  # steps of Newton's method, where sensors track another point
 
 
 class OffsetProblem(eqx.Module):
@@ -52,7 +52,7 @@ class OffsetProblem(eqx.Module):
                 value, slope = jax.jvp(lambda at: reading(dof, at)[dof], (at,), (jnp.ones_like(at),))
                 return at + (measured - value) / slope
 
-            return jax.lax.fori_loop(0, CORRECTIONS if model.senses else 0, corrected, measured + base[dof])
+            return jax.lax.fori_loop(0, NEWTON_STEPS if model.senses else 0, corrected, measured + base[dof])
 
         return jnp.stack([reading(dof, held(dof, q[dof])) for dof, q in zip(self.held, self.measured, strict=True)])
 
@@ -65,7 +65,7 @@ class OffsetProblem(eqx.Module):
         return group_products(lambda x: (self.residuals(x),), x, self.tail)
 
 
-def pose_offsets(model: Model, records: Sequence[Record], space: ParameterSpace, from_rest: bool) -> OffsetProblem:
+def set_up_offsets(model: Model, records: Sequence[Record], space: ParameterSpace, from_rest: bool) -> OffsetProblem:
     """Static tests with a `degree_of_freedom`, which is the motion that was held."""
     length = characteristic_length(model)
     lengths = np.array([1.0, 1.0, 1.0, length, length, length])
@@ -123,10 +123,10 @@ def natural_period(model: Model, dof: int) -> Float[Array, ""]:
     whole = scaled(k)
     square, vectors = jnp.linalg.eigh(0.5 * (whole + whole.T))
     share = strain_energy(k, jax.scipy.linalg.solve_triangular(half.T, vectors, lower=False))
-    mine = (share[dof] > ALIKE * share.max(axis=0)) & (square > 1e-10 * jnp.abs(square).max())
+    mine = (share[dof] > MODE_SHARE * share.max(axis=0)) & (square > 1e-10 * jnp.abs(square).max())
     at = jnp.argmin(jnp.where(mine, square, jnp.inf))
     right = left = vectors[:, at]
-    near = whole - square[at] * (1 + NEAR) * jnp.eye(6)
+    near = whole - square[at] * (1 + EIGENVALUE_SHIFT) * jnp.eye(6)
     for _ in range(2):
         right, left = (x / jnp.linalg.norm(x) for x in (jnp.linalg.solve(near, right), jnp.linalg.solve(near.T, left)))
     right, left = (jax.scipy.linalg.solve_triangular(half.T, x, lower=False) for x in (right, left))
@@ -134,7 +134,7 @@ def natural_period(model: Model, dof: int) -> Float[Array, ""]:
     return jnp.where(mine.any(), period, jnp.nan)
 
 
-def pose_periods(model: Model, stated: Mapping[Any, Period], space: ParameterSpace, scale: float) -> PeriodProblem:
+def set_up_periods(model: Model, stated: Mapping[Any, Period], space: ParameterSpace, scale: float) -> PeriodProblem:
     """Periods by motion, at the scale of the files."""
     values = jnp.array([one.value * scale**0.5 for one in stated.values()])
     deviations = jnp.array([one.standard_deviation / one.value for one in stated.values()])

@@ -1,4 +1,4 @@
-"""A run in stretches: a model whose coefficients depend on the sea state has those of the test that is going on."""
+"""Simulation of a run test by test, with the coefficients of each test's sea state."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea_state import SeaState, peak_period
 
 
-class Stretch(NamedTuple):
+class RunSegment(NamedTuple):
     """Samples `begin` to `end`, both included, of a run's clock, the tests in it, and their sea state; None: of any."""
 
     records: tuple[Record, ...]
@@ -25,15 +25,15 @@ class Stretch(NamedTuple):
     state: SeaState | None
 
 
-class Walked(NamedTuple):
+class SimulatedSegment(NamedTuple):
     """A simulated stretch, and the state that it began in; None: at rest."""
 
-    stretch: Stretch
-    found: IrregularSimulation
+    stretch: RunSegment
+    simulation: IrregularSimulation
     start: State | None
 
 
-def window(run: Run, record: Record) -> np.ndarray:
+def samples_after_transient(run: Run, record: Record) -> np.ndarray:
     """Indices into the run's clock of a test's samples after its transient."""
     at = run.samples(record)
     whole = np.arange(at[0], at[-1] + 1)
@@ -42,7 +42,7 @@ def window(run: Run, record: Record) -> np.ndarray:
 
 def sea_state(run: Run, record: Record, low: float, cutoff: float) -> SeaState:
     """The measured sea state of a test after its transient, of waves from `low` to `cutoff` (Hz)."""
-    whole = window(run, record)
+    whole = samples_after_transient(run, record)
     spectrum = power_spectrum(run.time[whole], run.wave[whole])
     inside = (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
     frequency, density = spectrum.frequency[inside], spectrum.density[inside]
@@ -50,24 +50,24 @@ def sea_state(run: Run, record: Record, low: float, cutoff: float) -> SeaState:
     return SeaState(4 * variance**0.5, peak_period(frequency, density))
 
 
-def stretches(run: Run, records: Sequence[Record], model: Model, low: float, cutoff: float) -> tuple[Stretch, ...]:
+def run_segments(run: Run, records: Sequence[Record], model: Model, low: float, cutoff: float) -> tuple[RunSegment, ...]:
     """One for every test of a run, from its first sample (the first one's from the run's) at least to the next one's; where the
     model does not depend on the sea state, one for all. Waves are from `low` to `cutoff` (Hz)."""
     records = sorted(records, key=lambda record: record.time[0])
     ends = [(int(at[0]), int(at[-1])) for at in map(run.samples, records)]
     if model.in_sea(SeaState(1.0, 1.0)) is model:
-        return (Stretch(tuple(records), 0, max(end for _, end in ends), None),)
+        return (RunSegment(tuple(records), 0, max(end for _, end in ends), None),)
     begins = [0, *(begin for begin, _ in ends[1:])]
     nexts = [*begins[1:], 0]
     return tuple(
-        Stretch((record,), begin, max(end, after), sea_state(run, record, low, cutoff))
+        RunSegment((record,), begin, max(end, after), sea_state(run, record, low, cutoff))
         for record, begin, (_, end), after in zip(records, begins, ends, nexts, strict=True)
     )
 
 
-def walk(
-    model: Model, run: Run, parts: Sequence[Stretch], sea: IrregularSea, step: float, margin: float = 0.0
-) -> Iterator[Walked]:
+def simulate_segments(
+    model: Model, run: Run, parts: Sequence[RunSegment], sea: IrregularSea, step: float, margin: float = 0.0
+) -> Iterator[SimulatedSegment]:
     """The motion of a platform that starts at rest with a run, stretch by stretch. Each begins where the one before it was; a
     load's memory begins anew. `step` and `margin` are those of `simulate_irregular`."""
     rest = State(equilibrium(model), jnp.zeros(6), model.rest().memory)
@@ -76,7 +76,7 @@ def walk(
         here = model if part.state is None else model.in_sea(part.state)
         times = jnp.asarray(run.time[part.begin : part.end + 1])
         found = simulate_irregular(here, sea, rest if start is None else start, times, step, margin=margin)
-        yield Walked(part, found, start)
+        yield SimulatedSegment(part, found, start)
         if i + 1 < len(parts):
             after = parts[i + 1].begin - part.begin
             position, rate = found.response.position[after], found.response.rate[after]

@@ -1,1 +1,1 @@
-"""Result files, written and read back."""
+"""Result files: writing, and reading back."""

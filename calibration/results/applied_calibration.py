@@ -1,4 +1,4 @@
-"""Values of a written calibration used in a model: its laws, its effects, and what the model has a place for."""
+"""Application of a written calibration to a model."""
 
 import math
 from dataclasses import replace
@@ -6,9 +6,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from calibration.campaign.strip_conventions import Strips
+from calibration.campaign.strip_conventions import StripConventions
 from calibration.residuals.measured_seas import Options
-from calibration.results.read_calibration import Saved, read_saved, wrong
+from calibration.results.read_calibration import SavedCalibration, file_error, read_saved
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, shown, suggest
 from jaxhydro.hull.coefficient_labels import shared_hint
@@ -17,7 +17,7 @@ from jaxhydro.platform.body import HighPass, KeuleganCarpenter
 from jaxhydro.platform.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
 from jaxhydro.waves.sea_state import SeaState
 
-OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in one basin, not to the hull
+CAMPAIGN_PARAMETERS = (  # first words of labels of what belongs to the installation in one basin, not to the hull
     "mooring.",
     "stiffness.",
     "mooring_nonlinearity.",
@@ -33,62 +33,66 @@ OF_CAMPAIGN = (  # first words of labels of what belongs to the installation in 
 )
 
 
-class Applied(NamedTuple):
+class AppliedCalibration(NamedTuple):
     """A model with values of a calibration, these values, those of them that its records did not determine, those that were
     left, the sea state (m, s) that exponents among them count from, the campaign and the platform that the calibration is of,
     whether it converged, how strips are taken with them where that is not as the model had it, and how its seas are."""
 
     model: Model
     values: dict[str, float]
-    vague: tuple[str, ...]
-    left: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    not_used: tuple[str, ...]
     reference: SeaState | None
     campaign: str
     platform: str
     converged: bool
-    strips: Strips | None
+    strips: StripConventions | None
     seas: Options | None
 
 
-def applied(path: str | PathLike[str], model: Model, platform: str, everything: bool = False) -> Applied:
+def apply_calibration(path: str | PathLike[str], model: Model, platform: str, everything: bool = False) -> AppliedCalibration:
     """Calibrated values used for the model of the platform so named: all of its own, else those of hull and damping, for
     moorings and the like are each campaign's own; or `everything`. Strips are taken as they were when these were found.
 
     Raises InputError for a file that is none, for values that the model has no place for, and for those that cannot be.
     """
     saved = read_saved(path)
-    declared = model if saved.strips is None else saved.strips.given_to(model)
-    strips = saved.strips if Strips.of(declared) != Strips.of(model) else None  # without drag there is no speed of it
-    model = fitting(saved, declared, path)
+    declared = model if saved.strips is None else saved.strips.applied_to(model)
+    strips = (
+        saved.strips if StripConventions.of(declared) != StripConventions.of(model) else None
+    )  # without drag there is no speed of it
+    model = with_calibrated_loads(saved, declared, path)
     own = everything or not saved.platform or saved.platform == platform
-    values = {k: v for k, v in saved.values().items() if own or not k.startswith(OF_CAMPAIGN)}
+    values = {k: v for k, v in saved.values().items() if own or not k.startswith(CAMPAIGN_PARAMETERS)}
     if not saved.values():
-        raise wrong(Path(path), "at least one calibrated parameter", "none", f"{saved.key}.parameters")
+        raise file_error(Path(path), "at least one calibrated parameter", "none", f"{saved.key}.parameters")
     if unknown := [label for label in values if label not in model.values]:
-        raise no_place(saved, unknown, model, platform, path)
+        raise unknown_values_error(saved, unknown, model, platform, path)
     for label, value in values.items():
         about = model.about(label)
         slack = 1e-6 * max(abs(value), abs(about.lower) if about.lower > -math.inf else 0.0)
         if not about.lower - slack <= value <= about.upper + slack:
             expected = f"a number between {about.lower:g} and {about.upper:g}"
-            raise wrong(Path(path), expected, f"{value:g}", f"{saved.key}.parameters.{label}.value")
-    vague = tuple(label for label in values if not saved.best.parameters[label].identifiable)
-    left = tuple(label for label in saved.values() if label not in values)
+            raise file_error(Path(path), expected, f"{value:g}", f"{saved.key}.parameters.{label}.value")
+    undetermined = tuple(label for label in values if not saved.best.parameters[label].identifiable)
+    not_used = tuple(label for label in saved.values() if label not in values)
     reference = _reference(saved) if any(map(is_exponent, values)) else None
     model = model.at_values(values)
     of_file = (saved.campaign, saved.platform, saved.best.converged, strips)
     seas = None if saved.seas is None else saved.seas.options()
-    return Applied(model, values, vague, left, reference, *of_file, seas)
+    return AppliedCalibration(model, values, undetermined, not_used, reference, *of_file, seas)
 
 
-def no_place(saved: Saved, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]) -> InputError:
+def unknown_values_error(
+    saved: SavedCalibration, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]
+) -> InputError:
     """The error of calibrated values that a model has no place for."""
     expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
     found, hint = ", ".join(map(shown, unknown)), shared_hint(unknown[0], model.hull.elements.shares)
-    return wrong(Path(path), expected, found, f"{saved.key}.parameters", hint or suggest(unknown[0], model.values))
+    return file_error(Path(path), expected, found, f"{saved.key}.parameters", hint or suggest(unknown[0], model.values))
 
 
-def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
+def with_calibrated_loads(saved: SavedCalibration, model: Model, path: str | PathLike[str]) -> Model:
     """The model with what calibrated values need beyond what is declared: laws of drag and over the sea state, and the effects
     that a diagnosis found, at their null."""
     model = _with_laws(saved, _with_drag(saved, model, path), path)
@@ -105,10 +109,10 @@ def fitting(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     except (KeyError, ValueError) as error:
         said = str(error.args[0] if error.args else error)
         expected = "parameters that the platform declares, or of effects that this version knows"
-        raise wrong(Path(path), expected, said, "augmented.parameters") from None
+        raise file_error(Path(path), expected, said, "augmented.parameters") from None
 
 
-def _with_drag(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
+def _with_drag(saved: SavedCalibration, model: Model, path: str | PathLike[str]) -> Model:
     """The model with the drag laws that were calibrated. Raises InputError where it declares others, or has no such drag."""
     plain, there, laws = plain_drag(model), drag_laws_of(model), saved.best.drag_laws
     where = f"{saved.key}.drag_laws"
@@ -117,25 +121,25 @@ def _with_drag(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
             known = [*plain, *there]
             expected = f"drag coefficients ({', '.join(known) or 'there are none'})"
             hint = shared_hint(label, model.hull.elements.shares) or suggest(label, known)
-            raise wrong(Path(path), expected, repr(label), where, hint)
-        if label in there and not _alike(there[label], law):
-            expected = f"the law that the platform declares ({_said(there[label])})"
-            raise wrong(Path(path), expected, _said(law), f"{where}.{label}")
+            raise file_error(Path(path), expected, repr(label), where, hint)
+        if label in there and not _same_law(there[label], law):
+            expected = f"the law that the platform declares ({_law_in_words(there[label])})"
+            raise file_error(Path(path), expected, _law_in_words(law), f"{where}.{label}")
     for label in saved.values():
-        if label in there and label not in laws and not _silent(there[label]):
-            expected = f"the law that the platform declares ({_said(there[label])})"
-            raise wrong(Path(path), expected, "plain drag", f"{where}.{label}", "A coefficient goes with its law.")
+        if label in there and label not in laws and not _is_neutral(there[label]):
+            expected = f"the law that the platform declares ({_law_in_words(there[label])})"
+            raise file_error(Path(path), expected, "plain drag", f"{where}.{label}", "A coefficient goes with its law.")
     return with_drag_laws(model, {label: law for label, law in laws.items() if label in plain})
 
 
-def _silent(law: DragLaw) -> bool:
+def _is_neutral(law: DragLaw) -> bool:
     """Whether a law is at its null, plain drag."""
     if isinstance(law, HighPass):
         return (law.low_share == 1 or law.cutoff == 0) and not getattr(law, "suction", None)
     return not (law.exponent if isinstance(law, KeuleganCarpenter) else getattr(law, "suction", 0))
 
 
-def _alike(one: DragLaw, other: DragLaw) -> bool:
+def _same_law(one: DragLaw, other: DragLaw) -> bool:
     """Whether laws differ in nothing but parameters, which are the calibration's."""
 
     def constants(law: DragLaw) -> dict[str, Any]:
@@ -144,16 +148,16 @@ def _alike(one: DragLaw, other: DragLaw) -> bool:
     return constants(one) == constants(other)
 
 
-def _said(law: DragLaw) -> str:
+def _law_in_words(law: DragLaw) -> str:
     return ", ".join(f"{key}: {value}" for key, value in law.model_dump(exclude_none=True).items())
 
 
-def _reference(saved: Saved) -> SeaState | None:
+def _reference(saved: SavedCalibration) -> SeaState | None:
     stated = saved.best.sea_state_reference
     return None if stated is None else SeaState(stated.significant_height, stated.peak_period)
 
 
-def _with_laws(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
+def _with_laws(saved: SavedCalibration, model: Model, path: str | PathLike[str]) -> Model:
     """The model with the laws over the sea state that the calibrated values have exponents of."""
     labels = [label for label in saved.values() if is_exponent(label) and split(label)[0] in model.values]
     if not labels:
@@ -161,10 +165,10 @@ def _with_laws(saved: Saved, model: Model, path: str | PathLike[str]) -> Model:
     reference = _reference(saved)
     if reference is None:
         where, found = f"{saved.key}.sea_state_reference", "nothing"
-        raise wrong(Path(path), f"the sea state that {labels[0]} counts from", found, where)
+        raise file_error(Path(path), f"the sea state that {labels[0]} counts from", found, where)
     try:
         loads = with_exponents(model.loads, dict.fromkeys(labels, 0.0), reference)
         return replace(model, loads=loads)
     except ValueError as error:
         where = f"{saved.key}.sea_state_reference"
-        raise wrong(Path(path), "the reference that the platform declares", str(error), where) from None
+        raise file_error(Path(path), "the reference that the platform declares", str(error), where) from None

@@ -1,4 +1,4 @@
-"""Errors in waves: band integrals of spectra, measured and simulated, as JSON and as tables."""
+"""Content of comparison.json: errors in waves by test, motion and band."""
 
 import dataclasses
 import math
@@ -6,14 +6,14 @@ from typing import Any
 
 import jaxhydro
 from calibration.campaign.signals import wave_height
-from calibration.residuals.measured_seas import Compared, Options, SeaTest
+from calibration.residuals.measured_seas import Comparison, Options, SeaTest
 from calibration.residuals.sea_errors import WELCH, amplitude, channels, in_bands
-from calibration.results.applied_calibration import Applied
+from calibration.results.applied_calibration import AppliedCalibration
 from jaxhydro.environment import DOFS
 from jaxhydro.units import for_people, unit_of
 
 
-def document(found: Compared, options: Options, about: dict[str, Any], applied: Applied | None) -> dict[str, Any]:
+def document(found: Comparison, options: Options, about: dict[str, Any], applied: AppliedCalibration | None) -> dict[str, Any]:
     """The content of comparison.json; `error` is the contract's."""
     coefficients = (
         {"source": "platform", "values": {}, "not_identifiable": [], "left_out": []}
@@ -21,8 +21,8 @@ def document(found: Compared, options: Options, about: dict[str, Any], applied: 
         else {
             "source": f"calibration of {applied.campaign}",
             "values": applied.values,
-            "not_identifiable": list(applied.vague),
-            "left_out": list(applied.left),
+            "not_identifiable": list(applied.undetermined),
+            "left_out": list(applied.not_used),
             **({} if applied.strips is None else {"strips": applied.strips.model_dump()}),
         }
     )

@@ -1,15 +1,15 @@
-"""A written diagnosis.json, read back and checked."""
+"""Schema and reading of diagnosis.json."""
 
 from os import PathLike
 from typing import Literal
 
 from pydantic import Field
 
-from calibration.results.read_calibration import Fitted, Open, Parameter, Saved, read_as
+from calibration.results.read_calibration import FittedModel, Parameter, ResultModel, SavedCalibration, read_as
 from jaxhydro.errors import Number
 
 
-class Grounds(Open):
+class SavedEvidence(ResultModel):
     """Why an effect is believed. See `calibration.discovery.diagnosis.Evidence`."""
 
     score: Number | None = None
@@ -18,7 +18,7 @@ class Grounds(Open):
     clear: Number | None = None
 
 
-class Found(Open):
+class SavedEffect(ResultModel):
     """An effect that was found."""
 
     effect: str
@@ -26,14 +26,14 @@ class Found(Open):
     meaning: str = ""
     source: str = ""
     parameters: dict[str, Parameter]
-    evidence: Grounds
+    evidence: SavedEvidence
     share_of_residual_explained: Number
     indistinguishable_from: list[str] = Field(default_factory=list)
     test_that_would_tell: str | None = None
     in_doubt: str | None = None
 
 
-class Refused(Open):
+class SavedRejection(ResultModel):
     """An effect that was tried and is not in the model."""
 
     effect: str
@@ -41,31 +41,31 @@ class Refused(Open):
     degree_of_freedom: str | None = None
 
 
-class Latent(Open):
+class SavedLatentForce(ResultModel):
     """The force that would make the model follow the records, of one motion."""
 
     degree_of_freedom: str
     words: str
 
 
-class Unexplained(Open):
+class Unexplained(ResultModel):
     """What is left: its share of the error's energy, what is known of it, and the forces that are behind it."""
 
     share: Number
     signature: str
-    forces: list[Latent] = Field(default_factory=list)
+    forces: list[SavedLatentForce] = Field(default_factory=list)
 
 
-class Missing(Open):
+class MissingEffects(ResultModel):
     """What the declared model lacks."""
 
     verdict: Literal["found", "nothing_missing", "unexplained"]
-    effects: list[Found]
-    rejected: list[Refused]
+    effects: list[SavedEffect]
+    rejected: list[SavedRejection]
     unexplained: Unexplained
 
 
-class Left(Open):
+class SavedResidual(ResultModel):
     """What is left of one motion of one test, in m or deg."""
 
     test: str
@@ -83,18 +83,18 @@ class Left(Open):
         return self.rms / self.noise if self.rms is not None and self.noise else None
 
 
-class Anatomy(Open):
+class Anatomy(ResultModel):
     """Residuals of the declared model, fitted, and of that with what was found."""
 
-    before: list[Left] = Field(default_factory=list)
-    after: list[Left] = Field(default_factory=list)
+    before: list[SavedResidual] = Field(default_factory=list)
+    after: list[SavedResidual] = Field(default_factory=list)
 
 
-class SavedDiagnosis(Saved):
+class SavedDiagnosis(SavedCalibration):
     """diagnosis.json."""
 
-    augmented: Fitted
-    missing: Missing
+    augmented: FittedModel
+    missing: MissingEffects
     complete: bool = True
     anatomy: Anatomy = Field(default_factory=Anatomy)
     next_test: str = ""

@@ -1,19 +1,19 @@
-"""A written uncertainty.json, read back and checked, and its tables."""
+"""Schema and reading of uncertainty.json, and its tables."""
 
 from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
 from calibration.formatting import counted, interval, listed, number, percent_span, readable_unit, to_width
-from calibration.results.read_calibration import Drawn, Open, Parameter
+from calibration.results.read_calibration import Figure, Parameter, ResultModel
 from calibration.vocabulary import UNDETERMINED, Rows
 from jaxhydro.errors import Number
 
-WAYS = {"profile": "Profile", "blocks": "Bootstrap, blocks", "repeats": "Bootstrap, repeats", "nuts": "NUTS"}
+INTERVAL_METHODS = {"profile": "Profile", "blocks": "Bootstrap, blocks", "repeats": "Bootstrap, repeats", "nuts": "NUTS"}
 Interval = tuple[Number | None, Number | None]
 
 
-class Bounded(Parameter):
+class ParameterIntervals(Parameter):
     """One calibrated parameter and its intervals, None on a side that is open: that of the covariance, and those found in the
     ways that were asked for."""
 
@@ -26,24 +26,24 @@ class Bounded(Parameter):
 
     def ways(self) -> dict[str, Interval]:
         """The intervals beside the Laplace interval, by way."""
-        found: dict[str, Interval | None] = {way: getattr(self, way) for way in WAYS}
+        found: dict[str, Interval | None] = {way: getattr(self, way) for way in INTERVAL_METHODS}
         return {way: ends for way, ends in found.items() if ends is not None}
 
 
-class Resampled(Open):
+class SavedBootstrap(ResultModel):
     """A bootstrap: how many resamplings are in its intervals."""
 
     draws: int
 
 
-class Sampled(Open):
+class SavedDraws(ResultModel):
     """NUTS: its chains, and the draws of each."""
 
     chains: int
     draws: int
 
 
-class SavedUncertainty(Open):
+class SavedUncertainty(ResultModel):
     """uncertainty.json."""
 
     campaign: str
@@ -52,11 +52,11 @@ class SavedUncertainty(Open):
     calibration: str
     level: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, lt=1)]
     converged: bool
-    parameters: dict[str, Bounded]
-    bootstrap: dict[str, Resampled] = Field(default_factory=dict)
-    nuts: Sampled | None = None
+    parameters: dict[str, ParameterIntervals]
+    bootstrap: dict[str, SavedBootstrap] = Field(default_factory=dict)
+    nuts: SavedDraws | None = None
     notes: list[str] = Field(default_factory=list)
-    figures: list[Drawn] = Field(default_factory=list)
+    figures: list[Figure] = Field(default_factory=list)
 
     @property
     def percent(self) -> str:
@@ -65,7 +65,7 @@ class SavedUncertainty(Open):
 
     def ways(self) -> list[str]:
         """The ways beside Laplace in which intervals of some parameter were found."""
-        return [way for way in WAYS if any(way in one.ways() for one in self.parameters.values())]
+        return [way for way in INTERVAL_METHODS if any(way in one.ways() for one in self.parameters.values())]
 
 
 class IntervalSummary(NamedTuple):
@@ -104,7 +104,7 @@ def interval_sentence(summary: IntervalSummary) -> str:
     return f"{said}; {UNDETERMINED}: {listed(rest)}." if rest else f"{said}."
 
 
-def intervals(saved: SavedUncertainty) -> Rows:
+def intervals_table(saved: SavedUncertainty) -> Rows:
     """Value, Laplace interval, and how much too small it would be as if errors were white."""
     rows = []
     for label, one in saved.parameters.items():
@@ -116,11 +116,11 @@ def intervals(saved: SavedUncertainty) -> Rows:
     return ("Parameter", "Value", f"{saved.percent} interval", "Unit", "Width over white-noise width", "Remark"), rows
 
 
-def other_ways(saved: SavedUncertainty) -> Rows:
+def other_intervals_table(saved: SavedUncertainty) -> Rows:
     """The Laplace interval beside those found in other ways; no rows where none was asked for."""
     there = saved.ways()
     rows = []
     for label, one in saved.parameters.items():
         if found := one.ways():
             rows.append((label, interval(*one.laplace), *(interval(*found[way]) if way in found else "" for way in there)))
-    return ("Parameter", "Laplace", *(WAYS[way] for way in there)), rows
+    return ("Parameter", "Laplace", *(INTERVAL_METHODS[way] for way in there)), rows

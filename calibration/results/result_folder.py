@@ -1,4 +1,4 @@
-"""Folders of results: the names of what is in them, and how every kind is written."""
+"""Names of the files in a result folder, and helpers that write them."""
 
 import json
 import math
@@ -8,11 +8,11 @@ from typing import Any
 
 import xarray as xr
 
-RESULT, MOTION, FIGURES, REPORT = "calibration.json", "simulated.nc", "figures", "report.html"
-COMPARISON = "comparison.json"  # of a campaign's seas
-DIAGNOSIS = "diagnosis.json"  # of a calibration and what it lacks
-UNCERTAINTY = "uncertainty.json"  # of a calibration's parameters
-LAWS, TABLE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws over the sea state
+RESULT_FILE, MOTION_FILE, FIGURES_FOLDER, REPORT_FILE = "calibration.json", "simulated.nc", "figures", "report.html"
+COMPARISON_FILE = "comparison.json"  # of a campaign's seas
+DIAGNOSIS_FILE = "diagnosis.json"  # of a calibration and what it lacks
+UNCERTAINTY_FILE = "uncertainty.json"  # of a calibration's parameters
+LAWS_FILE, TABLE_FILE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws over the sea state
 GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 
 
@@ -24,8 +24,8 @@ def draw(figures: Iterable[tuple[str, str, Any]], folder: Path) -> list[dict[str
     drawn = []
     with style():
         for name, caption, figure in figures:
-            save(figure, folder / FIGURES / name)
-            drawn.append({"file": f"{FIGURES}/{name}", "caption": caption})
+            save(figure, folder / FIGURES_FOLDER / name)
+            drawn.append({"file": f"{FIGURES_FOLDER}/{name}", "caption": caption})
     return drawn
 
 
@@ -37,15 +37,15 @@ def write_json(content: dict[str, Any], file: Path) -> None:
 def write_motion(motion: xr.Dataset, folder: Path) -> None:
     """Write the series, packed, as simulated.nc."""
     packed = {name: {"zlib": True, "complevel": 4} for name, one in motion.data_vars.items() if one.ndim > 1 and one.size}
-    motion.to_netcdf(folder / MOTION, engine="h5netcdf", encoding=packed)
+    motion.to_netcdf(folder / MOTION_FILE, engine="h5netcdf", encoding=packed)
 
 
-def or_null(value: float | None) -> float | None:
+def finite_or_null(value: float | None) -> float | None:
     """A number as JSON has it; null for what is none."""
     return float(value) if value is not None and math.isfinite(value) else None
 
 
-def outdated(folder: Path, temporary: Path, result: str = RESULT) -> Iterable[str]:
+def outdated(folder: Path, temporary: Path, result: str = RESULT_FILE) -> Iterable[str]:
     """What an earlier run wrote and the new one does not: its figures, by its own list, and its report."""
     try:
         listed = json.loads((folder / result).read_text(encoding="utf-8"))["figures"]
@@ -53,11 +53,15 @@ def outdated(folder: Path, temporary: Path, result: str = RESULT) -> Iterable[st
     except (OSError, ValueError, KeyError, TypeError):
         names = []
     for name in names:
-        if name.endswith(".png") and (folder / FIGURES / name).is_file() and not (temporary / FIGURES / name).exists():
-            yield f"{FIGURES}/{name}"
-    if result == RESULT and (folder / LAWS).is_file():
-        yield from (name for name in (LAWS, TABLE) if (folder / name).is_file())
-        yield from (f"{FIGURES}/{path.name}" for path in (folder / FIGURES).glob("sea-law-*.png"))
-    report = folder / REPORT
+        if (
+            name.endswith(".png")
+            and (folder / FIGURES_FOLDER / name).is_file()
+            and not (temporary / FIGURES_FOLDER / name).exists()
+        ):
+            yield f"{FIGURES_FOLDER}/{name}"
+    if result == RESULT_FILE and (folder / LAWS_FILE).is_file():
+        yield from (name for name in (LAWS_FILE, TABLE_FILE) if (folder / name).is_file())
+        yield from (f"{FIGURES_FOLDER}/{path.name}" for path in (folder / FIGURES_FOLDER).glob("sea-law-*.png"))
+    report = folder / REPORT_FILE
     if report.is_file() and GENERATOR in report.read_text(encoding="utf-8", errors="replace")[:1000]:
-        yield REPORT
+        yield REPORT_FILE

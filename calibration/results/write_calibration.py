@@ -1,4 +1,4 @@
-"""What a calibration leaves behind: calibration.json, simulated.nc and figures, in one folder, whole or not at all."""
+"""Writing of a calibration: calibration.json, simulated.nc, figures."""
 
 import math
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ import xarray as xr
 import jaxhydro
 from calibration.decay_analysis.linear_quadratic import classical
 from calibration.result import Calibration, Series, TestFit
-from calibration.results.result_folder import RESULT, draw, or_null, outdated, write_json, write_motion
+from calibration.results.result_folder import RESULT_FILE, draw, finite_or_null, outdated, write_json, write_motion
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
@@ -44,7 +44,7 @@ def write_calibration(
 
             drawn = draw(plot.figures(calibration), temporary)
         known = {} if truth is None else {"truth": dict(truth)}
-        write_json({**document(calibration), **known, "figures": drawn}, temporary / RESULT)
+        write_json({**document(calibration), **known, "figures": drawn}, temporary / RESULT_FILE)
         write_motion(dataset(calibration), temporary)
     return folder
 
@@ -61,11 +61,11 @@ def document(calibration: Calibration) -> dict[str, Any]:
             raise NotFinite(f"the parameter {label} is not finite")
         parameters[label] = {
             "value": float(one.value),
-            "standard_deviation": or_null(one.standard_deviation),
+            "standard_deviation": finite_or_null(one.standard_deviation),
             "unit": one.unit,
             "at_bound": one.at_bound,
             "identifiable": one.identifiable,
-            "start": or_null(one.start),
+            "start": finite_or_null(one.start),
             "meaning": one.meaning,
         }
     return {
@@ -75,11 +75,11 @@ def document(calibration: Calibration) -> dict[str, Any]:
         "baseline": {
             "parameters": parameters,
             "error": {test.id: _errors(test) for test in calibration.tests},
-            "objective": {"fit": fit, "holdout": or_null(calibration.objective("holdout"))},
+            "objective": {"fit": fit, "holdout": finite_or_null(calibration.objective("holdout"))},
             "converged": bool(calibration.converged),
             "iterations": int(calibration.iterations),
-            "seconds": or_null(calibration.seconds),
-            "history": [or_null(value) for value in calibration.history],
+            "seconds": finite_or_null(calibration.seconds),
+            "history": [finite_or_null(value) for value in calibration.history],
             "notes": list(calibration.notes),
             **_laws(calibration),
         },

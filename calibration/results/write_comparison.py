@@ -1,4 +1,4 @@
-"""What a comparison in waves leaves behind: comparison.json, simulated.nc and figures, in one folder, whole or not at all."""
+"""Writing of a comparison in waves: comparison.json, simulated.nc, figures."""
 
 from os import PathLike
 from pathlib import Path
@@ -8,26 +8,26 @@ import numpy as np
 import xarray as xr
 
 import jaxhydro
-from calibration.residuals.measured_seas import Compared, SeaTest
+from calibration.residuals.measured_seas import Comparison, SeaTest
 from calibration.residuals.sea_errors import channels
-from calibration.results.result_folder import COMPARISON, draw, outdated, write_json, write_motion
+from calibration.results.result_folder import COMPARISON_FILE, draw, outdated, write_json, write_motion
 from calibration.results.write_calibration import common_axis
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.units import unit_of
 
 
-def write_comparison(found: Compared, content: dict[str, Any], folder: str | PathLike[str], figures: bool = True) -> Path:
+def write_comparison(found: Comparison, content: dict[str, Any], folder: str | PathLike[str], figures: bool = True) -> Path:
     """Write all results into `folder` (made where absent); gives the folder. Those of an earlier comparison there are replaced
     when the new ones are complete. Raises InputError where the folder cannot be written."""
     folder = Path(folder)
-    with staged(folder, lambda temporary: outdated(folder, temporary, COMPARISON)) as temporary:
+    with staged(folder, lambda temporary: outdated(folder, temporary, COMPARISON_FILE)) as temporary:
         drawn = []
         if figures:
             from calibration.plots import sea_figures as seas_plot
 
             drawn = draw(seas_plot.figures(found.tests), temporary)
-        write_json({**content, "figures": drawn}, temporary / COMPARISON)
+        write_json({**content, "figures": drawn}, temporary / COMPARISON_FILE)
         write_motion(dataset(found.tests, str(content["campaign"])), temporary)
     return folder
 

@@ -1,4 +1,4 @@
-"""What a diagnosis leaves behind: diagnosis.json, simulated.nc and figures, in one folder, whole or not at all."""
+"""Writing of a diagnosis: diagnosis.json, simulated.nc, figures."""
 
 import math
 from collections.abc import Iterable
@@ -12,7 +12,7 @@ import numpy as np
 from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Score
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
 from calibration.results import write_calibration as outputs
-from calibration.results.result_folder import DIAGNOSIS, draw, or_null, outdated, write_json, write_motion
+from calibration.results.result_folder import DIAGNOSIS_FILE, draw, finite_or_null, outdated, write_json, write_motion
 from calibration.results.write_calibration import NotFinite, dataset
 from jaxhydro.files import staged
 from jaxhydro.units import for_people, unit_of
@@ -25,14 +25,14 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: 
     files stay. Angles are in degrees. Raises NotFinite, and InputError where the folder cannot be written.
     """
     folder, compared = Path(folder), paired(diagnosis)
-    with staged(folder, lambda temporary: outdated(folder, temporary, DIAGNOSIS)) as temporary:
+    with staged(folder, lambda temporary: outdated(folder, temporary, DIAGNOSIS_FILE)) as temporary:
         content = document(diagnosis)
         drawn = []
         if figures:
             from calibration.plots import diagnosis_figures as plots
 
             drawn = draw(plots.figures(diagnosis, compared), temporary)
-        write_json({**content, "figures": drawn}, temporary / DIAGNOSIS)
+        write_json({**content, "figures": drawn}, temporary / DIAGNOSIS_FILE)
         motion = dataset(compared)
         motion.attrs["title"] = f"Diagnosis of {diagnosis.campaign}"
         motion["simulated"].attrs["long_name"] = "motion of the model with what was found missing"
@@ -74,7 +74,7 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "next_test": diagnosis.next_test,
         "notes": list(diagnosis.notes),
-        "seconds": or_null(diagnosis.seconds),
+        "seconds": finite_or_null(diagnosis.seconds),
     }
 
 
@@ -87,10 +87,10 @@ def _effect(one: Effect) -> dict[str, Any]:
         "source": one.source,
         "parameters": {_short(one, name): _parameter(name, value) for name, value in one.parameters.items()},
         "evidence": {
-            "score": or_null(evidence.score),
-            "delta_bic": or_null(evidence.delta_bic),
-            "holdout_gain": or_null(evidence.holdout_gain),
-            "clear": or_null(evidence.clear),
+            "score": finite_or_null(evidence.score),
+            "delta_bic": finite_or_null(evidence.delta_bic),
+            "holdout_gain": finite_or_null(evidence.holdout_gain),
+            "clear": finite_or_null(evidence.clear),
         },
         "share_of_residual_explained": _share(one.share),
         "indistinguishable_from": list(one.indistinguishable),
@@ -109,7 +109,7 @@ def _parameter(name: str, one: Estimate) -> dict[str, Any]:
         raise NotFinite(f"the parameter {name} of what was found is not finite")
     return {
         "value": float(one.value),
-        "standard_deviation": or_null(one.standard_deviation),
+        "standard_deviation": finite_or_null(one.standard_deviation),
         "unit": one.unit,
         "at_bound": one.at_bound,
         "identifiable": one.identifiable,
@@ -124,23 +124,29 @@ def _latent(one: LatentForce) -> dict[str, Any]:
     return {
         "degree_of_freedom": one.motion,
         "unit": one.unit,
-        "rms": {kind: or_null(value) for kind, value in one.rms.items()},
-        "bands": {kind: {band: or_null(share) for band, share in row.items()} for kind, row in one.shares.items()},
+        "rms": {kind: finite_or_null(value) for kind, value in one.rms.items()},
+        "bands": {kind: {band: finite_or_null(share) for band, share in row.items()} for kind, row in one.shares.items()},
         "follows": {
             kind: {
-                name: {"coherence": or_null(f.coherence), "phase": or_null(f.phase), "correlation": or_null(f.correlation)}
+                name: {
+                    "coherence": finite_or_null(f.coherence),
+                    "phase": finite_or_null(f.phase),
+                    "correlation": finite_or_null(f.correlation),
+                }
                 for name, f in row.items()
             }
             for kind, row in one.coherence.items()
         },
-        "grows_as_power_of": {name: or_null(power) for name, power in one.growth.items()},
+        "grows_as_power_of": {name: finite_or_null(power) for name, power in one.growth.items()},
         "law": {
-            "terms": [{"term": term.name, "coefficient": or_null(term.coefficient), "unit": term.unit} for term in law.terms],
-            "share": or_null(law.share),
+            "terms": [
+                {"term": term.name, "coefficient": finite_or_null(term.coefficient), "unit": term.unit} for term in law.terms
+            ],
+            "share": finite_or_null(law.share),
             "share_of": law.checked,
-            "share_fitted": or_null(law.fitted),
-            "v0": or_null(law.v0),
-            "omega": or_null(law.pace),
+            "share_fitted": finite_or_null(law.fitted),
+            "v0": finite_or_null(law.v0),
+            "omega": finite_or_null(law.pace),
         },
         "words": one.words,
     }
@@ -156,11 +162,11 @@ def _score(one: Score) -> dict[str, Any]:
         "round": one.round,
         "effect": one.effect,
         "degree_of_freedom": one.degree_of_freedom,
-        "gain": or_null(one.gain),
+        "gain": finite_or_null(one.gain),
         "parameters": one.size,
-        "holdout_gain": or_null(one.holdout),
-        "refitted_gain": or_null(one.refitted),
-        "refitted_holdout_gain": or_null(one.refitted_holdout),
+        "holdout_gain": finite_or_null(one.holdout),
+        "refitted_gain": finite_or_null(one.refitted),
+        "refitted_holdout_gain": finite_or_null(one.refitted_holdout),
     }
 
 
@@ -170,10 +176,12 @@ def _finding(one: Finding) -> dict[str, Any]:
         "use": one.use,
         "channel": one.channel,
         "unit": unit_of(one.channel),
-        "rms": or_null(float(for_people(one.channel, one.rms))),
-        "noise": or_null(float(for_people(one.channel, one.noise))),
-        "relative": or_null(one.relative),
-        "bands": [{"low": float(low), "high": float(high), "rms_over_noise": or_null(ratio)} for low, high, ratio in one.bands],
+        "rms": finite_or_null(float(for_people(one.channel, one.rms))),
+        "noise": finite_or_null(float(for_people(one.channel, one.noise))),
+        "relative": finite_or_null(one.relative),
+        "bands": [
+            {"low": float(low), "high": float(high), "rms_over_noise": finite_or_null(ratio)} for low, high, ratio in one.bands
+        ],
         "words": one.words,
     }
 

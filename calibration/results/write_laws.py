@@ -1,4 +1,4 @@
-"""What laws over the sea state leave behind: sea_laws.json, coefficients.csv and a figure, beside the chosen calibration."""
+"""Writing of laws over the sea state: sea_laws.json, coefficients.csv, a figure."""
 
 import csv
 import io
@@ -8,7 +8,7 @@ from typing import Any
 
 from calibration.fitting.law_choice import SeaLaws
 from calibration.result import Calibration
-from calibration.results.result_folder import FIGURES, LAWS, TABLE, or_null, write_json
+from calibration.results.result_folder import FIGURES_FOLDER, LAWS_FILE, TABLE_FILE, finite_or_null, write_json
 from calibration.results.write_calibration import drag_laws
 from jaxhydro.files import safe_name, staged
 from jaxhydro.loads.sea_state_law import reference_of
@@ -17,10 +17,10 @@ from jaxhydro.loads.sea_state_law import reference_of
 def write_laws(found: SeaLaws, folder: str | PathLike[str], figures: bool = True) -> None:
     """Write into a folder (that of the chosen calibration, most often). Raises InputError where it cannot be written."""
     with staged(Path(folder)) as temporary:
-        write_json(document(found), temporary / LAWS)
-        (temporary / TABLE).write_text(table_text(found), encoding="utf-8")
+        write_json(document(found), temporary / LAWS_FILE)
+        (temporary / TABLE_FILE).write_text(table_text(found), encoding="utf-8")
         if figures and found.seas:
-            _draw(found, temporary / FIGURES)
+            _draw(found, temporary / FIGURES_FOLDER)
 
 
 def _draw(found: SeaLaws, folder: Path) -> None:
@@ -29,7 +29,7 @@ def _draw(found: SeaLaws, folder: Path) -> None:
 
     with style():
         for label in found.labels():
-            save(sea_laws_plot.coefficient(found, label), folder / f"sea-law-{safe_name(label)}.png")
+            save(sea_laws_plot.coefficient_figure(found, label), folder / f"sea-law-{safe_name(label)}.png")
 
 
 def document(found: SeaLaws) -> dict[str, Any]:
@@ -57,7 +57,7 @@ def document(found: SeaLaws) -> dict[str, Any]:
 
 def _parameters(calibration: Calibration) -> dict[str, Any]:
     return {
-        label: {"value": one.value, "standard_deviation": or_null(one.standard_deviation), "unit": one.unit}
+        label: {"value": one.value, "standard_deviation": finite_or_null(one.standard_deviation), "unit": one.unit}
         for label, one in calibration.parameters.items()
     }
 

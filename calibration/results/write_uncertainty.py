@@ -1,4 +1,4 @@
-"""What `jaxhydro uncertainty` leaves behind: uncertainty.json and figures, whole or not at all."""
+"""Writing of intervals: uncertainty.json, figures."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -9,18 +9,18 @@ import numpy as np
 
 import jaxhydro
 from calibration.formatting import interval
-from calibration.results.read_calibration import Saved
-from calibration.results.read_uncertainty import WAYS
-from calibration.results.result_folder import UNCERTAINTY, draw, or_null, outdated, write_json
+from calibration.results.read_calibration import SavedCalibration
+from calibration.results.read_uncertainty import INTERVAL_METHODS
+from calibration.results.result_folder import UNCERTAINTY_FILE, draw, finite_or_null, outdated, write_json
 from calibration.uncertainty.bootstrap import Bootstrap
 from calibration.uncertainty.likelihood import Likelihood
 from calibration.uncertainty.nuts import Samples
 from calibration.uncertainty.profile import Profile
 from jaxhydro.files import safe_name, staged
 
-APART = 0.25  # of half the width, by which intervals differ
+MAX_END_DIFFERENCE = 0.25  # of half the width, by which intervals differ
 Interval = tuple[float | None, float | None]
-AGREED = 1.05  # r-hat above which chains have not yet seen the same
+MAX_R_HAT = 1.05  # r-hat above which chains have not yet seen the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Uncertainty:
     """Intervals of a calibration's parameters, found in several ways. `source` is its file, `asked` how many resamplings were
     asked for, `bootstraps` are by method; `sampled`, whether draws from the posterior were."""
 
-    saved: Saved
+    saved: SavedCalibration
     source: str
     likelihood: Likelihood
     level: float
@@ -86,15 +86,15 @@ class Uncertainty:
                 yield f"NUTS: stopped by the user after {kept} of {self.samples.asked} draws of every chain"
             if self.samples.divergences:
                 yield f"NUTS: {self.samples.divergences} steps went astray"
-            apart = [k for k, x in zip(self.samples.labels, self.samples.r_hat, strict=True) if not x < AGREED]
+            apart = [k for k, x in zip(self.samples.labels, self.samples.r_hat, strict=True) if not x < MAX_R_HAT]
             if apart:
                 yield f"NUTS: the chains do not agree yet on {', '.join(apart)}"
 
 
 def _apart(one: Profile) -> bool:
-    """Whether an end of a profile's interval is open, or off Laplace's by more than `APART` of half its width."""
+    """Whether an end of a profile's interval is open, or off Laplace's by more than `MAX_END_DIFFERENCE` of half its width."""
     half = 0.5 * (one.laplace[1] - one.laplace[0])
-    return any(a is None or abs(a - b) > APART * half for a, b in zip(one.interval, one.laplace, strict=True))
+    return any(a is None or abs(a - b) > MAX_END_DIFFERENCE * half for a, b in zip(one.interval, one.laplace, strict=True))
 
 
 def document(found: Uncertainty) -> dict[str, Any]:
@@ -111,7 +111,7 @@ def document(found: Uncertainty) -> dict[str, Any]:
             "at_bound": one.at_bound,
             "laplace": _ends(likely.interval(label, found.level)),
             "white": _ends(likely.interval(label, found.level, white=True)),
-            "white_too_small_by": or_null(excess[label]),
+            "white_too_small_by": finite_or_null(excess[label]),
             **{way: _ends(ends) for way, ends in found.ways(label).items()},
         }
     return {
@@ -131,11 +131,15 @@ def document(found: Uncertainty) -> dict[str, Any]:
 
 
 def _ends(ends: Interval) -> list[float | None]:
-    return [or_null(end) for end in ends]
+    return [finite_or_null(end) for end in ends]
 
 
 def _profile(one: Profile) -> dict[str, Any]:
-    return {"values": [or_null(x) for x in one.grid], "drop": [or_null(x) for x in one.drop], "nu": or_null(one.nu)}
+    return {
+        "values": [finite_or_null(x) for x in one.grid],
+        "drop": [finite_or_null(x) for x in one.drop],
+        "nu": finite_or_null(one.nu),
+    }
 
 
 def _bootstrap(one: Bootstrap, asked: int) -> dict[str, Any]:
@@ -146,7 +150,7 @@ def _bootstrap(one: Bootstrap, asked: int) -> dict[str, Any]:
 def _samples(one: Samples) -> dict[str, Any]:
     chains, draws = one.value.shape[:2]
     by_label = {
-        name: {label: or_null(x) for label, x in zip(one.labels, values, strict=True)}
+        name: {label: finite_or_null(x) for label, x in zip(one.labels, values, strict=True)}
         for name, values in (("r_hat", one.r_hat), ("effective", one.effective))
     }
     return {"chains": chains, "draws": draws, "divergences": one.divergences, **by_label}
@@ -155,9 +159,9 @@ def _samples(one: Samples) -> dict[str, Any]:
 def write_uncertainty(found: Uncertainty, folder: Path, figures: bool = True) -> None:
     """Write uncertainty.json and figures into `folder` (made where absent), in place of earlier ones. Raises InputError where
     the folder cannot be written."""
-    with staged(folder, lambda temporary: outdated(folder, temporary, UNCERTAINTY)) as temporary:
+    with staged(folder, lambda temporary: outdated(folder, temporary, UNCERTAINTY_FILE)) as temporary:
         drawn = draw(_figures(found), temporary) if figures else []
-        write_json({**document(found), "figures": drawn}, temporary / UNCERTAINTY)
+        write_json({**document(found), "figures": drawn}, temporary / UNCERTAINTY_FILE)
 
 
 def _figures(found: Uncertainty) -> Iterator[tuple[str, str, Any]]:
@@ -170,7 +174,8 @@ def _figures(found: Uncertainty) -> Iterator[tuple[str, str, Any]]:
     draws: dict[str, Bootstrap | Samples] = {**found.bootstraps, **({"nuts": found.samples} if found.samples else {})}
     if pair is not None:
         for way, drawn in draws.items():
-            caption = f"{WAYS[way]}: draws of the two parameters that are tied most, and the ellipse of the covariance (95 %)"
+            shown = "draws of the two parameters that are tied most, and the ellipse of the covariance (95 %)"
+            caption = f"{INTERVAL_METHODS[way]}: {shown}"
             yield f"draws-{way}.png", caption, uncertainty_plot.draws_figure(drawn, *pair)
 
 

@@ -1,1 +1,1 @@
-"""How well a calibration is known: likelihood, profiles, bootstrap, draws, test design."""
+"""Uncertainty of a calibration: likelihood, profiles, bootstrap, NUTS, test design."""

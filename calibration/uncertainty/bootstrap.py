@@ -1,6 +1,6 @@
-"""Bootstrap of a calibration: repeats of tests drawn anew, or blocks of the residuals; every draw is fitted again.
+"""Bootstrap of a calibration, over repeats of tests or over blocks of residuals.
 
-The draws go through one compiled program in one process, CHUNK of them side by side in every operation. For a body without
+The draws go through one compiled program in one process, CHUNK_SIZE of them side by side in every operation. For a body without
 members that halves the time of a refit, for a hull of hundreds of strips it is even with one after the other.
 """
 
@@ -17,20 +17,20 @@ import numpy as np
 from jaxtyping import Array, Float
 from scipy.stats import norm
 
-from calibration.identifiability.information import inverse
-from calibration.identifiability.standard_deviations import memory
-from calibration.residuals.decays import Problem, Unknowns
-from calibration.uncertainty.likelihood import LEVEL, RCOND, Likelihood
+from calibration.identifiability.information import pseudo_inverse
+from calibration.identifiability.standard_deviations import correlated_samples
+from calibration.residuals.decays import DecayProblem, Unknowns
+from calibration.uncertainty.likelihood import DEFAULT_LEVEL, RCOND, Likelihood
 from jaxhydro.choices import check
 from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
 from jaxhydro.interrupts import stop_if_asked
 
-CHUNK = 16
-STEPS = 12  # Gauss-Newton at most
-LONGEST = 0.7  # step of a coordinate
-SETTLED = 0.03  # standard deviations that the last step moves at most
-LEAST_FREEDOM = 0.25  # a residual that a fit has taken three quarters of is raised twofold, and no more
+CHUNK_SIZE = 16
+MAX_STEPS = 12  # Gauss-Newton at most
+MAX_STEP = 0.7  # step of a coordinate
+MAX_LAST_STEP = 0.03  # standard deviations that the last step moves at most
+MIN_FREEDOM = 0.25  # a residual that a fit has taken three quarters of is raised twofold, and no more
 
 Progress = Callable[[int, int], None]
 Prior = tuple[Float[Array, " p"], Float[Array, " p"]]
@@ -38,10 +38,18 @@ Prior = tuple[Float[Array, " p"], Float[Array, " p"]]
 
 @dataclass(frozen=True, eq=False)
 class Bootstrap:
-    """Draws of the free parameters. `coordinate` (d, p), `value` (d, p) in the parameters' units, `estimate` (p,) coordinates.
+    """Bootstrap draws of the free parameters.
 
-    `groups` says what was drawn from: ids of repeats, or, of each record, its block (s). `unsettled` is how many draws had not
-    come to rest; those stay in, unless they ran away.
+    Attributes:
+        method: "repeats" or "blocks".
+        labels: Names of the p parameters.
+        coordinate: (d, p) coordinates of the draws.
+        value: (d, p) values of the draws, in the parameters' units.
+        estimate: (p,) coordinates of the fit.
+        groups: Names of repeated tests by the first one's; or length of a block (s) by record.
+        unsettled: Number of draws that had not converged; these are kept unless they diverged.
+        seed: Seed of the random numbers.
+        likelihood: Likelihood of the fit.
     """
 
     method: Literal["repeats", "blocks"]
@@ -59,7 +67,7 @@ class Bootstrap:
         return np.asarray(self.coordinate.std(axis=0, ddof=1))
 
     def interval(
-        self, label: str, level: float = LEVEL, kind: Literal["percentile", "basic", "normal"] = "percentile"
+        self, label: str, level: float = DEFAULT_LEVEL, kind: Literal["percentile", "basic", "normal"] = "percentile"
     ) -> tuple[float, float]:
         """Interval in values: quantiles of the draws, or these mirrored at the estimate in the coordinate, which takes a bias
         off, or the estimate and the draws' deviation, for which 50 draws are enough (Davison and Hinkley 1997, chapter 5).
@@ -76,9 +84,9 @@ class Bootstrap:
 
 
 def newton(
-    problem: Problem, unknowns: Unknowns, weight: Float[Array, "r c"], until: Float[Array, " r"], prior: Prior
+    problem: DecayProblem, unknowns: Unknowns, weight: Float[Array, "r c"], until: Float[Array, " r"], prior: Prior
 ) -> Unknowns:
-    """One Gauss-Newton step on sum w |r|^2 + |ridge (x - mean)|^2, no longer than LONGEST; each record's own unknowns are
+    """One Gauss-Newton step on sum w |r|^2 + |ridge (x - mean)|^2, no longer than MAX_STEP; each record's own unknowns are
     eliminated."""
     mean, ridge = prior
     p = len(mean)
@@ -94,13 +102,18 @@ def newton(
     shared = -jnp.linalg.solve(left.sum(0) + jnp.diag(ridge**2), slope.sum(0) + ridge**2 * (unknowns.shared - mean))
     mine = -follow[..., -1] - follow[..., :-1] @ shared
     longest = jnp.maximum(jnp.abs(shared).max(), jnp.abs(mine).max())
-    scale = jnp.minimum(1.0, LONGEST / jnp.maximum(longest, 1e-300))
+    scale = jnp.minimum(1.0, MAX_STEP / jnp.maximum(longest, 1e-300))
     return Unknowns(unknowns.shared + scale * shared, unknowns.own + scale * mine)
 
 
 @eqx.filter_jit
 def _steps(
-    problem: Problem, unknowns: Unknowns, measured: Float[Array, "d r c t"], weight: Float[Array, "d r c"], until, prior: Prior
+    problem: DecayProblem,
+    unknowns: Unknowns,
+    measured: Float[Array, "d r c t"],
+    weight: Float[Array, "d r c"],
+    until,
+    prior: Prior,
 ) -> Unknowns:
     """`newton` of many draws at once."""
 
@@ -112,11 +125,25 @@ def _steps(
 
 
 def bootstrap_repeats(likelihood: Likelihood, draws: int = 200, seed: int = 0, progress: Progress | None = None) -> Bootstrap:
-    """Bootstrap over repeats (`repeat_of` in the manifest): what differs between tests that should be alike, whatever it is.
+    """Bootstrap over repeated tests (`repeat_of` in the manifest).
 
-    Of n repeats n - 1 are drawn with replacement and weigh n / (n - 1) each, which has the right variance where there are only
-    two or three (Rao and Wu 1988, Journal of the American Statistical Association 83, 231-241, section 2). A test without
-    repeats is in every draw, so that its own scatter is not counted. Raises InputError where there are no repeats.
+    Of n repeats n - 1 are drawn with replacement, and weigh n / (n - 1) each. This has the right variance even for two or
+    three repeats. A test without repeats is in every draw, so that its own scatter is not counted.
+
+    Args:
+        likelihood: Likelihood of a finished fit.
+        draws: Number of draws.
+        seed: Seed of the random numbers.
+        progress: Function that is called with the number of draws done and asked for.
+
+    Returns:
+        The draws.
+
+    Raises:
+        InputError: If there are no repeats.
+
+    References:
+        Rao and Wu 1988, Journal of the American Statistical Association 83, 231-241, section 2.
     """
     records = likelihood.fit.records
     groups = repeats({record.id: record.test.repeat_of for record in records})
@@ -156,12 +183,24 @@ def repeats(of: dict[str, str | None]) -> dict[str, tuple[str, ...]]:
 
 
 def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, progress: Progress | None = None) -> Bootstrap:
-    """Moving blocks of the residuals (Kuensch 1989, Annals of Statistics 17, 1217-1241) on the fitted motion, fitted again.
+    """Bootstrap over moving blocks of the residuals, added to the fitted motion and fitted again.
 
-    A block is as long as the released motion's period or twice the residual's memory, and at most a third of the record; a
-    record's channels are drawn together. What the fit has taken from a residual near the decay's frequency is given back,
-    frequency by frequency, by (1 - h)^-1/2, h its leverage there (the HC2 of MacKinnon and White 1985, Journal of
-    Econometrics 29, 305-325): residuals as they are would be too quiet where it matters.
+    A block is as long as the released motion's period or twice the residual's correlation length, and at most a third of
+    the record. The channels of a record are drawn together. The fit has made residuals near the decay's frequency too
+    small: they are raised, frequency by frequency, by (1 - h)^-1/2, h the leverage there (HC2).
+
+    Args:
+        likelihood: Likelihood of a finished fit.
+        draws: Number of draws.
+        seed: Seed of the random numbers.
+        progress: Function that is called with the number of draws done and asked for.
+
+    Returns:
+        The draws.
+
+    References:
+        Kuensch 1989, Annals of Statistics 17, 1217-1241 (moving blocks). MacKinnon and White 1985, Journal of Econometrics
+        29, 305-325 (HC2).
     """
     fit = likelihood.fit
     raised, lengths = _raised(likelihood), {}
@@ -169,7 +208,7 @@ def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, pr
         n = len(record.time)
         step = float(record.time[-1] - record.time[0]) / (n - 1)
         period = 2 * np.pi / float(fit.problem.data.pace[i]) / step
-        size = max([period, *(2 * memory(raised[i, j, :n]) for k, j in likelihood.spectra if k == i)])
+        size = max([period, *(2 * correlated_samples(raised[i, j, :n]) for k, j in likelihood.spectra if k == i)])
         lengths[record.id] = max(1, min(round(size), n // 3)), step
     random = np.random.default_rng(seed)
     fitted = np.asarray(fit.problem.data.measured) + likelihood.residual
@@ -195,7 +234,7 @@ def _raised(likelihood: Likelihood) -> np.ndarray:
     raised = np.zeros(likelihood.residual.shape)
     for (i, j), one in likelihood.spectra.items():
         n = len(likelihood.fit.records[i].time)
-        wave = np.fft.rfft(likelihood.residual[i, j, :n]) / np.sqrt(np.maximum(one.freedom, LEAST_FREEDOM))
+        wave = np.fft.rfft(likelihood.residual[i, j, :n]) / np.sqrt(np.maximum(one.freedom, MIN_FREEDOM))
         wave[0] = 0.0
         raised[i, j, :n] = np.fft.irfft(wave, n)
     return raised
@@ -209,8 +248,8 @@ def _linear(likelihood: Likelihood, measured: np.ndarray, weight: np.ndarray) ->
     score = np.einsum("rctk,drct,drc->drk", slope, residual, weight)
     mean, ridge = map(np.asarray, (fit.prior[0], fit.ridge))
     shared = score[..., :p].sum(axis=1) + ridge**2 * (likelihood.estimate[:p] - mean)
-    step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ inverse(likelihood.hessian, RCOND)
-    step *= np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
+    step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ pseudo_inverse(likelihood.hessian, RCOND)
+    step *= np.minimum(1.0, MAX_STEP / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
     own = fit.unknowns.own
     return Unknowns(fit.unknowns.shared + step[:, :p], own + step[:, p:].reshape(-1, *own.shape))
 
@@ -224,26 +263,26 @@ def _drawn(
     groups: dict[str, tuple[str, ...] | float],
     progress: Progress | None,
 ) -> Bootstrap:
-    """All draws refitted, CHUNK at once."""
+    """All draws refitted, CHUNK_SIZE at once."""
     fit = likelihood.fit
     prior = (jnp.asarray(fit.prior[0]), jnp.asarray(fit.ridge))
     scale, found, unsettled = likelihood.deviation(), [], 0
-    for begin in range(0, draws, CHUNK):
-        series, weights = inputs(slice(begin, min(begin + CHUNK, draws)))
+    for begin in range(0, draws, CHUNK_SIZE):
+        series, weights = inputs(slice(begin, min(begin + CHUNK_SIZE, draws)))
         count = len(weights)
         # the last chunk is filled up, so that one compilation serves all
-        fill = [(0, CHUNK - count), (0, 0), (0, 0)]
+        fill = [(0, CHUNK_SIZE - count), (0, 0), (0, 0)]
         measured = jnp.asarray(np.pad(series, [*fill, (0, 0)], mode="edge"))
         weight = jnp.asarray(np.pad(weights, fill, mode="edge"))
-        unknowns, change = _linear(likelihood, np.asarray(measured), np.asarray(weight)), np.full((CHUNK, 1), np.inf)
-        for _ in range(STEPS):
+        unknowns, change = _linear(likelihood, np.asarray(measured), np.asarray(weight)), np.full((CHUNK_SIZE, 1), np.inf)
+        for _ in range(MAX_STEPS):
             stop_if_asked()
             before, unknowns = unknowns, _steps(fit.problem, unknowns, measured, weight, fit.ends, prior)
             change = np.abs(np.asarray(unknowns.shared - before.shared)) / scale
-            if (change < SETTLED).all() or not np.isfinite(change).any():
+            if (change < MAX_LAST_STEP).all() or not np.isfinite(change).any():
                 break
         found.append(np.asarray(unknowns.shared)[:count])
-        unsettled += int((~np.asarray((change < SETTLED).all(axis=1))[:count]).sum())
+        unsettled += int((~np.asarray((change < MAX_LAST_STEP).all(axis=1))[:count]).sum())
         if progress is not None:
             progress(begin + count, draws)
     coordinate = np.concatenate(found)

@@ -1,4 +1,4 @@
-"""What a further test would add to a calibration, before it is made: its information, and which of several adds most."""
+"""Expected information of a further test, and ranking of candidate tests."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,14 +9,14 @@ import numpy as np
 
 from calibration.campaign.manifest import Test
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import STEPS_PER_PERIOD, Fit
-from calibration.fitting.fit_uncertainty import errors_of
+from calibration.fitting.decay_fit import STEPS_PER_PERIOD, DecayFit
+from calibration.fitting.fit_uncertainty import residual_statistics
 from calibration.formatting import listed, percent
-from calibration.identifiability.directions import Identifiability, active_of, weak_directions
-from calibration.identifiability.information import eliminated, within
+from calibration.identifiability.directions import Identifiability, active_parameters, weak_directions
+from calibration.identifiability.information import shared_information, submatrix
 from calibration.identifiability.statements import Direction, Parameters
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import Problem, Unknowns, gather
+from calibration.residuals.decays import DecayProblem, Unknowns, gather_decays
 from calibration.result import TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.simulate import free_decay, memory_step
@@ -25,9 +25,18 @@ from jaxhydro.environment import DOFS
 
 
 @dataclass(frozen=True, eq=False)
-class Expected:
-    """What a further test would add: standard deviations of the coordinates `before` and `after` it (p,), `gain`, by how
-    much the logarithm of the volume of the confidence region shrinks, and what would still be weak or untouched."""
+class ExpectedGain:
+    """What a further test would add to a calibration.
+
+    Attributes:
+        name: Name of the test.
+        parameters: The free parameters.
+        before: (p,) standard deviations of the coordinates before the test.
+        after: (p,) standard deviations of the coordinates after the test.
+        gain: Decrease of the logarithm of the confidence region's volume.
+        weak: Directions that would still not be determined.
+        untouched: Labels of parameters that no record would respond to.
+    """
 
     name: str
     parameters: Parameters
@@ -45,41 +54,69 @@ class Expected:
         return f"{self.name}: {listed(pairs) or 'nothing much better known'}; {left}; log-volume {-self.gain:+.2f}"
 
 
-def expected_information(known: Identifiability, candidate: np.ndarray, name: str = "a further test") -> Expected:
-    """What a test with the information `candidate` (p, p), its own unknowns eliminated, would add to what is `known`.
+def expected_information(known: Identifiability, candidate: np.ndarray, name: str = "a further test") -> ExpectedGain:
+    """Compute what a further test would add to a calibration.
 
-    The gain is 0.5 ln det(1 + C F), C the posterior covariance: Bayesian D-optimality (Chaloner and Verdinelli 1995,
-    Statistical Science 10, 273-304), finite also where the records leave a direction open.
+    The gain is 0.5 ln det(1 + C F), C the posterior covariance and F the test's information. It is finite also where the
+    records leave a direction open.
+
+    Args:
+        known: What the records determine so far.
+        candidate: (p, p) information of the test, its own unknowns eliminated.
+        name: Name of the test.
+
+    Returns:
+        Standard deviations before and after, and the gain.
+
+    References:
+        Chaloner and Verdinelli 1995, Statistical Science 10, 273-304 (Bayesian D-optimality).
     """
-    candidate = within(candidate, [i for i, label in enumerate(known.parameters.labels) if label not in known.at_bound])
+    candidate = submatrix(candidate, [i for i, label in enumerate(known.parameters.labels) if label not in known.at_bound])
     values, vectors = np.linalg.eigh(known.covariance)
     root = vectors * np.sqrt(np.maximum(values, 0)) @ vectors.T
     ratio = np.eye(len(root)) + root @ candidate @ root
     after = root @ np.linalg.solve(ratio, root)
     together = known.information + candidate
-    active, untouched = active_of(known.parameters, together, known.at_bound)
+    active, untouched = active_parameters(known.parameters, together, known.at_bound)
     before, later = np.sqrt(np.diag(known.covariance)), np.sqrt(np.diag(after))
     weak = weak_directions(known.parameters, together, active)
-    return Expected(name, known.parameters, before, later, float(0.5 * np.linalg.slogdet(ratio)[1]), weak, untouched)
+    return ExpectedGain(name, known.parameters, before, later, float(0.5 * np.linalg.slogdet(ratio)[1]), weak, untouched)
 
 
-def rank_tests(known: Identifiability, candidates: Mapping[str, np.ndarray]) -> tuple[Expected, ...]:
-    """Candidate tests, name -> information, the one that adds most first."""
+def rank_tests(known: Identifiability, candidates: Mapping[str, np.ndarray]) -> tuple[ExpectedGain, ...]:
+    """Rank candidate tests, the one that adds most first.
+
+    Args:
+        known: What the records determine so far.
+        candidates: (p, p) information of each test, by its name.
+
+    Returns:
+        What each test would add, in order.
+    """
     found = [expected_information(known, matrix, name) for name, matrix in candidates.items()]
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
-def effective_noise(fit: Fit, tests: Sequence[TestFit]) -> dict[str, float]:
-    """Channel -> standard deviation (m, rad) of independent noise that would leave the parameters as uncertain as the
-    residuals of the fit do: what to expect of a further test's samples at the same rate."""
-    variance, inflation = errors_of(fit, tests)
+def effective_noise(fit: DecayFit, tests: Sequence[TestFit]) -> dict[str, float]:
+    """Estimate the independent noise that has the effect of a fit's residuals on the parameters.
+
+    It stands for the errors of a further test's samples at the same rate.
+
+    Args:
+        fit: A finished fit.
+        tests: Measured and simulated series of its records, as `series_of` returns them.
+
+    Returns:
+        Standard deviation of the noise (m, rad), by channel.
+    """
+    variance, inflation = residual_statistics(fit, tests)
     there = np.asarray(fit.problem.data.present).any(axis=-1)
     power = (variance * inflation * there).sum(axis=0) / np.maximum(there.sum(axis=0), 1)
     return {DOFS[dof]: float(np.sqrt(x)) for dof, x in zip(fit.problem.data.dofs, power, strict=True)}
 
 
 @eqx.filter_jit
-def _products(problem: Problem, unknowns: Unknowns, until):
+def _products(problem: DecayProblem, unknowns: Unknowns, until):
     return problem.products(unknowns, until)
 
 
@@ -93,12 +130,23 @@ def decay_information(
     cycles: float = 8.0,
     interval: float | None = None,
 ) -> np.ndarray:
-    """Information (p, p) on the free parameters of `space` in a free decay of `model`, its release and offsets eliminated.
+    """Compute the information of a free decay on the parameters; release and offsets are eliminated.
 
-    Released at rest `amplitude` (m, rad) off the equilibrium in `dof` and followed for so many natural periods, a sample
-    every `interval` (s; a fortieth of the period by default). `noise`, motion measured -> standard deviation (m, rad) of a
-    sample, is taken as independent from sample to sample: `effective_noise` of a fit at the same rate stands for its errors.
-    Raises ValueError where `dof` is not measured, or the model has no oscillation in it.
+    Args:
+        model: The model.
+        space: The p free parameters.
+        dof: Degree of freedom that is released, at rest.
+        amplitude: Release from the equilibrium (m, rad).
+        noise: Standard deviation of a sample (m, rad) by measured motion, independent from sample to sample.
+            `effective_noise` of a fit at the same rate stands for its errors.
+        cycles: Duration, in natural periods.
+        interval: Time between samples (s); None for a fortieth of the period.
+
+    Returns:
+        (p, p) information.
+
+    Raises:
+        ValueError: If `dof` is not measured, or the model does not oscillate in it.
     """
     if dof not in noise:
         raise ValueError(f"noise: expected one of {dof}, the motion released, found {', '.join(noise) or 'none'}")
@@ -113,11 +161,11 @@ def decay_information(
     stated = {"id": f"{dof} decay", "kind": "decay", "file": "simulated", "degree_of_freedom": dof}
     test = Test.model_validate(stated)
     record = Record(test.id, test.kind, test.use, dof, time, values, None, None, dict(noise), True, 0.0, test, test.file)
-    data = gather([record], model, min(float(modes.period.min()) / STEPS_PER_PERIOD, memory_step(model)))
-    problem = Problem(model, data, space, True, None if space.moves_equilibrium else rest)
+    data = gather_decays([record], model, min(float(modes.period.min()) / STEPS_PER_PERIOD, memory_step(model)))
+    problem = DecayProblem(model, data, space, True, None if space.moves_equilibrium else rest)
     own = np.zeros((3, len(data.dofs)))
     own[0] = [values[DOFS[i]][0] / float(unit) for i, unit in zip(data.dofs, data.unit[0], strict=True)]
     x = jnp.array([p.transform.inverse(float(model.values[p.label])) for p in space.free])
     products = np.asarray(_products(problem, Unknowns(x, jnp.asarray(own.reshape(1, -1))), jnp.array([time[-1]])))
     variance = np.array([[noise[DOFS[i]] ** 2 for i in data.dofs]])
-    return eliminated(products, 1 / variance, variance, np.ones(variance.shape), len(x))
+    return shared_information(products, 1 / variance, variance, np.ones(variance.shape), len(x))

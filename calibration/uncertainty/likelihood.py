@@ -1,4 +1,4 @@
-"""A finished fit as a likelihood: its information, the scatter of its score with coloured errors, and intervals from both."""
+"""Likelihood of a finished fit, with coloured errors, and Laplace intervals."""
 
 from __future__ import annotations
 
@@ -14,35 +14,43 @@ from jaxtyping import Array, Float
 from scipy.stats import norm
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting.decay_fit import Fit, prepare, run
-from calibration.identifiability.information import inverse
-from calibration.identifiability.residual_spectra import Colour, Periodogram, coloured, colours, periodogram
-from calibration.identifiability.standard_deviations import assemble
-from calibration.parameters.space import Free
-from calibration.residuals.decays import Problem, Unknowns
+from calibration.fitting.decay_fit import DecayFit, prepare_fit, run_fit
+from calibration.identifiability.information import pseudo_inverse
+from calibration.identifiability.residual_spectra import NoiseColour, Periodogram, fit_colours, periodogram, score_covariance
+from calibration.identifiability.standard_deviations import gauss_newton_matrix
+from calibration.parameters.space import FreeParameter
+from calibration.residuals.decays import DecayProblem, Unknowns
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, suggest
 from jaxhydro.errors import Problem as Wrong
 from jaxhydro.hull.coefficient_labels import shared_hint
 
-LEVEL = 0.95
+DEFAULT_LEVEL = 0.95
 RCOND = 1e-14  # of all unknowns together, releases that are known far better than coefficients among them
-WHITE = Colour(1.0, 0.0, 0.0, 1.0)
+WHITE_NOISE = NoiseColour(1.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Likelihood:
-    """A finished fit's sum of squares Q = sum w |r|^2 + the prior's, about its lowest point.
+    """Likelihood of a finished fit: sum of squares Q = sum w |r|^2 + the prior's, about its lowest point.
 
-    Rows are the shared coordinates, then every record's own. `information` (n, n) is J^T W J of the records alone, `scatter`
-    (n, n) the covariance of J^T W e, `prior` (n,) what the prior adds to the diagonal of either: `hessian` is the former with
-    it. `covariance` is the sandwich H^-1 S H^-1 with coloured errors (White 1982, theorem 3.2), `white` the same with every
-    sample counting as one. `slope` (r, c, t, k) and `residual` (r, c, t) are those at the lowest point, in m and rad.
-    `colour` is by released and measured motion, `spectra` by record and channel.
+    Rows of matrices are the shared coordinates, then every record's own; n in all.
+
+    Attributes:
+        fit: The finished fit.
+        slope: (r, c, t, k) derivatives of the residuals at the lowest point (m, rad).
+        residual: (r, c, t) residuals at the lowest point (m, rad).
+        information: (n, n) J^T W J of the records alone.
+        scatter: (n, n) covariance of J^T W e.
+        prior: What the prior adds to the diagonals of `information` and of `scatter`, (n,) each.
+        covariance: (n, n) sandwich H^-1 S H^-1 with coloured errors (White 1982, theorem 3.2).
+        white: (n, n) the same, with every sample counted as independent.
+        colour: Colour of the errors, by released and measured motion.
+        spectra: Periodogram of the residuals, by record and channel.
     """
 
-    fit: Fit
+    fit: DecayFit
     slope: np.ndarray
     residual: np.ndarray
     information: np.ndarray
@@ -50,7 +58,7 @@ class Likelihood:
     prior: tuple[np.ndarray, np.ndarray]
     covariance: np.ndarray
     white: np.ndarray
-    colour: dict[tuple[str, str], Colour]
+    colour: dict[tuple[str, str], NoiseColour]
     spectra: dict[tuple[int, int], Periodogram]
 
     @property
@@ -67,14 +75,14 @@ class Likelihood:
         return self.information + np.diag(self.prior[0])
 
     def index(self, label: str) -> int:
-        """Its place among the free parameters. Raises InputError, which lists them."""
+        """Index of a parameter among the free parameters. Raises InputError, which lists them."""
         if label not in self.labels:
             known = f"a free parameter of this fit ({', '.join(self.labels)})"
             hint = shared_hint(label, self.fit.problem.model.hull.elements.shares) or suggest(label, self.labels)
             raise InputError("uncertainty", [Wrong("parameter", known, repr(label), hint)])
         return self.labels.index(label)
 
-    def free(self, label: str) -> Free:
+    def free(self, label: str) -> FreeParameter:
         """How a parameter is transformed."""
         return self.fit.problem.space.free[self.index(label)]
 
@@ -82,7 +90,7 @@ class Likelihood:
         """A parameter's value (its own unit) at a coordinate."""
         return float(self.free(label).transform.forward(jnp.asarray(coordinate)))
 
-    def interval(self, label: str, level: float = LEVEL, white: bool = False) -> tuple[float, float]:
+    def interval(self, label: str, level: float = DEFAULT_LEVEL, white: bool = False) -> tuple[float, float]:
         """The Laplace interval: x +- z sd in the coordinate, mapped to values, and so never outside the bounds."""
         i, z = self.index(label), float(norm.ppf(0.5 + 0.5 * level))
         reach = z * self.deviation(white)[i]
@@ -94,7 +102,7 @@ class Likelihood:
         return np.sqrt(np.diag(self.white if white else self.covariance)[: len(self.labels)])
 
     def excess(self) -> dict[str, float]:
-        """How many times too small the standard deviation is that takes every sample as independent of the others."""
+        """Ratio of each standard deviation to that with every sample taken as independent."""
         ratio = self.deviation() / self.deviation(white=True)
         return {label: float(x) for label, x in zip(self.labels, ratio, strict=True)}
 
@@ -106,7 +114,7 @@ class Likelihood:
         section 3) with one parameter of interest. Its own prior is left out where the manifest states none.
         """
         i = self.index(label)
-        move = inverse(self.hessian, RCOND)[:, i]
+        move = pseudo_inverse(self.hessian, RCOND)[:, i]
         counted = np.ones(len(move))
         counted[i] = np.isfinite(self.free(label).prior_deviation)
         bread, meat = (
@@ -120,7 +128,7 @@ class Likelihood:
     def scale(self) -> float:
         """What Q is multiplied by to be -2 log likelihood on the average over all directions: n / tr(H^-1 S)."""
         meat = self.scatter + np.diag(self.prior[1])
-        return float(len(meat) / np.trace(inverse(self.hessian, RCOND) @ meat))
+        return float(len(meat) / np.trace(pseudo_inverse(self.hessian, RCOND) @ meat))
 
 
 def coordinates(unknowns: Unknowns) -> np.ndarray:
@@ -128,35 +136,43 @@ def coordinates(unknowns: Unknowns) -> np.ndarray:
     return np.concatenate([np.asarray(unknowns.shared), np.asarray(unknowns.own).ravel()])
 
 
-def reposed(
+def restored_fit(
     campaign: Campaign, began: Mapping[str, Any], ended: Mapping[str, float], report: Callable[..., None] = lambda *_: None
-) -> Fit:
+) -> DecayFit:
     """The fit that a calibration to decays was, with its free parameters and priors, where it `ended`; the records' releases
     and offsets, which a calibration does not keep, begin from the records. `began` are values, of free parameters and others,
     that it began from in place of the platform's; `report` is that of `prepare`."""
     declared = campaign.model.values
     # only what is not as declared, so that types stay, and what was compiled for the fit serves again
     start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
-    fit = prepare(campaign, free=list(ended), start=start, report=report)
+    fit = prepare_fit(campaign, free=list(ended), start=start, report=report)
     there = [p.transform.inverse(float(ended[p.label])) for p in fit.problem.space.free]
     fit.unknowns = fit.unknowns._replace(shared=jnp.array(there))
     return fit
 
 
 def likelihood(campaign: Campaign, result: Calibration) -> Likelihood:
-    """The likelihood of a calibration to decays (`calibrate`). The records' releases are fitted again, from its values."""
+    """Compute the likelihood of a calibration to decays. The records' releases are fitted again.
+
+    Args:
+        campaign: The campaign.
+        result: Result of `calibrate`.
+
+    Returns:
+        The likelihood about the calibrated values.
+    """
     found = result.parameters
-    fit = reposed(
+    fit = restored_fit(
         campaign,
         {**result.model.values, **{label: one.start for label, one in found.items()}},
         {label: one.value for label, one in found.items()},
     )
-    run(fit)
+    run_fit(fit)
     return likelihood_of(fit)
 
 
 @eqx.filter_jit
-def _slopes(problem: Problem, unknowns: Unknowns) -> tuple[Float[Array, "r c t k"], Float[Array, "r c t"]]:
+def _slopes(problem: DecayProblem, unknowns: Unknowns) -> tuple[Float[Array, "r c t k"], Float[Array, "r c t"]]:
     """Residual, and its derivatives to the shared coordinates and the record's own."""
     split = len(unknowns.shared)
 
@@ -172,21 +188,27 @@ def _slopes(problem: Problem, unknowns: Unknowns) -> tuple[Float[Array, "r c t k
     return jax.lax.map(of_record, (unknowns.own, problem.data))
 
 
-def likelihood_of(fit: Fit) -> Likelihood:
-    """The likelihood of a finished fit (`run`).
+def likelihood_of(fit: DecayFit) -> Likelihood:
+    """Compute the likelihood of a finished fit (`run_fit`).
 
-    The errors of a channel are taken as stationary in each record, of one colour in all records, or in all that were released
-    alike, whichever is likelier, and as independent between channels and between records.
+    The errors of a channel are stationary in each record. They have one colour in all records, or in all that were released
+    alike, whichever is likelier. They are independent between channels and between records.
+
+    Args:
+        fit: The finished fit.
+
+    Returns:
+        The likelihood about the fit.
     """
     data, weight, shared = fit.problem.data, np.asarray(fit.weight), len(fit.problem.space.free)
     slope, residual = map(np.asarray, _slopes(fit.problem, fit.unknowns))
     # the residual's own row and column, which `assemble` leaves out
     blocks = np.pad(np.einsum("rctk,rctl,rc->rkl", slope, slope, weight), ((0, 0), (0, 1), (0, 1)))
-    information = assemble(blocks, shared)
+    information = gauss_newton_matrix(blocks, shared)
     size, own = len(information), slope.shape[-1] - shared
     ridge, width = np.asarray(fit.ridge) ** 2, 1 / np.asarray(fit.prior[1])
     prior = tuple(np.concatenate([x, np.zeros(size - shared)]) for x in (ridge, ridge**2 * width**2))
-    back = inverse(information + np.diag(prior[0]), RCOND)
+    back = pseudo_inverse(information + np.diag(prior[0]), RCOND)
     seen: dict[tuple[str, str], list[tuple[int, int, Periodogram]]] = {}
     for i, record in enumerate(fit.records):
         at = np.r_[:shared, shared + i * own : shared + (i + 1) * own]
@@ -201,14 +223,16 @@ def likelihood_of(fit: Fit) -> Likelihood:
     colour, blocks, flat = {}, np.zeros_like(blocks), np.zeros_like(blocks)
     for channel in dict.fromkeys(channel for _, channel in seen):
         kinds = [kind for kind in seen if kind[1] == channel]
-        for kind, (found, variances) in zip(kinds, colours([[one for *_, one in seen[kind]] for kind in kinds]), strict=True):
+        for kind, (found, variances) in zip(
+            kinds, fit_colours([[one for *_, one in seen[kind]] for kind in kinds]), strict=True
+        ):
             colour[kind] = found
             for (i, j, one), variance in zip(seen[kind], variances, strict=True):
                 time = fit.records[i].time
-                for into, power, of in ((blocks, float(variance), found), (flat, one.variance, WHITE)):
-                    part = coloured(slope[i, j, : len(time)], power, of, step_of(time))
+                for into, power, of in ((blocks, float(variance), found), (flat, one.variance, WHITE_NOISE)):
+                    part = score_covariance(slope[i, j, : len(time)], power, of, step_of(time))
                     into[i, :-1, :-1] += weight[i, j] ** 2 * part
-    scatters = [assemble(blocks, shared), assemble(flat, shared)]
+    scatters = [gauss_newton_matrix(blocks, shared), gauss_newton_matrix(flat, shared)]
     covariance, white = (back @ (scatter + np.diag(prior[1])) @ back for scatter in scatters)
     spectra = {(i, j): one for group in seen.values() for i, j, one in group}
     return Likelihood(fit, slope, residual, information, scatters[0], (prior[0], prior[1]), covariance, white, colour, spectra)

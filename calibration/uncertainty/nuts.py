@@ -1,4 +1,4 @@
-"""NUTS: draws of all unknowns from the posterior, through numpyro (an extra: pip install jaxhydro[nuts])."""
+"""Posterior samples by NUTS, through numpyro (an extra: pip install jaxhydro[nuts])."""
 
 from __future__ import annotations
 
@@ -15,22 +15,29 @@ from jaxtyping import Array, Float
 from scipy.linalg import cholesky, eigh
 
 from calibration.fitting.cores import cores
-from calibration.residuals.decays import Problem, Unknowns
-from calibration.uncertainty.likelihood import LEVEL, Likelihood, coordinates
+from calibration.residuals.decays import DecayProblem, Unknowns
+from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood, coordinates
 from jaxhydro.interrupts import stop_if_asked, stopping
 
-DEEPEST = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
-LEAST = 50  # draws of every chain that are worth keeping where it is stopped
-EVERY = 0.5  # s between looks at the chains
+MAX_TREE_DEPTH = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
+MIN_DRAWS = 50  # draws of every chain that are worth keeping where it is stopped
+POLL_INTERVAL = 0.5  # s between looks at the chains
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Draws of the free parameters: `coordinate` and `value` (chain, draw, p), values in the parameters' units.
+    """Posterior draws of the free parameters.
 
-    `r_hat` (p,) compares the halves of all chains with each other (1 once they agree; Gelman et al. 2013, equation 11.4),
-    `effective` (p,) is how many independent draws they stand for, `divergences` how many steps went astray. `asked`: draws of
-    a chain, of which there are fewer where it was stopped.
+    Attributes:
+        labels: Names of the p parameters.
+        coordinate: (chain, draw, p) coordinates.
+        value: (chain, draw, p) values, in the parameters' units.
+        r_hat: (p,) agreement of the halves of all chains, 1 once they agree (Gelman et al. 2013, equation 11.4).
+        effective: (p,) effective number of independent draws.
+        divergences: Number of divergent steps.
+        seed: Seed of the random numbers.
+        asked: Draws asked for in each chain; there are fewer where it was stopped.
+        likelihood: Likelihood of the fit.
     """
 
     labels: tuple[str, ...]
@@ -47,7 +54,7 @@ class Samples:
         """Standard deviations (p,) of the coordinates."""
         return np.asarray(self.coordinate.reshape(-1, len(self.labels)).std(axis=0, ddof=1))
 
-    def interval(self, label: str, level: float = LEVEL) -> tuple[float, float]:
+    def interval(self, label: str, level: float = DEFAULT_LEVEL) -> tuple[float, float]:
         """Equal-tailed interval in values. Raises InputError for an unknown label."""
         mine = self.value[..., self.likelihood.index(label)].ravel()
         low, high = np.quantile(mine, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
@@ -57,7 +64,7 @@ class Samples:
 Energy = Callable[[Float[Array, " n"]], Float[Array, ""]]
 
 
-def potential(likelihood: Likelihood, scale: float) -> Energy:
+def potential_energy(likelihood: Likelihood, scale: float) -> Energy:
     """Energy of all coordinates (n,): half of `scale` times the sum of squares, and half of the prior's.
 
     Every free parameter has a normal prior in its coordinate, wide unless the manifest says otherwise, so that no Jacobian of
@@ -80,7 +87,7 @@ def potential(likelihood: Likelihood, scale: float) -> Energy:
     return energy
 
 
-def _energy(problem: Problem, unknowns: Unknowns, weight, until, mean, precision, scale):
+def _energy(problem: DecayProblem, unknowns: Unknowns, weight, until, mean, precision, scale):
     """Energy and its gradient."""
     p = len(mean)
     block = scale * jnp.einsum("rckl,rc->rkl", problem.products(unknowns, until), weight)
@@ -100,17 +107,31 @@ def sample(
     seed: int = 0,
     progress: Callable[[int, str], None] = lambda done, remark: None,
 ) -> Samples:
-    """Draws by the no-U-turn sampler (Hoffman and Gelman 2014, Journal of Machine Learning Research 15, 1593-1623).
+    """Draw from the posterior by the no-U-turn sampler (NUTS).
 
-    The density is exp(-energy) of `potential`, the same sum of squares as the profile's, in coordinates whitened by the
-    fit's information, so that steps are long and few. Errors that are neither white nor of known size are taken into account
-    as in the profile: every draw's distance from the estimate is stretched so that its covariance near it is the
-    sandwich's (the open-faced sandwich, Shaby 2014, Journal of Computational and Graphical Statistics 23, 853-876, equation 7),
-    along the directions that both covariances have in common. Chains run side by side, as many as there are cores;
-    `progress` is told how many draws are done, and where.
+    The density is exp(-energy) of `potential_energy`, with the same sum of squares as the profile's. Coordinates are
+    whitened by the fit's information, so that steps are long and few. Errors that are neither white nor of known size are
+    taken into account as in the profile: every draw's distance from the estimate is stretched along the common directions
+    of both covariances, so that the draws' covariance near the estimate is the sandwich's. Chains run side by side, as many
+    as there are cores. Stopped by the user (KeyboardInterrupt) it returns the draws of all chains, if each has `MIN_DRAWS`.
 
-    Stopped (KeyboardInterrupt) it gives what there is of all chains, if that is `LEAST` draws of each. Raises ImportError where
-    numpyro is not installed.
+    Args:
+        likelihood: Likelihood of a finished fit.
+        draws: Draws of each chain.
+        warmup: Steps of each chain that are left out.
+        chains: Number of chains.
+        seed: Seed of the random numbers.
+        progress: Function that is called with the number of draws done, and a remark.
+
+    Returns:
+        The draws.
+
+    Raises:
+        ImportError: If numpyro is not installed.
+
+    References:
+        Hoffman and Gelman 2014, Journal of Machine Learning Research 15, 1593-1623. Shaby 2014, Journal of Computational
+        and Graphical Statistics 23, 853-876, equation 7 (open-faced sandwich).
     """
     try:
         from numpyro.diagnostics import effective_sample_size, split_gelman_rubin
@@ -119,7 +140,7 @@ def sample(
         raise ImportError("sampling needs numpyro: pip install 'jaxhydro[nuts]'") from error
     fit, centre, scale = likelihood.fit, coordinates(likelihood.fit.unknowns), likelihood.scale()
     root, stretch = whitening(likelihood, scale)
-    energy = potential(likelihood, scale)
+    energy = potential_energy(likelihood, scale)
     away, unseen = jnp.asarray(root), jnp.asarray(np.diag(likelihood.information) <= 0).at[: len(likelihood.labels)].set(False)
 
     @jax.jit
@@ -128,11 +149,11 @@ def sample(
         # a channel that a record lacks would wander without end
         return energy(jnp.asarray(centre) + off) + 0.5 * jnp.sum(jnp.where(unseen, off, 0.0) ** 2)
 
-    kernel, key = NUTS(potential_fn=whitened, max_tree_depth=DEEPEST), jax.random.key(seed)
+    kernel, key = NUTS(potential_fn=whitened, max_tree_depth=MAX_TREE_DEPTH), jax.random.key(seed)
     start = jax.random.normal(jax.random.fold_in(key, 1), (chains, len(centre)))
     begun = [kernel.init(jax.random.fold_in(key, 2 + k), warmup, start[k], (), {}) for k in range(chains)]
     step = jax.jit(lambda state: kernel.sample(state, (), {}))
-    rows = _walked(step, begun, warmup, draws, progress)
+    rows = _run_chains(step, begun, warmup, draws, progress)
     z, lost = np.array([[at for at, _ in row] for row in rows]), sum(astray for row in rows for _, astray in row)
     shared = len(fit.problem.space.free)
     coordinate = (centre + z @ (stretch @ root).T)[..., :shared]
@@ -143,7 +164,7 @@ def sample(
     return Samples(likelihood.labels, coordinate, value, r_hat, effective, lost, seed, draws, likelihood)
 
 
-def _walked(
+def _run_chains(
     step: Callable[[Any], Any], begun: list[Any], warmup: int, draws: int, progress: Callable[[int, str], None]
 ) -> list[list[tuple[np.ndarray, bool]]]:
     """Where chains were after their warm-up, and whether a step went astray: as many draws of each as all have."""
@@ -164,7 +185,7 @@ def _walked(
         under_way = {pool.submit(walk, k) for k in range(len(begun))}
         try:
             while under_way:
-                over, under_way = wait(under_way, timeout=EVERY)
+                over, under_way = wait(under_way, timeout=POLL_INTERVAL)
                 stop_if_asked()
                 for one in over:
                     one.result()
@@ -173,7 +194,7 @@ def _walked(
             stop.set()
             stopping()
             pool.shutdown(cancel_futures=True)
-            if not isinstance(stopped, KeyboardInterrupt) or min(map(len, rows)) < LEAST:
+            if not isinstance(stopped, KeyboardInterrupt) or min(map(len, rows)) < MIN_DRAWS:
                 raise
     count = min(map(len, rows))
     return [row[:count] for row in rows]

@@ -1,4 +1,4 @@
-"""Profile likelihood: how far a parameter may move if all others make the best of it."""
+"""Profile likelihood of one parameter."""
 
 from __future__ import annotations
 
@@ -11,24 +11,32 @@ from scipy.stats import chi2
 
 from calibration.fitting.levenberg_marquardt import descend
 from calibration.formatting import number
-from calibration.residuals.decays import Unknowns, condensed
-from calibration.uncertainty.likelihood import LEVEL, Likelihood
+from calibration.residuals.decays import Unknowns, condensed_decays
+from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood
 from jaxhydro.interrupts import stop_if_asked
 
-ROOT_STEP = 0.7  # of the signed root from one point of the grid to the next: three points to the 95 % level's 1.96
-LONGEST_ROOT = 1.5  # what is farther away is gone to in smaller steps
-FARTHEST = 16  # points on either side at most: steps double where nothing happens, so that is far
-LEAST_SHARE = 0.01  # of the drop at the level: what a refit may leave
+SIGNED_ROOT_STEP = 0.7  # of the signed root from one point of the grid to the next: three points to the 95 % level's 1.96
+MAX_ROOT_STEP = 1.5  # what is farther away is gone to in smaller steps
+MAX_GRID_POINTS = 16  # points on either side at most: steps double where nothing happens, so that is far
+MAX_REFIT_SHARE = 0.01  # of the drop at the level: what a refit may leave
 
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Rise of -2 log likelihood along one parameter, all other unknowns refitted.
+    """Profile likelihood of one parameter: rise of -2 log likelihood, all other unknowns refitted.
 
-    `grid` (n,) are values, ascending, in `unit`, `coordinate` (n,) theirs, `drop` (n,) a chi-square of one degree of freedom:
-    the adjusted one of Kent 1982, for errors that are neither white nor of known size. `lower` and `upper` are where it
-    reaches the chi-square's `level`, None where the records do not bound the parameter on that side. `laplace` is the interval
-    of the fit's covariance. `nu` is what the drop of the sum of squares was divided by.
+    Attributes:
+        label: Name of the parameter.
+        unit: Unit of the parameter.
+        estimate: Calibrated value, in `unit`.
+        grid: (n,) values, ascending, in `unit`.
+        coordinate: (n,) coordinates of these values.
+        drop: (n,) rise of -2 log likelihood, adjusted for errors that are neither white nor of known size (Kent 1982).
+        lower: Lower end of the interval; None where the records do not bound the parameter.
+        upper: Upper end of the interval; None where the records do not bound the parameter.
+        level: Probability of the interval.
+        laplace: Interval by the fit's covariance.
+        nu: Divisor of the drop of the sum of squares.
     """
 
     label: str
@@ -64,7 +72,7 @@ def _held(unknowns: Unknowns, args):
     """Residuals with one shared coordinate held at a value: its column is zero, so that no step moves it."""
     problem, weight, until, (mean, ridge), index, value = args
     there = unknowns._replace(shared=unknowns.shared.at[index].set(value))
-    rows, products = condensed(there, problem, weight, until)
+    rows, products = condensed_decays(there, problem, weight, until)
     return (rows, ridge * (there.shared - mean)), products
 
 
@@ -81,7 +89,7 @@ class _Refit:
         self.mean, self.weight = np.asarray(fit.prior[0]), np.asarray(fit.weight)
         self.args = (fit.problem, jnp.asarray(self.weight), fit.ends, (jnp.asarray(self.mean), jnp.asarray(self.ridge)))
         self.size = 1.0  # of Q, for a tolerance relative to it: a fit normalises its weights so
-        self.gain = LEAST_SHARE * self.nu * float(chi2.ppf(level, 1))
+        self.gain = MAX_REFIT_SHARE * self.nu * float(chi2.ppf(level, 1))
 
     def moved(self, unknowns: Unknowns, step: float) -> Unknowns:
         """Where the others should be after a step of the held one, to first order."""
@@ -100,13 +108,26 @@ class _Refit:
         return cost, reached
 
 
-def profile(likelihood: Likelihood, label: str, level: float = LEVEL) -> Profile:
-    """Profile likelihood of a free parameter, from the estimate outwards on either side until the drop exceeds the level, or
-    the parameter is at the end of its range.
+def profile(likelihood: Likelihood, label: str, level: float = DEFAULT_LEVEL) -> Profile:
+    """Compute the profile likelihood of a free parameter.
 
-    drop(psi) = (min Q | psi - min Q) / nu, a chi-square of one degree of freedom (Wilks 1938, Annals of Mathematical Statistics
-    9, 60-62) once it is adjusted by nu of `Likelihood.stretch`. For a model that is linear in its unknowns the interval is
-    that of the covariance. Raises InputError for an unknown label.
+    It goes outwards from the estimate on either side, until the drop exceeds the level or the parameter's range ends. For a
+    model that is linear in its unknowns the interval is that of the covariance.
+
+    Args:
+        likelihood: Likelihood of a finished fit.
+        label: Name of the parameter.
+        level: Probability of the interval.
+
+    Returns:
+        The profile and its interval.
+
+    Raises:
+        InputError: If the label is unknown.
+
+    References:
+        Wilks 1938, Annals of Mathematical Statistics 9, 60-62: (min Q | psi - min Q) / nu is a chi-square of one degree of
+        freedom, nu by `Likelihood.stretch`.
     """
     refit = _Refit(likelihood, label, level)
     at = float(likelihood.estimate[refit.index])
@@ -146,23 +167,23 @@ def _outward(
     transform, limit = likelihood.free(label).transform, float(np.sqrt(chi2.ppf(level, 1)))
     points: dict[float, float] = {}
     root, x = 0.0, at
-    step = ROOT_STEP * float(likelihood.deviation()[refit.index])
-    while len(points) < FARTHEST and not (points and transform.at_bound(x)):
+    step = SIGNED_ROOT_STEP * float(likelihood.deviation()[refit.index])
+    while len(points) < MAX_GRID_POINTS and not (points and transform.at_bound(x)):
         stop_if_asked()
         cost, there = refit(refit.moved(unknowns, sign * step), x + sign * step)
         before, root = root, float(np.sqrt(max(cost - lowest, 0.0) / refit.nu))
-        if not root - before < LONGEST_ROOT:  # a long step that the others do not follow in a straight line
+        if not root - before < MAX_ROOT_STEP:  # a long step that the others do not follow in a straight line
             other, here = refit(unknowns, x + sign * step)
             if other < cost or not np.isfinite(cost):
                 cost, there, root = other, here, float(np.sqrt(max(other - lowest, 0.0) / refit.nu))
         points[x + sign * step] = cost
-        if not root - before < LONGEST_ROOT:  # too far to draw a line through, or a motion that has run away
+        if not root - before < MAX_ROOT_STEP:  # too far to draw a line through, or a motion that has run away
             step, root = 0.4 * step, before
             continue
         x, unknowns = x + sign * step, there
         if root > limit:
             break
-        step *= float(np.clip(ROOT_STEP / max(root - before, 1e-9), 0.5, 2.0))
+        step *= float(np.clip(SIGNED_ROOT_STEP / max(root - before, 1e-9), 0.5, 2.0))
     return points
 
 

@@ -12,11 +12,11 @@ from ruamel.yaml import YAML
 
 import jaxhydro as jh
 from calibration.campaign.load_campaign import Campaign, load_campaign
-from calibration.fitting.decay_fit import Fit, Interrupted, Progress, calibrate, pose, run
-from calibration.identifiability.standard_deviations import memory, spread
-from calibration.parameters.space import choose, default_free, parameter_space, slopes
+from calibration.fitting.decay_fit import DecayFit, Interrupted, Progress, calibrate, run_fit, set_up_decays
+from calibration.identifiability.standard_deviations import correlated_samples, sandwich_covariance
+from calibration.parameters.space import default_free, match_free_labels, parameter_space, slopes
 from calibration.parameters.transforms import Interval, LogInterval, Scaled
-from calibration.residuals.decays import Problem, Unknowns, condensed, dominant_period, first_guess, square_root
+from calibration.residuals.decays import DecayProblem, Unknowns, condensed_decays, dominant_period, first_guess, square_root
 from calibration.result import Calibration
 from jaxhydro.dynamics.statics import linearised
 from jaxhydro.errors import InputError
@@ -123,12 +123,12 @@ def ship(ship_campaign: Campaign) -> tuple[Calibration, list[Progress]]:
     return calibrate(ship_campaign, progress=said.append), said
 
 
-def posed(campaign: Campaign, labels: tuple[str, ...] | None = None) -> tuple[Problem, tuple]:
+def posed(campaign: Campaign, labels: tuple[str, ...] | None = None) -> tuple[DecayProblem, tuple]:
     """The problem that `calibrate` poses, and its records."""
     records = campaign.used("fit")
     declared = jh.build(campaign.platform)
-    chosen = choose(declared, [str(r.degree_of_freedom) for r in records], labels)
-    return pose(declared, campaign, records, parameter_space(declared, chosen)), records
+    chosen = match_free_labels(declared, [str(r.degree_of_freedom) for r in records], labels)
+    return set_up_decays(declared, campaign, records, parameter_space(declared, chosen)), records
 
 
 # transforms
@@ -192,19 +192,21 @@ def test_what_is_declared_as_zero_is_not_free_unless_asked_for() -> None:
     document = semi()
     document["coefficients"]["column"]["Cd_z"] = 0.0
     model = model_of(document)
-    assert "column.Cd_z" not in choose(model, ["heave"])
-    assert "column.Cd_z" in choose(model, ["heave"], free=["column.*"])
+    assert "column.Cd_z" not in match_free_labels(model, ["heave"])
+    assert "column.Cd_z" in match_free_labels(model, ["heave"], free=["column.*"])
 
 
 def test_patterns_say_what_is_free_and_what_is_fixed() -> None:
     model = model_of(semi())
-    assert set(choose(model, ["surge"], free=["column.Cd_*", "linear_damping.B11"])) == {
+    assert set(match_free_labels(model, ["surge"], free=["column.Cd_*", "linear_damping.B11"])) == {
         "column.Cd_t",
         "column.Cd_z",
         "linear_damping.B11",
     }
-    assert "pontoon.Ca_t" not in choose(model, ["surge"], fixed=["pontoon.*"])
-    assert choose(model, ["surge"], free=["mooring.line?.stiffness"]) == tuple(f"mooring.line{i}.stiffness" for i in (1, 2, 3))
+    assert "pontoon.Ca_t" not in match_free_labels(model, ["surge"], fixed=["pontoon.*"])
+    assert match_free_labels(model, ["surge"], free=["mooring.line?.stiffness"]) == tuple(
+        f"mooring.line{i}.stiffness" for i in (1, 2, 3)
+    )
 
 
 def test_bounds_and_priors_of_the_manifest() -> None:
@@ -226,8 +228,8 @@ def test_bounds_and_priors_of_the_manifest() -> None:
 def test_mistakes_in_the_manifest_are_told() -> None:
     model = model_of(semi())
     for make, words in (
-        (lambda: choose(model, ["surge"], free=["colum.Ca_t"]), "Did you mean 'column.Ca_t'?"),
-        (lambda: choose(model, ["surge"], fixed=["rudder.*"]), "calibrate.fixed"),
+        (lambda: match_free_labels(model, ["surge"], free=["colum.Ca_t"]), "Did you mean 'column.Ca_t'?"),
+        (lambda: match_free_labels(model, ["surge"], fixed=["rudder.*"]), "calibrate.fixed"),
         (lambda: parameter_space(model, ["column.Ca_t"], {"column.Ca_z": (0.1, 1.0)}), "calibrate.bounds.column.Ca_z"),
         (lambda: parameter_space(model, ["column.Ca_t"], {"column.Ca_t": (-1.0, 2.0)}), "two numbers between 0 and"),
         (lambda: parameter_space(model, ["column.Ca_t"], {"column.Ca_t": (2.0, 1.0)}), "[2, 1]"),
@@ -260,7 +262,7 @@ def test_condensed_residuals_have_the_products_of_the_plain_ones(ship_campaign: 
         return (jnp.sqrt(weight)[..., None] * r).ravel()
 
     def short(z):
-        return condensed(Unknowns(z[:p], z[p:].reshape(shape)), problem, weight, until)[0].ravel()
+        return condensed_decays(Unknowns(z[:p], z[p:].reshape(shape)), problem, weight, until)[0].ravel()
 
     def with_slope(f):
         return jax.jit(jax.jacfwd(lambda z: (f(z),) * 2, has_aux=True))
@@ -303,7 +305,7 @@ def test_the_dominant_period_and_the_first_guess(ship_campaign: Campaign) -> Non
 
 def test_memory_of_white_and_of_coloured_noise() -> None:
     random = np.random.default_rng(0)
-    white = [memory(random.standard_normal(4000)) for _ in range(10)]
+    white = [correlated_samples(random.standard_normal(4000)) for _ in range(10)]
     assert np.mean(white) == pytest.approx(1.0, abs=0.15) and min(white) >= 1
     for rho in (0.5, 0.9):  # integrated autocorrelation (1 + rho) / (1 - rho)
         found = []
@@ -311,9 +313,9 @@ def test_memory_of_white_and_of_coloured_noise() -> None:
             x, e = np.zeros(20000), random.standard_normal(20000)
             for i in range(1, len(x)):
                 x[i] = rho * x[i - 1] + e[i]
-            found.append(memory(x))
+            found.append(correlated_samples(x))
         assert np.mean(found) == pytest.approx((1 + rho) / (1 - rho), rel=0.15)
-    assert memory(np.zeros(100)) == memory(np.ones(5)) == 1.0
+    assert correlated_samples(np.zeros(100)) == correlated_samples(np.ones(5)) == 1.0
 
 
 def regression(random, n: int = 200):
@@ -334,11 +336,11 @@ def test_spread_is_the_covariance_of_a_linear_regression() -> None:
     full[:200, [0, 1, 2]], full[200:, [0, 1, 3]] = a
     noise = np.repeat(sigma[:, 0] ** 2, 200)
     # weighed by their noise: (A^T W A)^-1
-    best = spread(products, 1 / sigma**2, sigma**2, np.ones((2, 1)), ridge, np.ones(2))
+    best = sandwich_covariance(products, 1 / sigma**2, sigma**2, np.ones((2, 1)), ridge, np.ones(2))
     np.testing.assert_allclose(best.covariance, np.linalg.inv(full.T @ (full / noise[:, None])), rtol=1e-8)
     # weighed otherwise: the sandwich, here with every fourth sample counting
     bread = np.linalg.inv(full.T @ full)
-    other = spread(products, np.ones((2, 1)), sigma**2, np.full((2, 1), 4.0), ridge, np.ones(2))
+    other = sandwich_covariance(products, np.ones((2, 1)), sigma**2, np.full((2, 1), 4.0), ridge, np.ones(2))
     expected = 4 * bread @ (full.T @ (full * noise[:, None])) @ bread
     np.testing.assert_allclose(other.covariance, expected, rtol=1e-8)
     np.testing.assert_allclose(other.deviation(), np.sqrt(np.diag(expected)[:2]), rtol=1e-8)
@@ -349,7 +351,7 @@ def test_what_no_record_touches_is_as_wide_as_its_prior() -> None:
     a, sigma = regression(np.random.default_rng(2))
     a[..., 1] = 0.0
     ridge, width = 1 / (np.array([1.5, 0.7]) * 20), np.array([1.5, 0.7])
-    found = spread(products_of(a, np.zeros(a.shape[:2])), 1 / sigma**2, sigma**2, np.ones((2, 1)), ridge, width)
+    found = sandwich_covariance(products_of(a, np.zeros(a.shape[:2])), 1 / sigma**2, sigma**2, np.ones((2, 1)), ridge, width)
     assert found.deviation()[1] == pytest.approx(0.7, rel=1e-6)
     assert found.deviation()[0] < 0.01
 
@@ -418,10 +420,10 @@ def test_interruption_gives_what_was_reached(ship_campaign: Campaign) -> None:
 
 
 def test_interruption_before_the_first_iteration(ship_campaign: Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stop(_: Fit) -> None:
+    def stop(_: DecayFit) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("calibration.fitting.decay_fit.run", stop)
+    monkeypatch.setattr("calibration.fitting.decay_fit.run_fit", stop)
     with pytest.raises(Interrupted) as caught:
         calibrate(ship_campaign)
     assert caught.value.partial is None
@@ -440,9 +442,9 @@ def test_twenty_far_starts_all_arrive(ship_campaign: Campaign, ship) -> None:
             "quadratic_damping.B44": SHIP_TRUE["quadratic_damping.B44"] * 5 ** random.uniform(-1, 1),
         }
         x = jnp.array([p.transform.inverse(values[p.label]) for p in problem.space.free])
-        fit = Fit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
+        fit = DecayFit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
         fit.prior = (x, fit.prior[1])
-        run(fit)
+        run_fit(fit)
         objectives.append(fit.objective())
     assert max(objectives) < 1.01 * min(objectives)
     assert min(objectives) == pytest.approx(ship[0].objective("fit"), rel=0.01)

@@ -28,7 +28,7 @@ from calibration.discovery.set_up import pose
 from calibration.discovery.wave_records import by_a_program, highest_difference, options_for
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import seas_of
-from calibration.results.applied_calibration import applied
+from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.loads.strip_drag import StripDrag
 
@@ -149,7 +149,7 @@ def test_the_force_of_a_table_is_found(tmp_path: Path) -> None:
     before, after = ([one for one in some if one.use == "holdout"] for some in (found.anatomy_before, found.anatomy_after))
     assert after[0].relative < 0.05 < 0.2 < before[0].relative
     write_diagnosis(found, tmp_path / "out", figures=False)
-    used = applied(tmp_path / "out" / "diagnosis.json", campaign.model, campaign.platform.name)
+    used = apply_calibration(tmp_path / "out" / "diagnosis.json", campaign.model, campaign.platform.name)
     assert_allclose(used.model.values["computed_excitation.share"], share.value)
 
 
@@ -369,8 +369,8 @@ def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatc
     """Where calibrated decays are followed better so, and no word of the platform file says how strips are taken."""
     campaign = load_campaign(resources.files("jaxhydro") / "campaigns" / "volturnus-s-decays")
     asked: list[Campaign] = []
-    monkeypatch.setattr(conventions, "prepare", lambda one: asked.append(one) or one)
-    monkeypatch.setattr(conventions, "run", lambda one, near: None)
+    monkeypatch.setattr(conventions, "prepare_fit", lambda one: asked.append(one) or one)
+    monkeypatch.setattr(conventions, "run_fit", lambda one, near: None)
     monkeypatch.setattr(conventions, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
     found = conventions.conventions_of(campaign, lambda *_: None)
     model = found.campaign.model

@@ -121,15 +121,17 @@ def test_an_effect_in_doubt_is_said_to_be(result: Diagnosis, tmp_path: Path) -> 
     ):
         write_diagnosis(replace(result, verdict=verdict, effects=effects), tmp_path / verdict, figures=False)
         saved = read_diagnosis(tmp_path / verdict)
-        assert words.verdict(saved).startswith(start)
-        assert " Coulomb friction in surge may stand for " in words.verdict(saved)
-        said = words.alternatives(saved.missing.effects[-1])
+        assert words.verdict_sentence(saved).startswith(start)
+        assert " Coulomb friction in surge may stand for " in words.verdict_sentence(saved)
+        said = words.describe_alternatives(saved.missing.effects[-1])
         assert said.startswith("Amplitude dependent drag explains more of the fitted tests beside it than it does, and is")
         assert said in Page(write_report(tmp_path / verdict).read_text()).text
         raising = saved.missing.effects[-1].model_copy(update={"in_doubt": "held_out_error"})
-        assert words.alternatives(raising).startswith("With all that was found in the model the tests that were not")
+        assert words.describe_alternatives(raising).startswith("With all that was found in the model the tests that were not")
         if other in effects:
-            assert words.alternatives(saved.missing.effects[0]).startswith("No other effect that was tried does as well.")
+            assert words.describe_alternatives(saved.missing.effects[0]).startswith(
+                "No other effect that was tried does as well."
+            )
 
 
 def test_a_gain_is_called_after_what_it_was_found_on(result: Diagnosis, written: Path, tmp_path: Path) -> None:
@@ -142,7 +144,7 @@ def test_a_gain_is_called_after_what_it_was_found_on(result: Diagnosis, written:
     }
     saved = read_diagnosis(write_diagnosis(replace(result, **less), tmp_path, figures=False))
     assert tables.effects(saved)[0][-1] == "Gain over blocks of the fitted tests left out in turn"
-    text = " ".join(words.sureness(saved, saved.missing.effects[0]))
+    text = " ".join(words.describe_certainty(saved, saved.missing.effects[0]))
     assert "squared error of blocks of the fitted tests left out in turn falls by 61 %" in text
     assert "held" not in text.lower() and "not fitted" not in text
 
@@ -334,13 +336,13 @@ def test_sizes_and_names_as_people_read_them() -> None:
         Parameter(value=value, standard_deviation=sd, unit="N m/rad3", start=start, identifiable=sd is not None)
         for value, sd, start in ((29e3, 9.9e3, 0.0), (201.0, 286.0, 0.0), (201.0, None, 0.0))
     )
-    assert words.size("quintic", known) == "quintic (29.0 ± 9.9) kN m/rad³"
-    assert words.size("cubic", small) == "cubic not determined: fitted (201 ± 286) N m/rad³"
-    assert words.size("cubic", lost) == "cubic not determined"
-    assert [name for name, _ in words.by_certainty({"a": small, "b": known, "c": lost})] == ["b", "a", "c"]
-    assert words.determined(small.model_copy(update={"start": 2000.0}))  # known to be small
+    assert words.describe_parameter("quintic", known) == "quintic (29.0 ± 9.9) kN m/rad³"
+    assert words.describe_parameter("cubic", small) == "cubic not determined: fitted (201 ± 286) N m/rad³"
+    assert words.describe_parameter("cubic", lost) == "cubic not determined"
+    assert [name for name, _ in words.sorted_by_certainty({"a": small, "b": known, "c": lost})] == ["b", "a", "c"]
+    assert words.is_determined(small.model_copy(update={"start": 2000.0}))  # known to be small
     near = known.model_copy(update={"standard_deviation": 20e3})
-    assert words.size("quintic", near).endswith("kN m/rad³, less than 2 standard deviations from zero")
+    assert words.describe_parameter("quintic", near).endswith("kN m/rad³, less than 2 standard deviations from zero")
     assert words.called("hysteresis (surge)") == "hysteresis in surge" and words.called("current") == "a current"
     assert words.listed(["a"]) == "a" and words.listed(["a", "b", "c"]) == "a, b and c" and words.listed([]) == ""
-    assert words.change(0.5, 0.6) == "grows by 20 % (J from 0.500 to 0.600)"
+    assert words.describe_change(0.5, 0.6) == "grows by 20 % (J from 0.500 to 0.600)"

@@ -13,14 +13,14 @@ from ruamel.yaml import YAML
 import jaxhydro as jh
 from calibration.campaign.manifest import Test
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import Fit, pose, run
+from calibration.fitting.decay_fit import DecayFit, run_fit, set_up_decays
 from calibration.fitting.fit_conclusion import series_of
 from calibration.fitting.fit_uncertainty import identifiability_of
-from calibration.identifiability.directions import TOLD, Identifiability, identifiability
-from calibration.identifiability.information import CLEAR, collinearity, eliminated, varimax
-from calibration.identifiability.standard_deviations import spread
+from calibration.identifiability.directions import MAX_REPORTED_DIRECTIONS, Identifiability, identifiability
+from calibration.identifiability.information import IDENTIFIABLE_DEVIATION, collinearity, shared_information, varimax
+from calibration.identifiability.standard_deviations import sandwich_covariance
 from calibration.identifiability.statements import Parameters
-from calibration.parameters.space import VAGUE, parameter_space
+from calibration.parameters.space import VAGUE_DEVIATION, parameter_space
 from calibration.residuals.decays import Unknowns, first_guess
 from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
 from jaxhydro.dynamics.statics import linearised
@@ -36,7 +36,7 @@ def stated(labels: str, value=None, unit=None) -> Parameters:
     return Parameters(names, value, value.copy(), ("-",) * len(names) if unit is None else unit)
 
 
-def judged(parameters: Parameters, information: np.ndarray, width: float = VAGUE, **more) -> Identifiability:
+def judged(parameters: Parameters, information: np.ndarray, width: float = VAGUE_DEVIATION, **more) -> Identifiability:
     """The statement on a linear problem with a prior of one width."""
     return identifiability(parameters, information, np.linalg.inv(information + np.eye(len(information)) / width**2), **more)
 
@@ -54,7 +54,7 @@ def sum_of_two(a: float = 0.8, b: float = 0.36, sigma: float = 0.05, n: int = 40
 def test_two_that_enter_as_a_sum_have_its_weights_and_its_deviation() -> None:
     parameters, information, deviation = sum_of_two()
     found = judged(parameters, information, source="1 surge decay")
-    assert len(found.weak) == 1 and np.isinf(found.spectrum[-1]) and (found.spectrum[:2] < CLEAR).all()
+    assert len(found.weak) == 1 and np.isinf(found.spectrum[-1]) and (found.spectrum[:2] < IDENTIFIABLE_DEVIATION).all()
     weak = found.weak[0]
     assert set(weak.movement) == {"column.Ca_t", "pontoon.Ca_t"}
     changes = np.array(list(weak.movement.values()))
@@ -111,7 +111,7 @@ def test_many_unknown_directions_are_told_briefly() -> None:
     row = np.array([[1.0, *[0.5] * 6, 1e-4]])
     found = judged(stated(" ".join(labels)), row.T @ row / 0.02**2 + np.diag([0.0] * 7 + [900.0]))
     said = found.sentences()
-    assert len(found.weak) == 6 and sum(" from " in x and "act alike" not in x for x in said) == TOLD
+    assert len(found.weak) == 6 and sum(" from " in x and "act alike" not in x for x in said) == MAX_REPORTED_DIRECTIONS
     assert sum("act alike (collinearity index without bound" in x for x in said) == 1
     assert any(x.startswith("2 further combinations of ") and x.endswith("are not known to 25 % either") for x in said)
     assert not any("0.00" in x or " -0 " in x for x in said)
@@ -193,19 +193,19 @@ def brute_force(slope: np.ndarray, variance: np.ndarray, shared: int) -> np.ndar
 def test_own_unknowns_are_eliminated_as_by_inverting_everything() -> None:
     slope, products = regression()
     variance = np.array([[0.1, 0.4], [0.2, 0.3], [0.7, 0.1]])
-    found = eliminated(products, 1 / variance, variance, np.ones((3, 2)), 3)
+    found = shared_information(products, 1 / variance, variance, np.ones((3, 2)), 3)
     np.testing.assert_allclose(found, brute_force(slope, variance, 3), rtol=1e-9)
     # weighed otherwise, with samples that count as fewer: the inverse of the sandwich that the fit reports
     weight, inflation = np.array([[1.0, 2.0], [3.0, 1.0], [1.0, 1.0]]), np.array([[1.0, 4.0], [2.0, 1.0], [9.0, 1.0]])
-    other = eliminated(products, weight, variance, inflation, 3)
-    covariance = spread(products, weight, variance, inflation, np.full(3, 1e-9), np.ones(3)).covariance[:3, :3]
+    other = shared_information(products, weight, variance, inflation, 3)
+    covariance = sandwich_covariance(products, weight, variance, inflation, np.full(3, 1e-9), np.ones(3)).covariance[:3, :3]
     np.testing.assert_allclose(other, np.linalg.inv(covariance), rtol=1e-7)
 
 
 def test_the_spectrum_is_that_of_the_projected_jacobian() -> None:
     slope, products = regression(records=1)
     sigma = 0.3
-    information = eliminated(products, np.ones((1, 2)), np.full((1, 2), sigma**2), np.ones((1, 2)), 3)
+    information = shared_information(products, np.ones((1, 2)), np.full((1, 2), sigma**2), np.ones((1, 2)), 3)
     rows = slope[0].reshape(-1, 5) / sigma
     q = np.linalg.qr(rows[:, 3:])[0]
     projected = rows[:, :3] - q @ (q.T @ rows[:, :3])
@@ -274,9 +274,9 @@ def surge():
     )
     space = parameter_space(declared, [*true, "column.Cd_z"])
     at_rest = SimpleNamespace(manifest=SimpleNamespace(zero=True))
-    problem = pose(declared, at_rest, [record], space)
-    fit = Fit(problem, [record], Unknowns(space.start, first_guess([record], problem.data)), lambda *_: None)
-    run(fit)
+    problem = set_up_decays(declared, at_rest, [record], space)
+    fit = DecayFit(problem, [record], Unknowns(space.start, first_guess([record], problem.data)), lambda *_: None)
+    run_fit(fit)
     tests = series_of(problem, [record], fit.unknowns)
     return fit, tests, identifiability_of(fit, tests), space.model(declared, fit.unknowns.shared)
 
@@ -327,7 +327,7 @@ def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
     first, second = rank_tests(found, made)
     assert first.name == "a pitch decay" and first.gain > second.gain + 1
     index = found.parameters.labels.index("pontoon.Ca_t")
-    assert first.after[index] < CLEAR < second.after[index]
+    assert first.after[index] < IDENTIFIABLE_DEVIATION < second.after[index]
     assert "pontoon.Ca_t from" in first.sentence() and "0 weak directions left" in first.sentence()
 
 

@@ -19,7 +19,7 @@ from calibration.discovery.linearisations import Prior, Series
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.set_up import ANCHORED, ANCHORED_DAMPING, Posed, width_of
 from calibration.discovery.study import Study
-from calibration.parameters.space import VAGUE, Free, ParameterSpace
+from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import Scaled
 from jaxhydro.waves.support_sea import Clock
 
@@ -139,15 +139,15 @@ def test_how_well_coefficients_are_known() -> None:
     """In waves about where decays have them, linear damping best; vaguely without waves, and where declared as none."""
     model = jh.build(jh.Platform.model_validate(AFLOAT | {"linear_damping": {"B11": B11, "B55": 1e-300}}))
     model = model.with_values({"linear_damping.B55": 0.0})
-    assert width_of("linear_damping.B11", model, True) == ANCHORED_DAMPING < ANCHORED < VAGUE
-    assert width_of("linear_damping.B11", model, False) == width_of("linear_damping.B55", model, True) == VAGUE
+    assert width_of("linear_damping.B11", model, True) == ANCHORED_DAMPING < ANCHORED < VAGUE_DEVIATION
+    assert width_of("linear_damping.B11", model, False) == width_of("linear_damping.B55", model, True) == VAGUE_DEVIATION
 
 
 @pytest.mark.parametrize("seas", [(), ("a sea",)])
 def test_coefficients_are_anchored_where_the_search_begins(seas: tuple[str, ...]) -> None:
     """In waves, and but for those whose priors the manifest states; effects and nuisances stay where they were."""
     names = ("linear_damping.B11", "column.Ca_t", "mass", "effect")
-    free = [Free(name, 1.0, Scaled(0.0, 1.0), 0.3, 0.1 if name == "column.Ca_t" else math.inf) for name in names]
+    free = [FreeParameter(name, 1.0, Scaled(0.0, 1.0), 0.3, 0.1 if name == "column.Ca_t" else math.inf) for name in names]
     study = SimpleNamespace(
         seas=seas, space=ParameterSpace(tuple(free)), index=lambda some: [names.index(name) for name in some], steps=lambda x: x
     )

@@ -15,10 +15,10 @@ import jaxhydro as jh
 from calibration import load_campaign
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.parameters.space import parameter_space
-from calibration.residuals.decays import softened
+from calibration.residuals.decays import cauchy_residual
 from calibration.residuals.measured_seas import seas_of, with_diffraction
-from calibration.residuals.static import natural_period, pose_offsets, pose_periods
-from calibration.residuals.stretches import stretches, walk
+from calibration.residuals.static import natural_period, set_up_offsets, set_up_periods
+from calibration.residuals.stretches import run_segments, simulate_segments
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
@@ -85,8 +85,13 @@ def campaign(tmp_path_factory):
     write("sea.csv", time, np.tile(rest, (len(time), 1)) + np.sin(time)[:, None], wave)
     first = load_campaign(folder)
     ((run, sea),) = seas_of(first, environment, OPTIONS)
-    (part,) = stretches(run, run.records, model, OPTIONS.low, OPTIONS.cutoff)
-    write("sea.csv", time, np.asarray(next(iter(walk(model, run, (part,), sea.sea, 0.25))).found.response.position), wave)
+    (part,) = run_segments(run, run.records, model, OPTIONS.low, OPTIONS.cutoff)
+    write(
+        "sea.csv",
+        time,
+        np.asarray(next(iter(simulate_segments(model, run, (part,), sea.sea, 0.25))).simulation.response.position),
+        wave,
+    )
     return load_campaign(folder)
 
 
@@ -134,10 +139,10 @@ def test_residuals_of_offsets_and_periods(campaign, model) -> None:
     """At the truth the noise's, off it what is declared; their Gauss-Newton matrices against differences."""
     space = parameter_space(model, LABELS)
     residuals, products = (eqx.filter_jit(lambda s, x, name=name: getattr(s, name)(x)) for name in ("residuals", "products"))
-    offsets = pose_offsets(model, [campaign.record("held")], space, from_rest=True)
+    offsets = set_up_offsets(model, [campaign.record("held")], space, from_rest=True)
     assert np.abs(np.asarray(residuals(offsets, space.start))).max() < 1e-3
     assert len(offsets.compared) == 2  # heave and pitch
-    periods = pose_periods(model, campaign.manifest.calibrate.natural_periods, space, campaign.manifest.scale)
+    periods = set_up_periods(model, campaign.manifest.calibrate.natural_periods, space, campaign.manifest.scale)
     assert_allclose(np.asarray(residuals(periods, space.start)), 0.0, atol=1e-6)
     x = space.start + 0.2
     for source in (offsets, periods):
@@ -151,10 +156,10 @@ def test_residuals_of_offsets_and_periods(campaign, model) -> None:
 def test_cauchy_s_loss() -> None:
     """Squares for small residuals, c^2 ln(1 + (r/c)^2) for all, and a slope that is finite at rest."""
     r = jnp.array([-50.0, -1e-9, 0.0, 1e-4, 0.7, 3.0, 1e5])
-    assert_allclose(softened(r, jnp.asarray(2.0)) ** 2, 4.0 * np.log1p((np.asarray(r) / 2) ** 2), rtol=1e-9, atol=1e-30)
-    slope = jax.vmap(jax.grad(lambda x: softened(x, jnp.asarray(2.0))))(r)
+    assert_allclose(cauchy_residual(r, jnp.asarray(2.0)) ** 2, 4.0 * np.log1p((np.asarray(r) / 2) ** 2), rtol=1e-9, atol=1e-30)
+    slope = jax.vmap(jax.grad(lambda x: cauchy_residual(x, jnp.asarray(2.0))))(r)
     assert np.isfinite(np.asarray(slope)).all() and float(slope[2]) == 1.0 and 0 < float(slope[-1]) < 1e-3
-    assert softened(r, None) is r
+    assert cauchy_residual(r, None) is r
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from PIL import Image
 
 import calibration
 from calibration.decay_analysis.linear_quadratic import classical
-from calibration.fitting.fit_conclusion import strays
+from calibration.fitting.fit_conclusion import records_not_followed
 from calibration.formatting import number, percent, with_deviation
 from calibration.plots import decay_figures as plot
 from calibration.report.write_report import write_report
@@ -429,10 +429,10 @@ def test_decays_of_one_motion_that_are_not_followed_make_one_note(result: Calibr
     first, heave = result.tests[:2]
     still = tuple(replace(one, simulated=np.zeros_like(one.simulated)) for one in first.series)
     lost = [replace(first, id=f"surge-{i}", series=still) for i in (1, 2)]
-    (note,) = strays([*lost, heave, replace(lost[0], use="holdout")], result.model)
+    (note,) = records_not_followed([*lost, heave, replace(lost[0], use="holdout")], result.model)
     assert note.startswith("the model does not follow surge-1 and surge-2: the RMSE is 100 % of the motion's standard")
     assert re.search(r"Period in surge: measured 13\d s, declared model 1\d\d s\. Check scale", note)
-    assert strays([first, heave], result.model) == []
+    assert records_not_followed([first, heave], result.model) == []
 
 
 # --- numbers
@@ -453,4 +453,4 @@ def test_numbers_as_people_read_them() -> None:
     assert with_deviation(0.2, 30.0) == "0 ± 30"
     assert with_deviation(2.0, None) == with_deviation(2.0, 0.0) == "2.000"
     assert [percent(x) for x in (0.0123, 2.5, 1e9, None)] == ["1.2 %", "250 %", "–", "–"]
-    assert outputs.RESULT == "calibration.json"
+    assert outputs.RESULT_FILE == "calibration.json"

@@ -10,8 +10,8 @@ import pytest
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.fitting import decay_fit
-from calibration.fitting.decay_fit import prepare
-from calibration.residuals.decays import Problem, condensed
+from calibration.fitting.decay_fit import prepare_fit
+from calibration.residuals.decays import DecayProblem, condensed_decays
 from calibration.residuals.ladder import padded_size
 
 DECAYS = "jaxhydro/campaigns/volturnus-s-decays"
@@ -42,21 +42,21 @@ def campaign() -> Campaign:
 
 def test_records_of_nearly_the_same_length_are_traced_once(campaign, monkeypatch) -> None:
     traces = []
-    motion = Problem.motion
+    motion = DecayProblem.motion
 
     def counted(self, *args):
         traces.append((self.data.time.shape, self.data.capacity))
         return motion(self, *args)
 
-    monkeypatch.setattr(Problem, "motion", counted)
+    monkeypatch.setattr(DecayProblem, "motion", counted)
     ids = tuple(record.id for record in campaign.records if record.degree_of_freedom == "heave")[:1]
     whole = len(campaign.record(ids[0]).time)
     shares = [n / whole for n in (560, 570, 580)]
     counts = []
     for share in shares:
-        fit = prepare(cut(campaign, share, ids))
-        weight = decay_fit.weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(1))
-        jax.block_until_ready(condensed(fit.unknowns, fit.problem, jnp.asarray(weight), jnp.asarray(fit.ends)))
+        fit = prepare_fit(cut(campaign, share, ids))
+        weight = decay_fit.record_weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(1))
+        jax.block_until_ready(condensed_decays(fit.unknowns, fit.problem, jnp.asarray(weight), jnp.asarray(fit.ends)))
         counts.append(len(traces))
     assert counts[0] > 0 and counts[1:] == counts[:1] * 2, traces
 
@@ -66,7 +66,7 @@ def test_padding_changes_no_result(campaign, monkeypatch) -> None:
     ids = (next(record.id for record in campaign.records if record.degree_of_freedom == "heave"),)
 
     def products():
-        fit = prepare(cut(campaign, 0.37, ids))
+        fit = prepare_fit(cut(campaign, 0.37, ids))
         return fit.problem.data, fit.problem.products(fit.unknowns, fit.ends)
 
     padded, found = products()

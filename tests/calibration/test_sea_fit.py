@@ -14,7 +14,7 @@ from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaig
 from calibration.parameters.space import parameter_space
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
 from calibration.residuals.sea_errors import in_bands
-from calibration.residuals.seas import CELLS, LEAST, energies_of, joined, pose_in_waves
+from calibration.residuals.seas import CELLS_PER_BAND, MIN_ENERGY_SHARE, energies_of, joined_bands, set_up_waves
 from calibration.results.write_calibration import document, write_calibration
 from jaxhydro.analysis.spectral import band_integral, band_weights, power_spectrum
 from jaxhydro.environment import DOFS
@@ -36,7 +36,7 @@ def problem(campaign):
     model = with_diffraction(build(campaign.platform), OPTIONS).with_values(start_of(campaign))
     seas, space = seas_of(campaign, model.environment, OPTIONS), parameter_space(model, LABELS)
     scale = campaign.manifest.scale
-    return pose_in_waves(model, seas, space, OPTIONS, from_rest=True, scale=scale, step=0.25, objective="both")
+    return set_up_waves(model, seas, space, OPTIONS, from_rest=True, scale=scale, step=0.25, objective="both")
 
 
 def start_of(campaign) -> dict[str, float]:
@@ -57,7 +57,7 @@ def test_energy_in_a_band_as_a_quadratic_form(count: int, segment: float | None)
         band_weights(count, step, 0.2, 0.1)
 
 
-@pytest.mark.parametrize("duration, cells", [(9000.0, CELLS), (3600.0, 7), (2000.0, 4), (500.0, 1)])
+@pytest.mark.parametrize("duration, cells", [(9000.0, CELLS_PER_BAND), (3600.0, 7), (2000.0, 4), (500.0, 1)])
 def test_cells_of_a_band_are_as_narrow_as_the_record_allows(duration: float, cells: int) -> None:
     """White noise has energy in all of them: together that of the band; ten periods of the record at least in a cell."""
     step = 0.5
@@ -66,7 +66,7 @@ def test_cells_of_a_band_are_as_narrow_as_the_record_allows(duration: float, cel
     assert parts.measured.shape == (cells,)
     assert float(parts.measured.sum()) == pytest.approx(float(whole.measured[0]), rel=1e-12)
     other = energies_of(x, step, 0.06, 0.15, True)
-    assert_allclose(joined([parts, other]).of(jnp.asarray(x)), [*parts.measured, *other.measured], rtol=1e-12)
+    assert_allclose(joined_bands([parts, other]).of(jnp.asarray(x)), [*parts.measured, *other.measured], rtol=1e-12)
 
 
 def test_cells_without_energy_are_left_out() -> None:
@@ -75,7 +75,7 @@ def test_cells_without_energy_are_left_out() -> None:
     x = np.sin(2 * np.pi * 0.0064 * time) + 1e-3 * np.random.default_rng(3).normal(size=time.size)
     whole, kept = (energies_of(x, step, 0.005, 0.025, cut) for cut in (False, True))
     assert kept.measured.shape == (1,)
-    assert float(kept.measured[0]) == pytest.approx(float(whole.measured[0]), rel=LEAST)
+    assert float(kept.measured[0]) == pytest.approx(float(whole.measured[0]), rel=MIN_ENERGY_SHARE)
 
 
 @pytest.mark.slow

@@ -12,12 +12,18 @@ from test_seas import HULL
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
 from calibration.fitting.decay_fit import Interrupted, Progress
-from calibration.fitting.law_choice import LawFit, SeaLaws, choose_law, error, with_uses
-from calibration.fitting.law_parameters import base_of, of_law, reference_of, with_drag, with_laws
+from calibration.fitting.law_choice import LawFit, SeaLaws, choose_law, energy_error, with_test_uses
+from calibration.fitting.law_parameters import (
+    base_label,
+    is_law_parameter,
+    reference_sea_state,
+    with_drag_law,
+    with_sea_state_laws,
+)
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
-from calibration.residuals.stretches import sea_state, stretches, walk
-from calibration.results.applied_calibration import applied
+from calibration.residuals.stretches import run_segments, sea_state, simulate_segments
+from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_calibration import write_calibration
 from calibration.results.write_laws import document as document_of_laws
 from calibration.results.write_laws import write_laws
@@ -94,10 +100,12 @@ def campaign(tmp_path_factory):
     first = load_campaign(folder)
     model = with_diffraction(build(first.platform), OPTIONS)
     made = seas_of(first, model.environment, OPTIONS)
-    true = with_laws(model, LABELS, ("significant_height",), reference_of(made, OPTIONS)).with_values(TRUE)
+    true = with_sea_state_laws(model, LABELS, ("significant_height",), reference_sea_state(made, OPTIONS)).with_values(TRUE)
     ((run, sea),) = made
     motion = np.zeros((len(time), 6))
-    for part, found, _ in walk(true, run, stretches(run, run.records, true, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25):
+    for part, found, _ in simulate_segments(
+        true, run, run_segments(run, run.records, true, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
+    ):
         motion[part.begin : part.end + 1] = np.asarray(found.response.position)
     motion -= np.asarray(jh.equilibrium(model))
     (folder / "sea.csv").write_text(rows(time, np.stack([wave, *(motion[:, DOFS.index(d)] for d in HEADS.split(",")[2:])])))
@@ -115,18 +123,18 @@ def test_stretches_of_a_run(campaign, made) -> None:
     ((run, sea),) = made
     model = with_diffraction(build(campaign.platform), OPTIONS)
     options = (OPTIONS.low, OPTIONS.cutoff)
-    (whole,) = stretches(run, run.records, model, *options)
+    (whole,) = run_segments(run, run.records, model, *options)
     assert whole.state is None and [r.id for r in whole.records] == ["sea-1", "sea-2", "sea-3"]
-    law = with_laws(model, LABELS, ("significant_height", "peak_period"), reference_of(made, OPTIONS))
-    parts = stretches(run, run.records, law, *options)
+    law = with_sea_state_laws(model, LABELS, ("significant_height", "peak_period"), reference_sea_state(made, OPTIONS))
+    parts = run_segments(run, run.records, law, *options)
     assert [part.begin for part in parts] == [0, 800, 1600] and parts[1].end >= parts[2].begin
     for i, part in enumerate(parts):
         seen = run.wave[int((i * LENGTH + 80) / STEP) : int((i + 1) * LENGTH / STEP)]
         assert part.state.significant_height == pytest.approx(4 * np.std(seen), rel=0.02)
         assert part.state.peak_period == pytest.approx(10.0, rel=0.15)  # 32 waves
         assert part.state == sea_state(run, part.records[0], *options)
-    one = next(iter(walk(model, run, (whole,), sea.sea, 0.25))).found.response.position
-    for part, found, start in walk(law, run, parts, sea.sea, 0.25):
+    one = next(iter(simulate_segments(model, run, (whole,), sea.sea, 0.25))).simulation.response.position
+    for part, found, start in simulate_segments(law, run, parts, sea.sea, 0.25):
         assert (start is None) == (part.begin == 0)
         there = np.asarray(one[part.begin : part.end + 1])
         assert_allclose(np.asarray(found.response.position), there, atol=2e-3 * np.abs(there).max())
@@ -152,7 +160,7 @@ def test_a_law_is_found_back(campaign, fitted) -> None:
     """Exponent and coefficient of the drag that made the records, from two seas; the third, held out, is met too."""
     exponent = fitted.parameters["column.Cd_t.Hs_exponent"]
     assert exponent.value == pytest.approx(-0.8, abs=0.1) and exponent.identifiable
-    law = LawFit("significant_height", fitted, error(fitted, ["sea-1", "sea-3"]), error(fitted, ["sea-2"]))
+    law = LawFit("significant_height", fitted, energy_error(fitted, ["sea-1", "sea-3"]), energy_error(fitted, ["sea-2"]))
     assert law.fitted < 0.05 and law.held_out < 0.1
     state = SeaState(4.0, 10.0)
     value, deviation = law.coefficient("column.Cd_t", state)
@@ -269,7 +277,7 @@ def test_the_law_that_made_the_records_is_chosen(campaign) -> None:
         assert law.coefficient("column.Cd_t", sea.state)[0] == pytest.approx(expected, rel=0.05)
         if sea.id != "sea-2":
             assert sea.calibration.parameters["column.Cd_t"].value == pytest.approx(expected, rel=0.15)
-        assert error(sea.calibration, [sea.id]) < 0.02
+        assert energy_error(sea.calibration, [sea.id]) < 0.02
 
 
 def reference(law: LawFit) -> SeaState:
@@ -289,7 +297,7 @@ def test_what_is_written_and_used_again(campaign, found, tmp_path) -> None:
     assert len(lines) == 3 * 3 and {line["source"] for line in lines} == {"this sea alone", "constant", "significant_height"}
     assert (tmp_path / "figures" / "sea-law-column.Cd_t.png").is_file()
     model = with_diffraction(build(campaign.platform), OPTIONS)
-    used = applied(tmp_path, model, campaign.platform.name)
+    used = apply_calibration(tmp_path, model, campaign.platform.name)
     stated = with_calibration(model, campaign.platform.name, campaign.platform.name, tmp_path)[1].reference
     assert stated == pytest.approx(reference(laws.chosen))
     state = SeaState(4.0, 9.0)
@@ -303,7 +311,7 @@ def test_what_is_written_and_used_again(campaign, found, tmp_path) -> None:
     del data["baseline"]["sea_state_reference"]
     (tmp_path / "calibration.json").write_text(json.dumps(data))
     with pytest.raises(InputError, match="sea_state_reference"):
-        applied(tmp_path, model, campaign.platform.name)
+        apply_calibration(tmp_path, model, campaign.platform.name)
     write_calibration(laws.laws[0].calibration, tmp_path, figures=False)
     assert not (tmp_path / "sea_laws.json").exists() and not list((tmp_path / "figures").glob("sea-law-*"))
 
@@ -315,12 +323,12 @@ ALL_DRAG = ("column.Cd_t", "column.Cd_z", "pontoon.Cd_t", "pontoon.Cd_z")
 def drag(request, campaign, made):
     """The model with a law of drag at its null, what is to be fitted, and the law's name."""
     model = with_diffraction(build(campaign.platform), OPTIONS)
-    return *with_drag(model, ALL_DRAG, request.param, reference_of(made, OPTIONS), OPTIONS.low), request.param
+    return *with_drag_law(model, ALL_DRAG, request.param, reference_sea_state(made, OPTIONS), OPTIONS.low), request.param
 
 
 def test_a_law_of_drag_begins_as_plain_drag(campaign, made, drag) -> None:
     changed, added, name = drag
-    assert {of_law(label) for label in added} == {True} and {base_of(label) for label in added} == set(ALL_DRAG)
+    assert {is_law_parameter(label) for label in added} == {True} and {base_label(label) for label in added} == set(ALL_DRAG)
     assert {law.law for law in drag_laws_of(changed).values()} == {name}
     time = np.arange(0.0, 30.0, 0.5)
     runs = [
@@ -341,11 +349,11 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
     write_calibration(calibration, tmp_path, figures=False)
     law = json.loads((tmp_path / "calibration.json").read_text())["baseline"]["drag_laws"]["column.Cd_t"]
     assert law["law"] == name
-    used = applied(tmp_path, with_diffraction(build(campaign.platform), OPTIONS), campaign.platform.name)
+    used = apply_calibration(tmp_path, with_diffraction(build(campaign.platform), OPTIONS), campaign.platform.name)
     assert used.values == {added[0]: 0.7, "column.Cd_t": 0.7}
     assert {k: v.law for k, v in drag_laws_of(used.model).items()} == dict.fromkeys(ALL_DRAG, name)
     assert float(used.model.values[added[0]]) == 0.7
-    again = applied(tmp_path, changed, campaign.platform.name).model.values
+    again = apply_calibration(tmp_path, changed, campaign.platform.name).model.values
     assert {k: float(again[k]) for k in added} == {k: float(changed.values[k]) for k in added} | {added[0]: 0.7}  # as declared
     data = json.loads((tmp_path / "calibration.json").read_text())
     for change, said in (
@@ -355,18 +363,18 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
     ):
         (tmp_path / "calibration.json").write_text(json.dumps(data | {"baseline": data["baseline"] | change}))
         with pytest.raises(InputError, match=said):
-            applied(tmp_path, build(campaign.platform), campaign.platform.name)
+            apply_calibration(tmp_path, build(campaign.platform), campaign.platform.name)
     plain = {key: value for key, value in data["baseline"].items() if key != "drag_laws"}
     plain["parameters"] = {"column.Cd_t": data["baseline"]["parameters"]["column.Cd_t"]}
     (tmp_path / "calibration.json").write_text(json.dumps(data | {"baseline": plain}))
-    applied(tmp_path, changed, campaign.platform.name)  # a law at its null is plain drag
+    apply_calibration(tmp_path, changed, campaign.platform.name)  # a law at its null is plain drag
     with pytest.raises(InputError, match=r"drag_laws\.column\.Cd_t: expected the law that .* found plain drag"):
-        applied(tmp_path, model, campaign.platform.name)
+        apply_calibration(tmp_path, model, campaign.platform.name)
     (tmp_path / "calibration.json").write_text(json.dumps(data))
     other = "high_pass" if name == "keulegan_carpenter" else "keulegan_carpenter"
-    declared = with_drag(build(campaign.platform), ALL_DRAG, other, SeaState(5.0, 10.0), OPTIONS.low)[0]
+    declared = with_drag_law(build(campaign.platform), ALL_DRAG, other, SeaState(5.0, 10.0), OPTIONS.low)[0]
     with pytest.raises(InputError, match=f"baseline.drag_laws.column.Cd_t: expected the law that .*{other}.*found .*{name}"):
-        applied(tmp_path, declared, campaign.platform.name)
+        apply_calibration(tmp_path, declared, campaign.platform.name)
 
 
 def test_a_coefficient_by_laws_of_drag(fitted, drag) -> None:
@@ -386,7 +394,7 @@ def test_a_coefficient_by_laws_of_drag(fitted, drag) -> None:
 def test_slow_motion_apart_is_found_back(campaign, made, tmp_path) -> None:
     """Records of a platform whose slow motion has three times the drag: the share is met, and that law chosen."""
     model = with_diffraction(build(campaign.platform), OPTIONS)
-    true, added = with_drag(model, LABELS, "high_pass", reference_of(made, OPTIONS), OPTIONS.low)
+    true, added = with_drag_law(model, LABELS, "high_pass", reference_sea_state(made, OPTIONS), OPTIONS.low)
     tests = compare(campaign, true.with_values({added[0]: 3.0}), OPTIONS, made=made).tests
     by_id = {test.fit.id: {s.channel: s.simulated for s in test.fit.series} for test in tests}
     # simulated is what follows the transient, which is not compared
@@ -415,11 +423,11 @@ def test_words(found) -> None:
 
 
 def test_messages(campaign, made) -> None:
-    fewer, seas = with_uses(campaign, made, {"sea-1": "ignore"})
+    fewer, seas = with_test_uses(campaign, made, {"sea-1": "ignore"})
     assert [r.id for run, _ in seas for r in run.records] == ["sea-2", "sea-3"]
     with pytest.raises(InputError, match="1 and 1"):
         choose_law(fewer, laws=("constant",), options=OPTIONS)
-    none, seas = with_uses(campaign, made, dict.fromkeys(("sea-1", "sea-2", "sea-3"), "ignore"))
+    none, seas = with_test_uses(campaign, made, dict.fromkeys(("sea-1", "sea-2", "sea-3"), "ignore"))
     assert seas == ()
     with pytest.raises(InputError, match="at least one test in waves"):
         calibrate_in_waves(replace(none), options=OPTIONS)

@@ -11,11 +11,11 @@ from test_calibration import SHIP, SHIP_TRUE, model_of, roll_decay, write
 import jaxhydro as jh
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting.decay_fit import Fit, Progress, run
+from calibration.fitting.decay_fit import DecayFit, Progress, run_fit
 from calibration.global_search import CMAES, METHODS, AbstractSearch, Budget, DifferentialEvolution, Genetic, MultiStart, Task
-from calibration.global_search.base import BAD, even
+from calibration.global_search.base import FAILED_OBJECTIVE, even_batch
 from calibration.global_search.objective import coordinates, ranges
-from calibration.global_search.run_search import Found, SearchInterrupted, posed, search
+from calibration.global_search.run_search import Found, SearchInterrupted, search, set_up_search
 from calibration.residuals.decays import Unknowns, first_guess
 from jaxhydro.errors import InputError
 
@@ -46,10 +46,10 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
 @pytest.fixture(scope="module")
 def truth(campaign: Campaign) -> float:
     """J of the true coefficients, releases fitted."""
-    problem, records = posed(campaign)
+    problem, records = set_up_search(campaign)
     x = jnp.array([p.transform.inverse(SHIP_TRUE[p.label]) for p in problem.space.free])
-    fit = Fit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
-    run(fit)
+    fit = DecayFit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
+    run_fit(fit)
     return fit.objective()
 
 
@@ -139,10 +139,10 @@ def test_ctrl_c_before_anything_is_reached(campaign: Campaign) -> None:
 
 
 def test_j_is_the_contracts_and_free_of_offsets(campaign: Campaign) -> None:
-    problem, records = posed(campaign)
+    problem, records = set_up_search(campaign)
     x = jnp.array([p.transform.inverse(SHIP_TRUE[p.label]) for p in problem.space.free])
-    fit = Fit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
-    run(fit)
+    fit = DecayFit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
+    run_fit(fit)
     at = np.asarray(fit.unknowns.shared)[None]
     task = Task(problem, records, fit.unknowns.own, Budget())
     # its prior keeps the fit's offset from the mean residual by next to nothing
@@ -152,15 +152,15 @@ def test_j_is_the_contracts_and_free_of_offsets(campaign: Campaign) -> None:
 
 
 def test_a_simulation_without_a_number_counts_as_a_bad_one(campaign: Campaign) -> None:
-    problem, records = posed(campaign)
+    problem, records = set_up_search(campaign)
     task = Task(problem, records, first_guess(records, problem.data), Budget())
     task.batch = 7
     x = np.array(problem.space.start)
     values = task.simulate(np.array([x, x * np.nan] * 5))  # two batches, the second one padded
-    assert (values[1::2] == BAD).all() and (values[::2] == values[0]).all() and values[0] < BAD
+    assert (values[1::2] == FAILED_OBJECTIVE).all() and (values[::2] == values[0]).all() and values[0] < FAILED_OBJECTIVE
     assert task.best == values[0] and task.simulations == 10
     bad = Task(problem, records, first_guess(records, problem.data) * np.nan, Budget())
-    assert bad.simulate(x[None])[0] == BAD and math.isinf(bad.best)
+    assert bad.simulate(x[None])[0] == FAILED_OBJECTIVE and math.isinf(bad.best)
 
 
 def test_descents_that_are_lost_are_given_up(campaign: Campaign) -> None:
@@ -171,7 +171,7 @@ def test_descents_that_are_lost_are_given_up(campaign: Campaign) -> None:
 
 
 def test_points_of_the_cube_are_shares_of_logarithmic_ranges(campaign: Campaign) -> None:
-    problem, _ = posed(campaign, factor=10.0)
+    problem, _ = set_up_search(campaign, factor=10.0)
     for share in (0.0, 0.25, 0.5, 1.0):
         values = problem.space.values(jnp.asarray(coordinates(problem.space, np.full((1, 3), share))[0]))
         for label, value in values.items():
@@ -192,8 +192,8 @@ def test_ranges_keep_to_what_is_given_and_what_is_physical(campaign: Campaign) -
 
 
 def test_batches_are_even() -> None:
-    assert [even(n) for n in (1, 11, 36, 45, 64, 99, 165)] == [1, 11, 36, 23, 32, 33, 33]
-    found = {name: method().together(11) for name, method in METHODS.items()}
+    assert [even_batch(n) for n in (1, 11, 36, 45, 64, 99, 165)] == [1, 11, 36, 23, 32, 33, 33]
+    found = {name: method().batch_size(11) for name, method in METHODS.items()}
     assert found == {"multistart": 32, "cma-es": 11, "ga": 33, "de": 33}
 
 

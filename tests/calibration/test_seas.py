@@ -11,12 +11,12 @@ from ruamel.yaml import YAML
 
 from benchmarks.reference_waves import WaveModel, Waves, march
 from calibration.campaign.load_campaign import load_campaign
-from calibration.campaign.runs import Run, evenly, runs
+from calibration.campaign.runs import Run, on_even_clock, runs
 from calibration.commands.calibrate_command import simulate_campaign
 from calibration.fitting.decay_fit import calibrate
-from calibration.residuals.measured_seas import MISMATCH, Options, sea_of
+from calibration.residuals.measured_seas import MAX_MISMATCH, Options, sea_of
 from calibration.residuals.sea_errors import bands_of
-from calibration.results.applied_calibration import applied
+from calibration.results.applied_calibration import apply_calibration
 from jaxhydro.cli.options import results_folder
 from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError
@@ -128,7 +128,7 @@ def test_a_made_run_comes_back(results):
     assert heights["simulated"] == pytest.approx(heights["measured"], rel=1e-3)
     assert about["start"] == pytest.approx(40, abs=STEP)
     (sea,) = found["seas"]
-    assert sea["mismatch"] < MISMATCH and sea["gauge"] == pytest.approx(GAUGE) and found["warnings"] == []
+    assert sea["mismatch"] < MAX_MISMATCH and sea["gauge"] == pytest.approx(GAUGE) and found["warnings"] == []
 
 
 def test_what_is_written(results):
@@ -226,7 +226,7 @@ def test_the_clock_behind_rounded_times():
     true = 9000 + 0.83666 * np.arange(2000)
     written = np.round(true, 1)
     kept = np.delete(np.arange(2000), [700, 701, 702])
-    time, values, missing = evenly(written[kept], 2.0 * kept, "f", "s")
+    time, values, missing = on_even_clock(written[kept], 2.0 * kept, "f", "s")
     assert missing == 3 and len(time) == 2000
     np.testing.assert_allclose(time, true, atol=0.01)
     np.testing.assert_allclose(values, 2.0 * np.arange(2000))
@@ -238,7 +238,7 @@ def test_a_record_that_second_order_does_not_follow():
     wave = 4.5 * np.cos(2 * np.pi * 40 / 600 * time) + 1.2 * np.cos(2 * np.pi * 290 / 600 * time + 1)
     run = Run("steep.csv", time, wave, (0.0, 0.0), 0.0, (), ())
     made = sea_of(run, Environment(1025.0, 200.0, 9.81), Options(cutoff=0.6))
-    assert made.mismatch > MISMATCH
+    assert made.mismatch > MAX_MISMATCH
     assert any("steep.csv" in note and f"{100 * made.mismatch:.2g} %" in note for note in made.notes)
     made = sea_of(run, Environment(1025.0, 200.0, 9.81), Options(order=1, cutoff=0.1))
     assert made.mismatch == 0 and any("of the wave record's variance" in note for note in made.notes)
@@ -269,13 +269,13 @@ def saved(folder, **more):
 def test_values_of_another_campaign(tmp_path):
     """Hull and damping are taken, its mooring is not; what its records did not determine is named."""
     model = load_model(HULL)
-    used = applied(saved(tmp_path), model, "this hull")
-    assert used.values == {"column.Ca_t": 1.4} and used.left == ("mooring.line1.stiffness",)
-    assert used.vague == ("column.Ca_t",) and float(used.model.values["column.Ca_t"]) == 1.4
+    used = apply_calibration(saved(tmp_path), model, "this hull")
+    assert used.values == {"column.Ca_t": 1.4} and used.not_used == ("mooring.line1.stiffness",)
+    assert used.undetermined == ("column.Ca_t",) and float(used.model.values["column.Ca_t"]) == 1.4
     assert used.model.values["mooring.line1.stiffness"] == model.values["mooring.line1.stiffness"]
-    assert not applied(saved(tmp_path), model, "another hull").left
+    assert not apply_calibration(saved(tmp_path), model, "another hull").not_used
     with pytest.raises(InputError, match=r"hul\.Ca_t"):
-        applied(saved(tmp_path, **{"hul.Ca_t": 1.0}), model, "this hull")
+        apply_calibration(saved(tmp_path, **{"hul.Ca_t": 1.0}), model, "this hull")
 
 
 def test_bands():

@@ -12,13 +12,13 @@ import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.shooting_fit import ShootingFit, objective
-from calibration.identifiability.standard_deviations import memory
+from calibration.identifiability.standard_deviations import correlated_samples
 from calibration.parameters.space import parameter_space
 from calibration.residuals.decays import Unknowns
 from calibration.residuals.measured_seas import Options, seas_of, with_diffraction
-from calibration.residuals.seas import pose_in_waves
-from calibration.residuals.shooting import shoot
-from calibration.residuals.stretches import stretches, walk
+from calibration.residuals.seas import set_up_waves
+from calibration.residuals.shooting import simulate_blocks
+from calibration.residuals.stretches import run_segments, simulate_segments
 from jaxhydro.dynamics.integrate import clock
 from jaxhydro.errors import InputError
 from jaxhydro.platform.build import build
@@ -77,7 +77,9 @@ def campaign(tmp_path_factory):
     first = load_campaign(folder)
     model = with_diffraction(build(first.platform), OPTIONS)
     ((run, sea),) = seas_of(first, model.environment, OPTIONS)
-    ((_, found, _),) = walk(model, run, stretches(run, run.records, model, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25)
+    ((_, found, _),) = simulate_segments(
+        model, run, run_segments(run, run.records, model, OPTIONS.low, OPTIONS.cutoff), sea.sea, 0.25
+    )
     write(*np.asarray(found.response.position)[:, [0, 2]].T)
     return load_campaign(folder)
 
@@ -92,7 +94,7 @@ def fit_of(campaign, seas, values) -> ShootingFit:
     space = parameter_space(declared, LABELS)
 
     def pose(model):
-        return pose_in_waves(model, seas, space, OPTIONS, from_rest=True, scale=1.0, step=0.25, objective="blocks")
+        return set_up_waves(model, seas, space, OPTIONS, from_rest=True, scale=1.0, step=0.25, objective="blocks")
 
     return ShootingFit(pose, declared, lambda *_: None)
 
@@ -118,11 +120,11 @@ def test_blocks_of_the_truth_are_the_record(campaign, seas) -> None:
     own = true_states(fit)
     assert np.abs(own).max() < 0.7 and np.median(np.abs(own)) < 0.1
     fit.unknowns = Unknowns(fit.unknowns.shared, own)
-    error, inside = fit.left()
+    error, inside = fit.residual_rms()
     assert inside and error < 1e-3 and max(fit.jumps.values()) < 2e-3
     assert list(fit.jumps) == list(DOFS)
     for i, group in enumerate(fit.groups):
-        assert_allclose(group, np.asarray(shoot(fit.problem, fit.unknowns).residual)[:, i][present[:, i]])
+        assert_allclose(group, np.asarray(simulate_blocks(fit.problem, fit.unknowns).residual)[:, i][present[:, i]])
 
 
 def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
@@ -138,7 +140,7 @@ def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
         return Unknowns(z[:4], z[4:].reshape(at.own.shape))
 
     def whole(z) -> np.ndarray:
-        residual, own = shoot(fit.problem, unflat(z)).residual, unflat(z).own * jnp.sqrt(weight[:, -1:])
+        residual, own = simulate_blocks(fit.problem, unflat(z)).residual, unflat(z).own * jnp.sqrt(weight[:, -1:])
         return np.concatenate([residual.ravel(), own.ravel(), ridge * (z[:4] - start.shared)])
 
     def condensed_rows(z) -> jnp.ndarray:
@@ -152,16 +154,16 @@ def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
     assert len(dense) == 2 + 2 + at.own.size
     assert_allclose(found, dense, rtol=1e-5, atol=1e-6)
     fit.unknowns, fit.products = at, np.asarray(objective(at, args)[1])
-    fit.left()
+    fit.residual_rms()
     deviation = fit.identifiability()[0].deviation()
     priors = np.concatenate([np.asarray(ridge) ** 2, np.repeat(np.asarray(weight)[:, -1], 4)])  # what they add to the matrix
     width = np.concatenate([fit.width, np.ones(len(dense) - 2)])
-    rows = matrix[: shoot(fit.problem, at).residual.size].reshape(len(at.own), 2, -1, len(dense))
+    rows = matrix[: simulate_blocks(fit.problem, at).residual.size].reshape(len(at.own), 2, -1, len(dense))
     parts = [np.einsum("btk,btl->kl", rows[:, i], rows[:, i]) for i in range(2)]
     inverse = np.linalg.inv(matrix.T @ matrix)
-    count = sum(len(group) / memory(group) for group in fit.groups)
+    count = sum(len(group) / correlated_samples(group) for group in fit.groups)
     factor = count / (count - np.trace(inverse @ sum(parts)))
-    scatter = sum(factor * np.mean(group**2) * memory(group) * part for group, part in zip(fit.groups, parts))
+    scatter = sum(factor * np.mean(group**2) * correlated_samples(group) * part for group, part in zip(fit.groups, parts))
     covariance = inverse @ (scatter + np.diag(width**2 * priors**2)) @ inverse
     assert_allclose(deviation, np.sqrt(np.diag(covariance))[:2], rtol=1e-5)
 

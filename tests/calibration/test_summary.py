@@ -6,12 +6,12 @@ from typing import Any
 import pytest
 
 from calibration.campaign.checks import Finding
-from calibration.campaign.grouped_findings import grouped
+from calibration.campaign.grouped_findings import group_findings
 from calibration.formatting import counted, percent_span, readable_unit
 from calibration.report import tables
 from calibration.report.summary import CalibrationSummary, calibration_sentence, summary_of
 from calibration.report.sweep_page import SweepSummary, sweep_sentence
-from calibration.results.read_calibration import Saved
+from calibration.results.read_calibration import SavedCalibration
 from calibration.results.read_uncertainty import IntervalSummary, interval_sentence
 
 
@@ -28,9 +28,9 @@ def saved(
     parameters: dict[str, dict[str, Any]],
     converged: bool = True,
     **more: Any,
-) -> Saved:
+) -> SavedCalibration:
     """A calibration.json: tests by id as (kind, use, error)."""
-    return Saved.model_validate(
+    return SavedCalibration.model_validate(
         {
             "campaign": "basin",
             "jaxhydro": "0",
@@ -46,7 +46,7 @@ def saved(
     )
 
 
-def said(one: Saved) -> str:
+def said(one: SavedCalibration) -> str:
     return calibration_sentence(summary_of(one, "calibration.json"))
 
 
@@ -137,7 +137,7 @@ def finding(test: str, message: str = "no zero", channel: str = "pitch") -> Find
 def test_equal_warnings_are_said_once() -> None:
     """Of one channel, over tests; others as before."""
     several = [finding(f"t-{i}") for i in range(9)] + [finding("t-1", "a gap"), finding("t-1", channel="surge")]
-    many, gap, surge = grouped(several)
+    many, gap, surge = group_findings(several)
     assert str(many) == f"9 tests ({', '.join(f't-{i}' for i in range(8))} and t-8), channel pitch: no zero"
     assert str(gap) == str(several[9]) == "t-1.csv, test t-1, channel pitch: a gap" and str(surge) == str(several[10])
     heads, rows = tables.findings(several)
@@ -147,7 +147,7 @@ def test_equal_warnings_are_said_once() -> None:
         ("t-1", "t-1.csv", "pitch", "a gap"),
         ("t-1", "t-1.csv", "surge", "no zero"),
     ]
-    (two,) = grouped([finding("a"), finding("b"), finding("b")])
+    (two,) = group_findings([finding("a"), finding("b"), finding("b")])
     assert str(two) == "tests a and b, channel pitch: no zero"
 
 
@@ -155,17 +155,17 @@ def test_warnings_that_differ_by_numbers_alone_are_one() -> None:
     """With the spans of these; not where they are of an instant, nor where the digits are part of a name."""
     each = (("a", -0.149), ("b", -0.0885), ("c", -0.108))
     drifts = [finding(id, f"its mean drifts by {x:.3g} m over 100 s") for id, x in each]
-    (one,) = grouped(drifts)
+    (one,) = group_findings(drifts)
     assert one.message == "its mean drifts by -0.149 to -0.0885 m over 100 s" and one.tests == ("a", "b", "c")
     spikes = [replace(finding(id, f"a spike at {t} s"), time=float(t)) for id, t in (("a", 10), ("b", 20), ("c", 20))]
-    assert [(one.message, one.tests) for one in grouped(spikes)] == [
+    assert [(one.message, one.tests) for one in group_findings(spikes)] == [
         ("a spike at 10 s", ("a",)),
         ("a spike at 20 s", ("b", "c")),
     ]
     shared = [finding(id, f"the fitted test surge-{n} has samples of it") for id, n in (("a", 1), ("b", 2))]
-    assert len(grouped(shared)) == 2
+    assert len(group_findings(shared)) == 2
     tiny = [finding(id, f"written to {x} s, 12.5 in all") for id, x in (("a", "1e-05"), ("b", "0.01"))]
-    assert grouped(tiny)[0].message == "written to 1e-05 to 0.01 s, 12.5 in all"
+    assert group_findings(tiny)[0].message == "written to 1e-05 to 0.01 s, 12.5 in all"
 
 
 # --- the truth
@@ -175,7 +175,7 @@ def test_calibrated_values_beside_true_ones() -> None:
     truth = {"a": 1.05, "b": 1.3, "c": 2.0, "d": 3.0, "e": 0.0}
     parameters = SURE | {"c": coefficient(sd=None), "e": coefficient(0.01, 0.02)}
     one = saved({}, parameters, truth=truth)
-    _, rows = tables.against(one)
+    _, rows = tables.comparison_with_truth(one)
     assert [row[0] for row in rows] == list(truth) and rows[0][4:] == ("-4.8 %", "-0.5 sd")
     assert rows[2][2:] == ("not determined", "", "–", "–") and rows[3][2] == "not calibrated" and rows[4][4] == "–"
     assert tables.agreement_with_truth(one) == (

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from calibration.campaign.manifest import read_manifest
 from calibration.campaign.records import load_records
-from calibration.campaign.tracked_point import at_reference
+from calibration.campaign.tracked_point import move_to_reference
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
 from jaxhydro.loads import SensorReference
@@ -66,7 +66,7 @@ def test_motions_are_those_of_the_reference_point(tmp_path) -> None:
 def test_a_point_aside() -> None:
     """y too: against the rotation by hand, for a yaw of 90 degrees."""
     values = {"surge": np.array([-3.0]), "sway": np.array([-1.0]), "yaw": np.array([np.pi / 2])}
-    found = at_reference(values, (1.0, 2.0, 5.0))  # (1, 2) goes to (-2, 1)
+    found = move_to_reference(values, (1.0, 2.0, 5.0))  # (1, 2) goes to (-2, 1)
     assert_allclose([found["surge"], found["sway"], found["yaw"]], [[0.0], [0.0], [np.pi / 2]], atol=1e-12)
 
 

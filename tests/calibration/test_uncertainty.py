@@ -15,12 +15,12 @@ from test_calibration import MEASURED, SHIP, SHIP_NOISE, SHIP_TRUE, measured, ro
 
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.fitting.decay_fit import calibrate
-from calibration.identifiability.residual_spectra import Colour, coloured, colours, periodogram, whittle
+from calibration.identifiability.residual_spectra import NoiseColour, fit_colours, periodogram, score_covariance, whittle
 from calibration.plots.uncertainty_figures import draws_figure, profile_figure
 from calibration.uncertainty import nuts as sampling
 from calibration.uncertainty.bootstrap import bootstrap_blocks, bootstrap_repeats, repeats
 from calibration.uncertainty.likelihood import Likelihood, likelihood
-from calibration.uncertainty.nuts import potential, sample, whitening
+from calibration.uncertainty.nuts import potential_energy, sample, whitening
 from calibration.uncertainty.profile import Profile, profile
 from jaxhydro.errors import InputError
 from jaxhydro.plots.style import style
@@ -32,15 +32,15 @@ N, STEP = 400, 0.1
 # spectra of residuals
 
 
-def noise(kind: str, random: np.random.Generator, n: int = N) -> tuple[np.ndarray, Colour]:
+def noise(kind: str, random: np.random.Generator, n: int = N) -> tuple[np.ndarray, NoiseColour]:
     """(n,) of unit variance and its colour."""
     e = random.standard_normal(n + 4000)
     if kind == "white":
-        return e[-n:], Colour(1.0, 0.0, 0.0, 1.0)
+        return e[-n:], NoiseColour(1.0, 0.0, 0.0, 1.0)
     keep = math.exp(-STEP / 0.8)
     x = lfilter([math.sqrt(1 - keep**2)], [1.0, -keep], e)[-n:]
     width = 1 / (2 * math.pi * 0.8)
-    return x, Colour(0.0, (1 + keep) / (1 - keep) / 2, 1e-6, width)
+    return x, NoiseColour(0.0, (1 + keep) / (1 - keep) / 2, 1e-6, width)
 
 
 @pytest.mark.parametrize("kind", ["white", "drifting"])
@@ -66,9 +66,9 @@ def test_groups_share_a_colour_unless_they_differ() -> None:
     white, slow = (
         [periodogram(noise(kind, random)[0], np.zeros(N // 2 + 1), STEP) for _ in range(3)] for kind in ("white", "drifting")
     )
-    (one, _), (other, _) = colours([slow[:1], slow[1:]])
+    (one, _), (other, _) = fit_colours([slow[:1], slow[1:]])
     assert one == other and one.peak > 1
-    (one, _), (other, _) = colours([white, slow])
+    (one, _), (other, _) = fit_colours([white, slow])
     assert one.peak == 0 and other.peak > 1
 
 
@@ -78,7 +78,7 @@ def test_a_score_of_white_and_of_lasting_noise_has_its_own_variance() -> None:
     slope = np.exp(-0.02 * t[:, None]) * np.stack([np.cos(1.2 * t), np.sin(1.2 * t)], axis=1)
     for kind in ("white", "drifting"):
         draws = np.array([noise(kind, random)[0] @ slope for _ in range(3000)])
-        predicted = coloured(slope, 1.0, noise(kind, random)[1], STEP)
+        predicted = score_covariance(slope, 1.0, noise(kind, random)[1], STEP)
         np.testing.assert_allclose(np.diag(predicted), draws.var(axis=0), rtol=0.15)
 
 
@@ -240,7 +240,7 @@ def test_no_repeats_is_told(ship: Likelihood, tmp_path: Path, monkeypatch: pytes
 def test_the_energys_gradient_is_that_of_the_sum_of_squares(ship: Likelihood) -> None:
     root = whitening(ship, ship.scale())[0]
     z = jnp.asarray(ship.estimate + root @ np.random.default_rng(0).standard_normal(len(root)))
-    both = jax.jit(jax.value_and_grad(potential(ship, ship.scale())))
+    both = jax.jit(jax.value_and_grad(potential_energy(ship, ship.scale())))
     value, slope = both(z)
     for direction in np.random.default_rng(1).standard_normal((2, len(root))) @ root.T:
         ends = [float(both(z + sign * 1e-3 * direction)[0]) for sign in (1, -1)]
@@ -260,7 +260,7 @@ def test_stretched_draws_have_the_sandwichs_covariance(which: str, request) -> N
 @pytest.mark.parametrize("least", [1, 10**6])
 def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) -> None:
     """What all chains have is kept where it is enough; else the stop goes on up."""
-    monkeypatch.setattr(sampling, "LEAST", least)
+    monkeypatch.setattr(sampling, "MIN_DRAWS", least)
 
     def step(state):
         time.sleep(0.002)
@@ -271,7 +271,7 @@ def test_chains_that_are_stopped(monkeypatch: pytest.MonkeyPatch, least: int) ->
             raise KeyboardInterrupt
 
     begun = [SimpleNamespace(z=np.full(2, 1000.0 * k), diverging=False) for k in range(3)]
-    walk = partial(sampling._walked, step, begun, 5, 4000)
+    walk = partial(sampling._run_chains, step, begun, 5, 4000)
     if least > 1:
         with pytest.raises(KeyboardInterrupt):
             walk(stop)

@@ -13,7 +13,7 @@ from test_outputs import Page
 
 from calibration.report.write_report import write_report
 from calibration.results import write_uncertainty as uncertainty_outputs
-from calibration.results.result_folder import DIAGNOSIS, UNCERTAINTY
+from calibration.results.result_folder import DIAGNOSIS_FILE, UNCERTAINTY_FILE
 from calibration.results.write_uncertainty import write_uncertainty
 from jaxhydro.errors import InputError
 
@@ -64,7 +64,7 @@ def alone(one: dict[str, Any]) -> dict[str, Any]:
 
 
 def page_of(folder: Path, **changes: Any) -> Page:
-    (folder / UNCERTAINTY).write_text(json.dumps(CONTENT | changes), encoding="utf-8")
+    (folder / UNCERTAINTY_FILE).write_text(json.dumps(CONTENT | changes), encoding="utf-8")
     return Page(write_report(folder).read_text(encoding="utf-8"))
 
 
@@ -174,11 +174,11 @@ def test_the_page_escapes_what_comes_from_files(tmp_path: Path) -> None:
 )
 def test_a_broken_file_is_told(tmp_path: Path, content: Any, said: str) -> None:
     """Which file, which key, what was expected and what was found; no page is made."""
-    (tmp_path / UNCERTAINTY).write_text(content if isinstance(content, str) else json.dumps(content))
+    (tmp_path / UNCERTAINTY_FILE).write_text(content if isinstance(content, str) else json.dumps(content))
     with pytest.raises(InputError) as caught:
         write_report(tmp_path)
-    assert said in str(caught.value) and str(tmp_path / UNCERTAINTY) in str(caught.value)
-    assert [path.name for path in tmp_path.iterdir()] == [UNCERTAINTY]
+    assert said in str(caught.value) and str(tmp_path / UNCERTAINTY_FILE) in str(caught.value)
+    assert [path.name for path in tmp_path.iterdir()] == [UNCERTAINTY_FILE]
 
 
 def test_the_command_makes_the_page_and_a_new_result_takes_it_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -188,5 +188,5 @@ def test_the_command_makes_the_page_and_a_new_result_takes_it_away(tmp_path: Pat
     assert "report.html" in run("report", tmp_path / "out") and (tmp_path / "out" / "report.html").exists()
     (tmp_path / "out" / "notes.txt").write_text("keep")
     write_uncertainty(found, tmp_path / "out", figures=False)
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["notes.txt", UNCERTAINTY]
-    assert f"{DIAGNOSIS}, {UNCERTAINTY} or sweep.json" in run("report", tmp_path, status=2)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["notes.txt", UNCERTAINTY_FILE]
+    assert f"{DIAGNOSIS_FILE}, {UNCERTAINTY_FILE} or sweep.json" in run("report", tmp_path, status=2)

@@ -13,7 +13,7 @@ from fake_calibration import small
 from fake_diagnosis import fake_diagnosis
 from test_uncertainty_page import CONTENT
 
-from calibration.report.web_page import SHORT, breakable, framed, result_box, table
+from calibration.report.web_page import SHORT_CELL, breakable, framed, result_box, table
 from calibration.report.write_report import write_report
 from calibration.results.write_calibration import write_calibration
 from calibration.results.write_diagnosis import write_diagnosis
@@ -31,7 +31,7 @@ document.getElementById('o').textContent = 'RESULT' + JSON.stringify({client: ro
 
 def test_only_numbers_and_short_cells_stay_on_one_line() -> None:
     """Free text in any column wraps."""
-    text = table(["Effect", "Size", "Why not"], [[LONG, "1.5 ± 0.1", LONG], ["short", "2", "x" * SHORT]], 1, 2)
+    text = table(["Effect", "Size", "Why not"], [[LONG, "1.5 ± 0.1", LONG], ["short", "2", "x" * SHORT_CELL]], 1, 2)
     assert re.findall(r"<td([^>]*)>", text) == [
         ' data-label="Effect"',
         ' class=number data-label="Size"',

@@ -43,7 +43,7 @@ def test_platforms_keep_their_names_at_80_columns(monkeypatch: pytest.MonkeyPatc
 
 def test_labels_are_whole_in_a_table_that_does_not_fit(tmp_path: Path, monkeypatch, capsys) -> None:
     saved = read_saved(write_calibration(small(), tmp_path, figures=False, truth=TRUTH))
-    for what in (tables.parameters(saved), tables.against(saved)):
+    for what in (tables.parameters(saved), tables.comparison_with_truth(saved)):
         text = printed(80, monkeypatch, capsys, *what)
         assert max(map(len, text.splitlines())) <= 80
         assert set(saved.baseline.parameters) <= {line.split()[0] for line in text.splitlines() if line.split()}

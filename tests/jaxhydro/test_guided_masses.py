@@ -14,9 +14,9 @@ from scipy.integrate import solve_ivp
 
 import jaxhydro as jh
 from calibration import calibrate, load_campaign
-from calibration.identifiability.directions import family
+from calibration.identifiability.directions import parameter_family
 from calibration.parameters.space import default_free, parameter_space
-from calibration.results.applied_calibration import OF_CAMPAIGN
+from calibration.results.applied_calibration import CAMPAIGN_PARAMETERS
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
 from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import GuidedMasses
@@ -185,7 +185,11 @@ def test_a_decay_finds_the_mass(tmp_path: Path) -> None:
     label = "guided_masses.carriage.mass"
     damped = document(carriage("x"), linear_damping={"B11": 2e4, "B55": 4e6})
     model = jh.build(validate(Platform, damped, "platform.yaml"))
-    assert label not in default_free(model, ["surge"]) and label.startswith(OF_CAMPAIGN) and family(label) == "inertia"
+    assert (
+        label not in default_free(model, ["surge"])
+        and label.startswith(CAMPAIGN_PARAMETERS)
+        and parameter_family(label) == "inertia"
+    )
     assert parameter_space(model, [label]).moves_equilibrium
     times = np.arange(0.0, 150.0, 0.5)
     motion = jh.free_decay(model.with_values({label: 3.3e5}), {"surge": 5.0}, times, step=0.1)

@@ -18,7 +18,7 @@ from calibration.decay_analysis.model_damping import model_damping
 from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.listed import Scales
-from calibration.parameters.space import choose
+from calibration.parameters.space import match_free_labels
 from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import WaveExcitation
 from jaxhydro.loads.sea_state_law import SeaStateLaw
@@ -240,7 +240,7 @@ def test_free_asked_for_by_another_label_is_told() -> None:
     _, model = platforms()
     for key in ("free", "fixed"):
         with pytest.raises(InputError, match=rf"calibrate\.{key}: .*found leg\.Cd_t\. It is shared: column\.Cd_t\."):
-            choose(model, ["surge"], **{key: ["leg.Cd_t"]})
+            match_free_labels(model, ["surge"], **{key: ["leg.Cd_t"]})
 
 
 # --- mistakes

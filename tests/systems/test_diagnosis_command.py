@@ -15,12 +15,12 @@ from test_outputs import Page, changed
 from typer.testing import CliRunner
 
 import jaxhydro as jh
-from calibration.campaign.strip_conventions import USUAL, Strips
+from calibration.campaign.strip_conventions import DEFAULT_STRIPS, StripConventions
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.fitting.decay_fit import Interrupted, Progress
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import Diverged, Options
-from calibration.results.applied_calibration import applied
+from calibration.results.applied_calibration import apply_calibration
 from calibration.results.read_calibration import read_saved
 from calibration.results.read_diagnosis import read_diagnosis
 from calibration.results.write_calibration import write_calibration
@@ -172,26 +172,36 @@ def test_simulations_have_the_effects_that_were_found(written: Path, tmp_path: P
     model = jh.load_model(str(DEMO / "platform.yaml"))
     platform = "VolturnUS-S"
     path = saved_with(written, tmp_path, {"column.Ca_t": 1.5, FORCE: 81000.0, "mass_properties.mass": 1e5}, platform)
-    used = applied(path, model, platform)
+    used = apply_calibration(path, model, platform)
     assert float(used.model.values[FORCE]) == 81000.0 and float(used.model.values["column.Ca_t"]) == 1.5
     assert len(used.model.loads) == len(model.loads) + 2 and read_saved(tmp_path).key == "augmented"
-    elsewhere = applied(path, model, "another")
-    assert elsewhere.left == ("mass_properties.mass",) and FORCE in elsewhere.values
+    elsewhere = apply_calibration(path, model, "another")
+    assert elsewhere.not_used == ("mass_properties.mass",) and FORCE in elsewhere.values
     found = cli._model(str(DEMO / "platform.yaml"), path, None, None)
     assert float(found.values["mass_properties.mass"]) == 1e5 and FORCE in capsys.readouterr().out
 
 
 def test_simulations_have_the_strips_and_seas_that_were_taken(result: Diagnosis, tmp_path, capsys, monkeypatch) -> None:
     """In words of a platform file, and said where it says otherwise; seas are a campaign's."""
-    simpler, seas = Strips(directions="earth", drag_speed="component", centripetal=False), Options(acting="at the origin")
+    simpler, seas = (
+        StripConventions(directions="earth", drag_speed="component", centripetal=False),
+        Options(acting="at the origin"),
+    )
     write_diagnosis(replace(result, strips=simpler, seas=seas), tmp_path, figures=False)
     model, path = jh.load_model(str(DEMO / "platform.yaml")), tmp_path / "diagnosis.json"
     (content := json.loads(path.read_text()))["augmented"]["parameters"] = {"column.Ca_t": {"value": 1.5, "unit": "-"}}
     path.write_text(json.dumps(content))
-    used = applied(path, model, "VolturnUS-S")
-    assert (used.strips, used.seas) == (simpler, seas) and Strips.of(used.model) == simpler and Strips.of(model) == USUAL
-    assert applied(path, used.model, "VolturnUS-S").strips is None and Strips.of(USUAL.given_to(used.model)) == USUAL
-    assert Strips.of(cli._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
+    used = apply_calibration(path, model, "VolturnUS-S")
+    assert (
+        (used.strips, used.seas) == (simpler, seas)
+        and StripConventions.of(used.model) == simpler
+        and StripConventions.of(model) == DEFAULT_STRIPS
+    )
+    assert (
+        apply_calibration(path, used.model, "VolturnUS-S").strips is None
+        and StripConventions.of(DEFAULT_STRIPS.applied_to(used.model)) == DEFAULT_STRIPS
+    )
+    assert StripConventions.of(cli._model(str(DEMO / "platform.yaml"), path, None, None)) == simpler
     assert "directions: earth, drag_speed: component, centripetal: false" in capsys.readouterr().out
     begun: list[Any] = []
     monkeypatch.setattr(
@@ -216,7 +226,7 @@ def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: P
     model = jh.load_model(str(DEMO / "platform.yaml"))
     path = saved_with(written, tmp_path, {"column.Ca_t": 1.5, FORCE: 81000.0}, "VolturnUS-S")
     with pytest.raises(InputError, match=r"augmented\.parameters: expected parameters of this hull .* found 'coulomb_friction"):
-        applied(path, model, "this hull")
+        apply_calibration(path, model, "this hull")
     assert asked == [[FORCE]]
 
 
@@ -224,4 +234,4 @@ def test_effects_of_another_version_are_told(written: Path, tmp_path: Path) -> N
     path = saved_with(written, tmp_path, {"ghosts.surge": 1.0}, "VolturnUS-S")
     model = jh.load_model(str(DEMO / "platform.yaml"))
     with pytest.raises(InputError, match="effects that this version knows, found no effect 'ghosts'"):
-        applied(path, model, "VolturnUS-S")
+        apply_calibration(path, model, "VolturnUS-S")

@@ -23,11 +23,11 @@ from calibration.discovery.set_up import pose
 from calibration.parameters.space import parameter_space
 from calibration.residuals.decays import Unknowns
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
-from calibration.residuals.seas import look, pose_in_waves
-from calibration.residuals.shooting import pose_blocks, shoot
-from calibration.residuals.static import pose_offsets
+from calibration.residuals.seas import residuals_and_reach, set_up_waves
+from calibration.residuals.shooting import set_up_blocks, simulate_blocks
+from calibration.residuals.static import set_up_offsets
 from calibration.result import Calibration, Estimate
-from calibration.results.applied_calibration import applied
+from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.dynamics.integrate import Grid
 from jaxhydro.dynamics.model import Model
@@ -152,11 +152,11 @@ def test_a_campaign_is_compared_with_what_sensors_read(folder: Path) -> None:
     assert errors(with_sensors(declared, point=(0.0, 0.0)))[0] > 0.1  # of surge, by the point's depth and pitch
     space = parameter_space(true, ["linear_damping.B33"])
     how = {"from_rest": False, "scale": 1.0, "step": 0.1}
-    problem = pose_in_waves(true, seas, space, OPTIONS, objective="motion", **how)
-    groups, inside = look(problem, space.start)
+    problem = set_up_waves(true, seas, space, OPTIONS, objective="motion", **how)
+    groups, inside = residuals_and_reach(problem, space.start)
     assert inside and len(groups) == 3
     assert max(float(jnp.linalg.norm(group)) for group in groups) < 0.01
-    blocks = pose_blocks(pose_in_waves(true, seas, space, OPTIONS, objective="blocks", **how), 15.0)
+    blocks = set_up_blocks(set_up_waves(true, seas, space, OPTIONS, objective="blocks", **how), 15.0)
     (cut,) = blocks.blocks
     rates = jax.vmap(true.position_rate)(cut.state.position, cut.state.velocity)
     shown = [jax.jvp(true.seen, (q,), (v,)) for q, v in zip(cut.state.position, rates)]
@@ -166,7 +166,7 @@ def test_a_campaign_is_compared_with_what_sensors_read(folder: Path) -> None:
     own = ((jnp.stack([position, rate], axis=1) - cut.smooth) / cut.loose).reshape(len(rate), -1)
     assert jnp.abs(own).max() < 1.0  # the record has nearly these states, where it is read a lag later
     shared = jnp.concatenate([space.start, jnp.zeros(blocks.observations)])
-    left = shoot(blocks, Unknowns(shared, own)).residual
+    left = simulate_blocks(blocks, Unknowns(shared, own)).residual
     assert np.sqrt(float((left**2).sum()) / blocks.observations) < 0.01
 
 
@@ -177,7 +177,7 @@ def test_a_static_test_is_held_where_the_tracked_point_says(body: Model) -> None
     truth = np.asarray(held_at(body, 0, jnp.asarray(3.0)))
     reading = np.asarray(sensed.seen(jnp.asarray(truth)))
     record = SimpleNamespace(degree_of_freedom="surge", values={name: reading[[DOFS.index(name)]] for name in CHANNELS})
-    offsets = pose_offsets(sensed, [record], parameter_space(sensed, ["linear_damping.B33"]), from_rest=False)
+    offsets = set_up_offsets(sensed, [record], parameter_space(sensed, ["linear_damping.B33"]), from_rest=False)
     assert_allclose(eqx.filter_jit(lambda one: one.readings(one.space.start))(offsets)[0], reading, atol=1e-9)
 
 
@@ -228,7 +228,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         found = fake_diagnosis(baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name)
         write_diagnosis(found, tmp_path / effect, figures=False)
         said = json.loads((tmp_path / effect / "diagnosis.json").read_text())["augmented"]["error"]
-        used = applied(tmp_path / effect / "diagnosis.json", campaign.model, campaign.platform.name)
+        used = apply_calibration(tmp_path / effect / "diagnosis.json", campaign.model, campaign.platform.name)
         assert set(values) <= set(used.values)
         assert simulate_campaign(folder, tmp_path / "out", calibration=tmp_path / effect / "diagnosis.json")
         simulated = json.loads((tmp_path / "out" / "comparison.json").read_text())["error"]

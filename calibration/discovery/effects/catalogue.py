@@ -10,7 +10,7 @@ from calibration.discovery.effects.catalogue_of_motions import of_motion
 from calibration.discovery.effects.listed import Listed, Scales
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, size
 from calibration.discovery.effects.reflection_start import AT_ONCE, delays
-from calibration.parameters.space import Free
+from calibration.parameters.space import FreeParameter
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS, STANDARD_GRAVITY
 from jaxhydro.loads import (
@@ -37,7 +37,7 @@ SHARE = 0.1  # of computed radiation or drift that is noticeable
 
 def catalogue(
     model: Model, scales: Mapping[str, Scales], waves: bool, wave_variance: float, step: float = 0.0
-) -> tuple[list[Candidate], dict[str, Free], dict[str, float]]:
+) -> tuple[list[Candidate], dict[str, FreeParameter], dict[str, float]]:
     """Candidates for the motions that `scales` has, their parameters, and what is noticeable of each of these.
 
     `step` (s) is that of simulations in waves, which has to follow what is looked for. Coordinates are values less null, so

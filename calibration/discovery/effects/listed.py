@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from calibration.discovery.effects.candidates import Candidate
-from calibration.parameters.space import Free
+from calibration.parameters.space import FreeParameter
 from calibration.parameters.transforms import LogInterval, Scaled
 from jaxhydro.environment import DOFS
 
@@ -50,7 +50,7 @@ class Listed:
 
     length: float = 1.0
     found: list[Candidate] = field(default_factory=list)
-    free: dict[str, Free] = field(default_factory=dict)
+    free: dict[str, FreeParameter] = field(default_factory=dict)
     units: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -59,13 +59,13 @@ class Listed:
         return math.sqrt(self.length)
 
     def linear(self, label: str, scale: float, null: float = 0.0) -> str:
-        self.free[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf)
+        self.free[label] = FreeParameter(label, null, Scaled(null, 1.0), 0.0, math.inf)
         self.units[label] = float(scale)
         return label
 
     def shape(self, label: str, start: float, lower: float, upper: float) -> str:
         transform = LogInterval(lower, upper)
-        self.free[label] = Free(label, start, transform, transform.inverse(start), 0.7)
+        self.free[label] = FreeParameter(label, start, transform, transform.inverse(start), 0.7)
         return label
 
     def add(self, effect: str, dof: str | None, amplitudes: Sequence[str], **more: Any) -> None:
