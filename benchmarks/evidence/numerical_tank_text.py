@@ -6,7 +6,7 @@ from typing import Any
 from benchmarks.evidence.common import TRUE, table
 from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT, setup
 from benchmarks.evidence.numerical_tank_truth import REACH
-from calibration.discovery.acceptance import LOST, TIMES
+from calibration.discovery.acceptance import MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO
 from calibration.discovery.effects.effect_names import called
 from calibration.formatting import listed, number, percent, quantity
 from calibration.report.diagnosis_words import plain
@@ -261,7 +261,7 @@ def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
     short = []
     if left:
         short.append(f"numerical tank: with what was found, the held-out sea is off by {', '.join(left)}")
-    if decay[1] > max(LOST, TIMES * decay[0]):
+    if decay[1] > max(MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO * decay[0]):
         short.append(
             f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "
             f"what was found, {percent(decay[0])} where the decays are fitted alone"

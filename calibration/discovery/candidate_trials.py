@@ -3,25 +3,25 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from calibration.discovery.acceptance import State, Verdict
+from calibration.discovery.acceptance import FitState, Verdict
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.effects.phase_shift_start import Afar
-from calibration.discovery.eliminated_least_squares import Predicted
-from calibration.discovery.linearisations import Look
+from calibration.discovery.effects.phase_shift_start import PhaseShiftStart
+from calibration.discovery.eliminated_least_squares import FirstOrderGain
+from calibration.discovery.linearisations import Linearisation
 
-ALIKE = 0.1  # of the best one's gain: what comes as near cannot be told from it
-SENSORS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
+INDISTINGUISHABLE_SHARE = 0.1  # of the best one's gain: what comes as near cannot be told from it
+SENSOR_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
 
 
-class Scored(NamedTuple):
+class ScoredCandidate(NamedTuple):
     """A candidate at its null, at the best of its shapes: what it would gain at first order, and the look that says so; where
     it may be, what it gains there, further off than first order tells; and values at which a refit begins, too, whatever is
     said at first order."""
 
     candidate: Candidate
-    predicted: Predicted
-    look: Look
-    afar: Afar | None = None
+    predicted: FirstOrderGain
+    look: Linearisation
+    afar: PhaseShiftStart | None = None
     begins: tuple[Mapping[str, float], ...] = ()
 
     @property
@@ -30,39 +30,39 @@ class Scored(NamedTuple):
         return max(self.predicted.fitted, self.afar.gain if self.afar else 0.0)
 
 
-class Tried(NamedTuple):
+class RefittedCandidate(NamedTuple):
     """A refit: where it ended, what it says, and what that is worth beside others; `score` is the first-order gain."""
 
     candidate: Candidate
     score: float
-    state: State
+    state: FitState
     verdict: Verdict
     worth: float
 
-    def like(self, best: "Tried") -> bool:
+    def like(self, best: "RefittedCandidate") -> bool:
         """Whether it cannot be told from another."""
-        return best.worth - self.worth < ALIKE * abs(best.worth)
+        return best.worth - self.worth < INDISTINGUISHABLE_SHARE * abs(best.worth)
 
 
-def in_order(good: Sequence[Tried]) -> list[Tried]:
+def in_order_of_belief(good: Sequence[RefittedCandidate]) -> list[RefittedCandidate]:
     """As they are to be believed: among those that cannot be told from the best one first what sensors make of a motion, then
     what has the fewest parameters; the others by what they are worth."""
     best = max(good, key=lambda one: one.worth, default=None)
 
-    def rank(one: Tried) -> tuple[float, ...]:
+    def rank(one: RefittedCandidate) -> tuple[float, ...]:
         if best is None or not one.like(best):
             return 1, -one.worth
-        return 0, one.candidate.effect not in SENSORS, len(one.candidate.labels), -one.worth
+        return 0, one.candidate.effect not in SENSOR_EFFECTS, len(one.candidate.labels), -one.worth
 
     return sorted(good, key=rank)
 
 
-class Found(NamedTuple):
+class AcceptedEffect(NamedTuple):
     """An effect's evidence: its first-order gain, the states before it was let in and after, the verdict, and what the records
     cannot tell from it."""
 
     score: float
-    before: State
-    after: State
+    before: FitState
+    after: FitState
     verdict: Verdict
     alike: tuple[str, ...]

@@ -16,7 +16,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES, WAVE
 from calibration.campaign.signals import peak_frequency
 from calibration.discovery.diagnosis import Effect, Evidence
-from calibration.discovery.diagnosis_conclusion import tests_of
+from calibration.discovery.diagnosis_conclusion import test_fits_at
 from calibration.formatting import listed
 from calibration.residuals.sea_errors import bands_of
 from calibration.result import Estimate
@@ -24,11 +24,13 @@ from calibration.result import Estimate
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
 
-AGAINST = -0.6  # correlation of what is measured with the model, in every fitted test, below which it is turned round
-SEEN = 5.0  # times the noise, that a motion has to be to say anything
+MAX_REVERSED_CORRELATION = (
+    -0.6
+)  # correlation of what is measured with the model, in every fitted test, below which it is turned round
+MIN_NOISE_RATIO = 5.0  # times the noise, that a motion has to be to say anything
 
 
-class Met(NamedTuple):
+class SignComparison(NamedTuple):
     """A motion in the waves of a test, as the declared model has it: correlation, and squares of the error as it is recorded
     and turned round."""
 
@@ -46,14 +48,14 @@ def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
     met = _met(campaign, search)
     fitted = [one for one in met if one.use == "fit"]
     told = list(dict.fromkeys(one.channel for one in fitted))
-    wrong = [name for name in told if all(one.correlation < AGAINST for one in fitted if one.channel == name)]
+    wrong = [name for name in told if all(one.correlation < MAX_REVERSED_CORRELATION for one in fitted if one.channel == name)]
     if wrong == told and len(told) > 1:
         return {WAVE: _effect(WAVE, met, ())}
     alike = (f"sensor_sign ({WAVE})",) if wrong == told else ()
     return {name: _effect(name, [one for one in met if one.channel == name], alike) for name in wrong}
 
 
-def turned(campaign: Campaign, channels: Sequence[str]) -> Campaign:
+def with_signs_reversed(campaign: Campaign, channels: Sequence[str]) -> Campaign:
     """The campaign with these channels' signs changed."""
     manifest = campaign.manifest.turned(channels)
     tests = {test.id: test for test in manifest.tests}
@@ -65,7 +67,7 @@ def turned(campaign: Campaign, channels: Sequence[str]) -> Campaign:
     return replace(campaign, manifest=manifest, records=tuple(records))
 
 
-def in_words(channels: Sequence[str]) -> str:
+def reversal_note(channels: Sequence[str]) -> str:
     """What was turned, and how to mend it."""
     are, signs = ("is", "its sign") if len(channels) == 1 else ("are", "their signs")
     other = " It is as if the waves came from the other side." if {"surge", "pitch"} <= set(channels) else ""
@@ -75,9 +77,9 @@ def in_words(channels: Sequence[str]) -> str:
     )
 
 
-def _met(campaign: Campaign, search: Search) -> list[Met]:
+def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
     found = []
-    for test in tests_of(campaign, search, search.start):
+    for test in test_fits_at(campaign, search, search.start):
         wave = campaign.record(test.id).wave
         if test.kind not in IN_WAVES or wave is None:
             continue
@@ -89,14 +91,14 @@ def _met(campaign: Campaign, search: Search) -> list[Met]:
             there, model = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (series.measured, series.simulated))
             own, its = (float((np.abs(x) ** 2).sum()) for x in (there, model))
             noise = series.noise**2 * float((taper**2).sum()) * inside.sum()
-            if series.scored and min(own, its) > SEEN**2 * noise:
+            if series.scored and min(own, its) > MIN_NOISE_RATIO**2 * noise:
                 both = float((np.conj(model) * there).sum().real)
                 error, other = own + its - 2 * both, own + its + 2 * both
-                found.append(Met(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))
+                found.append(SignComparison(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))
     return found
 
 
-def _effect(channel: str, met: Sequence[Met], alike: tuple[str, ...]) -> Effect:
+def _effect(channel: str, met: Sequence[SignComparison], alike: tuple[str, ...]) -> Effect:
     def gone(use: str) -> float:
         """Share of the squared error, motion by motion alike."""
         shares = [1 - one.turned / one.error for one in met if one.use == use]

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hin
 import numpy as np
 
 from calibration.campaign.manifest import platform_source
-from calibration.discovery.acceptance import Left, State
-from calibration.discovery.candidate_trials import Found
+from calibration.discovery.acceptance import FitState, ResidualSummary
+from calibration.discovery.candidate_trials import AcceptedEffect
 from calibration.discovery.diagnosis import Rejected, Score
 from calibration.discovery.effects.candidates import Candidate
 from jaxhydro import fingerprint as fingerprints
@@ -25,8 +25,8 @@ from jaxhydro.files import staged
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
 
-FILE = ".diagnosis-under-way"
-ABOUT = "about"  # the JSON document in the file; arrays are numbered
+CHECKPOINT_FILE = ".diagnosis-under-way"
+DOCUMENT_KEY = "about"  # the JSON document in the file; arrays are numbered
 
 
 @dataclass(frozen=True)
@@ -35,18 +35,18 @@ class Checkpoint:
     it took (s); all others are the search's own."""
 
     order: str
-    declared_in_second_order: State | None
+    declared_in_second_order: FitState | None
     expected: np.ndarray | None
-    states: tuple[State, ...]
-    found: dict[str, Found]
+    states: tuple[FitState, ...]
+    found: dict[str, AcceptedEffect]
     scores: tuple[Score, ...]
     rejected: dict[str, Rejected]
     notes: tuple[str, ...]
-    alone: Left | None
+    alone: ResidualSummary | None
     begun: np.ndarray
     seconds: float
 
-    def every_state(self) -> Iterator[State]:
+    def every_state(self) -> Iterator[FitState]:
         """All states that are in it."""
         yield from self.states
         for one in self.found.values():
@@ -55,7 +55,7 @@ class Checkpoint:
             yield self.declared_in_second_order
 
 
-def keep(path: Path, search: "Search", states: list[State], seconds: float) -> None:
+def save_checkpoint(path: Path, search: "Search", states: list[FitState], seconds: float) -> None:
     """Write what was reached, and what it took (s), whole or not at all. Raises InputError where it cannot be written."""
     reached = Checkpoint(
         search.order,
@@ -78,23 +78,23 @@ def keep(path: Path, search: "Search", states: list[State], seconds: float) -> N
     }
     content = io.BytesIO()
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
-    np.savez(content, allow_pickle=False, **{ABOUT: text}, **{str(i): one for i, one in enumerate(arrays)})
+    np.savez(content, allow_pickle=False, **{DOCUMENT_KEY: text}, **{str(i): one for i, one in enumerate(arrays)})
     with staged(path.parent) as temporary:
         (temporary / path.name).write_bytes(content.getvalue())
 
 
-def resumed(path: Path, search: "Search", tell: Callable[[str], None] = lambda text: None) -> list[State]:
+def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = lambda text: None) -> list[FitState]:
     """The states that an earlier run of the same diagnosis reached, the search as it was then.
 
     Empty where there was none, or one that cannot be gone on from: `tell` is called with the reason in words.
     """
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
-            about = json.loads(file[ABOUT].tobytes())
+            about = json.loads(file[DOCUMENT_KEY].tobytes())
             if about["fingerprint"] != fingerprint(search):
                 tell(f"{path}: {_other(about['computed_with'])}; the diagnosis starts anew")
                 return []
-            arrays = {name: file[name] for name in file.files if name != ABOUT}
+            arrays = {name: file[name] for name in file.files if name != DOCUMENT_KEY}
         candidates = {one.name: one for one in search.posed.candidates}
         reached: Checkpoint = _rebuilt(Checkpoint, about["reached"], arrays, candidates)
         _check(reached, search)

@@ -11,10 +11,10 @@ import numpy as np
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding
-from calibration.discovery.doubts import doubts_of, in_doubt
+from calibration.discovery.doubts import doubted_effects, doubts_of
 from calibration.discovery.effects.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.effects.effect_names import called
-from calibration.discovery.eliminated_least_squares import predict
+from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.residual_anatomy import anatomy, signature
 from calibration.fitting.fit_conclusion import strays
@@ -26,20 +26,20 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import State
+    from calibration.discovery.acceptance import FitState
     from calibration.discovery.greedy_search import Search
-    from calibration.discovery.linearisations import Place
+    from calibration.discovery.linearisations import Point
 
 # of a motion: what is left beyond it, and twice the noise, is not for noise, nor for a model's last digits. Fitted seas of the
 # tank's campaigns with nothing missing leave up to 0.04
-LEFT = {"decay": 0.03, "waves": 0.05}
+MAX_RESIDUAL_SHARE = {"decay": 0.03, "waves": 0.05}
 
 
 def conclude(
     campaign: Campaign,
     search: Search,
-    before: State,
-    after: State,
+    before: FitState,
+    after: FitState,
     notes: Sequence[str],
     seconds: float,
     first: Sequence[Effect] = (),
@@ -47,11 +47,11 @@ def conclude(
     """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
-    doubted = in_doubt(search, after, baseline, augmented)
-    effects = (*first, *(effect_of(search, one, after, doubted.get(one.name)) for one in after.chosen))
+    doubted = doubted_effects(search, after, baseline, augmented)
+    effects = (*first, *(accepted_effect(search, one, after, doubted.get(one.name)) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
-    more = much(search, left)
+    more = unexplained_motions(search, left)
     sure = [one for one in effects if one.in_doubt is None]
     verdict = "found" if sure else ("unexplained" if effects or more else "nothing_missing")
     lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
@@ -77,17 +77,17 @@ def conclude(
     )
 
 
-def much(search: Search, left: Sequence[Finding]) -> list[Finding]:
+def unexplained_motions(search: Search, left: Sequence[Finding]) -> list[Finding]:
     """What is left of motions in the fitted tests, where that is more than noise and a model's last digits leave; the largest
     share of a motion first."""
     kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
     main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
     told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
-    more = [one for one in told if one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]]]
+    more = [one for one in told if one.rms > 2 * one.noise and one.relative > MAX_RESIDUAL_SHARE[kinds[one.test]]]
     return sorted(more, key=lambda one: -one.relative)
 
 
-def next_test(search: Search, after: State, verdict: str) -> str:
+def next_test(search: Search, after: FitState, verdict: str) -> str:
     """The test that would tell what was found from others; where that is nothing, what comes nearest from the rest."""
     if verdict == "unexplained":
         tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
@@ -98,7 +98,7 @@ def next_test(search: Search, after: State, verdict: str) -> str:
     return next((one.telling for one in after.chosen if one.telling), "")
 
 
-def augmented_model(search: Search, state: State) -> Model:
+def augmented_model(search: Search, state: FitState) -> Model:
     """The declared model with what was found, every parameter as fitted."""
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
@@ -108,11 +108,11 @@ def augmented_model(search: Search, state: State) -> Model:
     return with_effects(with_candidates(search.posed.declared, own), values).at_values(values)
 
 
-def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str, Estimate]:
+def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
     """Parameters with standard deviations, of those directions that are one parameter each."""
     look, study = state.look, search.study
     prior = search.prior(state.chosen)
-    deviations = predict(study, look, prior).deviation
+    deviations = predict_gain(study, look, prior).deviation
     values = {}
     for name in names:
         i = study.names.index(name)
@@ -131,7 +131,7 @@ def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str
     return values
 
 
-def calibration_of(campaign: Campaign, search: Search, state: State, before: Calibration | None) -> Calibration:
+def calibration_of(campaign: Campaign, search: Search, state: FitState, before: Calibration | None) -> Calibration:
     """A fit in the form of a calibration: all tests, errors, bands. `before` gives the motions to compare with."""
     effects = [label for one in state.chosen for label in one.labels]
     nuisances = [name for name in search.posed.nuisances if name in search.study.labels and name not in effects]
@@ -139,7 +139,7 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Cal
     lines = [one.label for one in search.study.space.free if one.label.startswith("mooring.")]
     choices = [label for one in state.chosen for label in one.choices]
     parameters = estimates_of(search, state, names) | _as_given(search, state, lines, False) | _as_given(search, state, choices)
-    tests = tests_of(campaign, search, state.look.place)
+    tests = test_fits_at(campaign, search, state.look.place)
     if before is not None:
         earlier = {test.id: test for test in before.tests}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
@@ -158,7 +158,7 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Cal
     )
 
 
-def _as_given(search: Search, state: State, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
+def _as_given(search: Search, state: FitState, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
     """Values without deviations of their own: of what was chosen, and of mooring lines, nearly known, which move together."""
     found = {}
     for label in labels:
@@ -180,7 +180,7 @@ def _with_start(test: TestFit, before: TestFit) -> TestFit:
     return replace(test, start=start, bands=bands)
 
 
-def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
+def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestFit]:
     """Every test with the motions at a place."""
     study = search.study
     motions = study.motions(place)
@@ -234,7 +234,7 @@ def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, di
     return found
 
 
-def effect_of(search: Search, one: Candidate, after: State, doubt: str | None) -> Effect:
+def accepted_effect(search: Search, one: Candidate, after: FitState, doubt: str | None) -> Effect:
     """An effect that is in the model at the end, with its evidence, and what it is in doubt for."""
     found, used = search.found[one.name], search.study.used
     left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())

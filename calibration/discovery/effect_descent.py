@@ -10,28 +10,32 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calibration.discovery.eliminated_least_squares import cost_of, linearly, solve, weights
-from calibration.discovery.linearisations import Look, Place, Prior
-from calibration.discovery.study import LOST, Study
+from calibration.discovery.eliminated_least_squares import cost_of, damped_step, linear_residual, row_weights
+from calibration.discovery.linearisations import Linearisation, Point, Prior
+from calibration.discovery.study import OVERFLOW, Study
 from jaxhydro.interrupts import stop_if_asked
 
-LONGEST = 0.7  # largest step of a coordinate that is a logarithm
-LEAST = 1e-4  # of what is minimised where a step begins: one that gains less is one too many, however many samples there are
-POOR = 0.25  # of what was predicted: slopes that give no more are stale
+MAX_LOG_STEP = 0.7  # largest step of a coordinate that is a logarithm
+MIN_RELATIVE_GAIN = (
+    1e-4  # of what is minimised where a step begins: one that gains less is one too many, however many samples there are
+)
+MIN_PREDICTED_SHARE = 0.25  # of what was predicted: slopes that give no more are stale
 
 
-class Reached(NamedTuple):
+class FitOutcome(NamedTuple):
     """Where a fit is: what was seen there, and whether it has settled."""
 
-    look: Look
+    look: Linearisation
     iterations: int
     settled: bool
 
 
-def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: np.ndarray, own: np.ndarray) -> Look:
+def broyden_update(
+    study: Study, look: Linearisation, place: Point, residual: np.ndarray, step: np.ndarray, own: np.ndarray
+) -> Linearisation:
     """Slopes that agree with a step: Broyden's update, parameters measured by what they do to the residual."""
-    weight = weights(study, look.residual)
-    missed = residual - linearly(study, look, step, own)
+    weight = row_weights(study, look.residual)
+    missed = residual - linear_residual(study, look, step, own)
     slopes, mine = look.slopes.copy(), look.own.copy()
     size = (weight[:, None] * look.slopes**2).sum(axis=0) * step
     decays = study.spans[-1].stop if study.spans else 0
@@ -43,29 +47,31 @@ def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: n
         if total > 0:
             slopes[span] += np.outer(missed[span], size / total)
             mine[span] += np.outer(missed[span], inner / total)
-    return Look(place, look.active, residual, slopes, mine)
+    return Linearisation(place, look.active, residual, slopes, mine)
 
 
-def bounded(study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float) -> tuple[np.ndarray, np.ndarray]:
+def bounded_step(
+    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
+) -> tuple[np.ndarray, np.ndarray]:
     """A damped step that stays where parameters make sense: what would leave goes to the end, the others as is best then."""
-    step, own = solve(study, look, used, prior, damping)
+    step, own = damped_step(study, look, used, prior, damping)
     low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
     kept = np.clip(step, low, high)
     if (held := kept != step).any() and not held.all():
         rest = look.along([i for i, out in zip(look.active, held) if not out])
         rest = replace(rest, residual=look.residual + look.slopes[:, held] @ kept[held])
-        kept[~held], own = solve(study, rest, used, prior, damping)
+        kept[~held], own = damped_step(study, rest, used, prior, damping)
     return np.clip(kept, low, high), own
 
 
-def lost(residual: np.ndarray) -> bool:
+def has_diverged(residual: np.ndarray) -> bool:
     """Whether a simulation diverges, of a test that is fitted or of one that is not: nothing is seen from there."""
-    return not bool((np.abs(residual) < LOST).all())
+    return not bool((np.abs(residual) < OVERFLOW).all())
 
 
 def fit(
     study: Study,
-    look: Look,
+    look: Linearisation,
     used: np.ndarray,
     prior: Prior,
     *,
@@ -73,34 +79,34 @@ def fit(
     looks: int = 0,
     tolerance: float = 0.5,
     say: Callable[[int, float], None] = lambda *_: None,
-) -> Reached:
+) -> FitOutcome:
     """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
-    `tolerance`, or than `LEAST` of what is minimised there; slopes are taken anew at most `looks` times, and once more at the
+    `tolerance`, or than `MIN_RELATIVE_GAIN` of what is minimised there; slopes are taken anew at most `looks` times, and once more at the
     end. It stays where a simulation diverges."""
     logarithmic = study.logarithmic[list(look.active)]
     directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
-    if lost(look.residual):
-        return Reached(look, 0, False)
+    if has_diverged(look.residual):
+        return FitOutcome(look, 0, False)
     damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
     while taken < iterations and not settled:
         stop_if_asked()
         taken += 1
-        step, own = bounded(study, look, used, prior, damping)
-        scale = min(1.0, LONGEST / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
+        step, own = bounded_step(study, look, used, prior, damping)
+        scale = min(1.0, MAX_LOG_STEP / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
         step, own = scale * step, scale * own
         there = look.place.moved(directions, step, own)
         residual = study.residual(there)
         cost = cost_of(study, look, residual, there, used, prior)
-        expected = now - cost_of(study, look, linearly(study, look, step, own), there, used, prior)
-        gain = -np.inf if lost(residual) else now - cost
-        least = max(tolerance, LEAST * abs(now))  # of what is minimised here, however large it was before
+        expected = now - cost_of(study, look, linear_residual(study, look, step, own), there, used, prior)
+        gain = -np.inf if has_diverged(residual) else now - cost
+        least = max(tolerance, MIN_RELATIVE_GAIN * abs(now))  # of what is minimised here, however large it was before
         known, little = fresh or not left, 0 <= gain < least or expected < least
         if gain > 0:
-            look, now, fresh = mended(study, look, there, residual, step, own), cost, False
+            look, now, fresh = broyden_update(study, look, there, residual, step, own), cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
             say(taken, now)
-        if gain >= max(least, POOR * expected):
+        if gain >= max(least, MIN_PREDICTED_SHARE * expected):
             continue
         if known and little:
             settled = True
@@ -109,4 +115,4 @@ def fit(
         elif gain <= 0:
             damping = max(damping * 8, 1e-2)
             settled = damping > 1e6
-    return Reached(study.look(look.place, look.active) if looks and not fresh else look, taken, settled)
+    return FitOutcome(study.look(look.place, look.active) if looks and not fresh else look, taken, settled)

@@ -20,20 +20,20 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.discovery.frequency_bands import Rows
-from calibration.discovery.linearisations import Place
+from calibration.discovery.frequency_bands import FourierRows
+from calibration.discovery.linearisations import Point
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
 from jaxhydro.dynamics.model import State
 
-INSTANTS = 256  # at which a model's forces are looked at
-ROUNDS = 6  # of the force's spectrum
+MAX_INSTANTS = 256  # at which a model's forces are looked at
+SPECTRUM_ITERATIONS = 6  # of the force's spectrum
 
 
 @eqx.filter_jit
 def _tangents(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "6 12"]:
     model, _, grid = record.simulated(x)
-    stride = max(1, record.steps // INSTANTS)
+    stride = max(1, record.steps // MAX_INSTANTS)
     times = record.times[0] + record.step * stride * jnp.arange(1, record.steps // stride)
     position, rate, _ = grid.at(times)
     memory = model.rest().memory
@@ -60,20 +60,20 @@ def impedance(record: SeaRecord, x: np.ndarray, frequency: np.ndarray) -> np.nda
     return -(omega**2) * np.eye(len(record.dofs)) + 1j * omega * found[:, 6:][dofs] + found[:, :6][dofs]
 
 
-def spectrum(power: np.ndarray, noise: np.ndarray, pool: np.ndarray) -> np.ndarray:
+def force_spectrum(power: np.ndarray, noise: np.ndarray, pool: np.ndarray) -> np.ndarray:
     """By line (f,), the same in every pool, of squares of which `noise` (f,) is expected in any case."""
     found = np.zeros(len(power))
     for one in np.unique(pool):
         mine = pool == one
         level = 0.0
-        for _ in range(ROUNDS):
+        for _ in range(SPECTRUM_ITERATIONS):
             weight = 1 / (level + noise[mine]) ** 2
             level = max(float((weight * (power[mine] - noise[mine])).sum() / weight.sum()), 0.0)
         found[mine] = level
     return found
 
 
-def expected(study: Study, place: Place) -> np.ndarray:
+def expected_rows(study: Study, place: Point) -> np.ndarray:
     """How large rows (n,) are expected beside their floor, of what is seen at a place."""
     residual = study.residual(place, "all")
     found = [np.ones(2 * len(study.cuts[0].take))] if study.decays is not None else []
@@ -84,20 +84,20 @@ def expected(study: Study, place: Place) -> np.ndarray:
     return np.concatenate(found)
 
 
-def _of_sea(study: Study, record: SeaRecord, cut: Rows, place: Place, residual: np.ndarray, rows: slice) -> np.ndarray:
+def _of_sea(study: Study, record: SeaRecord, cut: FourierRows, place: Point, residual: np.ndarray, rows: slice) -> np.ndarray:
     shape = (len(record.tests), len(record.dofs), -1, 2)
     floor = study.floor.ravel()[study.cell[rows]].reshape(shape)[..., 0]
     pool = (study.pool[rows] % study.dof.shape[1]).reshape(shape)[0, 0, :, 0]
     duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
     stiffness = impedance(record, place.x, cut.take[: len(pool)] / duration)
-    found = [beside(lines, mine, pool, stiffness) for lines, mine in zip(residual.reshape(shape) @ [1, 1j], floor)]
+    found = [expected_over_floor(lines, mine, pool, stiffness) for lines, mine in zip(residual.reshape(shape) @ [1, 1j], floor)]
     return np.repeat(np.array(found).ravel(), 2)
 
 
-def beside(lines: np.ndarray, floor: np.ndarray, pool: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+def expected_over_floor(lines: np.ndarray, floor: np.ndarray, pool: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
     """sqrt(P) over the floor (c, f), of a residual's Fourier lines (c, f), their pools (f,) and `impedance` (f, c, c)."""
     forces = np.abs(np.einsum("fji,if->jf", stiffness, lines)) ** 2 / 2
     noise = np.einsum("fji,if->jf", np.abs(stiffness) ** 2, floor**2)
-    missing = np.stack([spectrum(one, of_floor, pool) for one, of_floor in zip(forces, noise)])
+    missing = np.stack([force_spectrum(one, of_floor, pool) for one, of_floor in zip(forces, noise)])
     response = np.abs(np.linalg.inv(stiffness)) ** 2
     return np.sqrt(1 + np.einsum("fij,jf->if", response, missing) / floor**2)

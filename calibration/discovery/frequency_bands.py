@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal.windows import tukey
 
-GROWTH = 1.4  # of the edge of one band to the next
-LINES = 4  # Fourier lines in a band at least
+BAND_GROWTH = 1.4  # of the edge of one band to the next
+MIN_LINES_PER_BAND = 4  # Fourier lines in a band at least
 
 
 def step_of(time: np.ndarray) -> float:
@@ -37,10 +37,10 @@ def bands_of(duration: float, step: float, length: int, count: int, highest: flo
     frequency = frequency[frequency <= highest]
     line = frequency * duration
     edges = [0.0, 0.5]
-    width = float(LINES)
+    width = float(MIN_LINES_PER_BAND)
     while edges[-1] < line[-1] + 0.5:
         edges.append(edges[-1] + width)
-        width = max(LINES, (GROWTH - 1) * edges[-1])
+        width = max(MIN_LINES_PER_BAND, (BAND_GROWTH - 1) * edges[-1])
     edges = edges[: count + 1]
     edges[-1] = max(edges[-1], line[-1] + 0.5)
     member = np.zeros((count, len(frequency)))
@@ -54,7 +54,7 @@ def bands_of(duration: float, step: float, length: int, count: int, highest: flo
     return Bands(member, lines, low, high)
 
 
-class Rows(NamedTuple):
+class FourierRows(NamedTuple):
     """How some time series become one column of rows: real and imaginary parts of the Fourier lines that are in a band, scaled
     so that sums of squares over rows are those over samples (Parseval).
 
@@ -72,7 +72,7 @@ class Rows(NamedTuple):
     taper: np.ndarray
 
     @classmethod
-    def of(cls, cuts: Sequence[Bands], samples: int, tapered: float = 0.0) -> "Rows":
+    def of(cls, cuts: Sequence[Bands], samples: int, tapered: float = 0.0) -> "FourierRows":
         """From the bands of every series, all of one length, of which the share `tapered` rises and falls at the ends: what
         goes on beyond them leaks from where a spectrum has a peak into all that is beside it."""
         lines = max(one.member.shape[1] for one in cuts)
@@ -93,8 +93,8 @@ class Rows(NamedTuple):
         return np.stack([kept.real, kept.imag], axis=1).reshape(2 * len(kept), *values.shape[2:])
 
 
-def powers(cut: Bands, values: np.ndarray, tapered: float = 0.0) -> np.ndarray:
+def band_powers(cut: Bands, values: np.ndarray, tapered: float = 0.0) -> np.ndarray:
     """Mean square of a time series (t,) in every band (b,), by degree of freedom: of white noise its variance in each."""
-    rows = Rows.of([cut], len(values), tapered)
+    rows = FourierRows.of([cut], len(values), tapered)
     found = np.bincount(rows.band, rows(values[None]) ** 2, len(cut.lines))
     return np.where(cut.lines > 0, found / np.where(cut.lines > 0, 2 * cut.lines, 1.0), 0.0)

@@ -6,10 +6,10 @@ from typing import Literal
 
 import numpy as np
 
-Seen = Literal["all", "fit"]
+SeaSelection = Literal["all", "fit"]
 # of the motion that a test is about, in every band: what strips with constant coefficients, and a measured wave, are not asked
 # to follow, however quiet the sensors are
-FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
+RELATIVE_FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 
 
 @dataclass(frozen=True)
@@ -54,33 +54,33 @@ class Series:
 
 
 @dataclass(frozen=True)
-class Place:
+class Point:
     """Where a fit is: coordinates of all parameters, and every decay's own unknowns."""
 
     x: np.ndarray
     own: np.ndarray
 
-    def moved(self, directions: np.ndarray, step: np.ndarray, own: np.ndarray) -> "Place":
+    def moved(self, directions: np.ndarray, step: np.ndarray, own: np.ndarray) -> "Point":
         """A step along directions, and of the decays' unknowns."""
-        return Place(self.x + step @ directions, self.own + own)
+        return Point(self.x + step @ directions, self.own + own)
 
 
 @dataclass(frozen=True)
-class Look:
+class Linearisation:
     """What is seen from a place, in rows (`Rows`), the decays' before the seas': the residual (n,), its slopes (n, q) along the
     `active` directions, and those of the decays' rows (m, o) along their own unknowns."""
 
-    place: Place
+    place: Point
     active: tuple[int, ...]
     residual: np.ndarray
     slopes: np.ndarray
     own: np.ndarray
 
-    def beside(self, other: "Look") -> "Look":
+    def beside(self, other: "Linearisation") -> "Linearisation":
         """The directions of another look too, as seen from there."""
         return replace(self, active=(*self.active, *other.active), slopes=np.hstack([self.slopes, other.slopes]))
 
-    def along(self, active: Sequence[int]) -> "Look":
+    def along(self, active: Sequence[int]) -> "Linearisation":
         """Some of the directions."""
         at = [self.active.index(i) for i in active]
         return replace(self, active=tuple(active), slopes=self.slopes[:, at])

@@ -13,13 +13,13 @@ from calibration.discovery.diagnosis import Finding
 from calibration.formatting import number
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import State
+    from calibration.discovery.acceptance import FitState
     from calibration.discovery.greedy_search import Search
 
-QUIET = 1.3  # rms over noise below which nothing is said
+MIN_NOISE_RATIO = 1.3  # rms over noise below which nothing is said
 
 
-def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
+def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
     """Of every motion that the tests are about, what is left."""
     study = search.study
     noise = np.array([[one.noise] for one in study.series])
@@ -42,14 +42,14 @@ def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
 
 def _words(within: float, over: float, bands: Sequence[tuple[float, float, float]]) -> str:
     """`within` the bands that are looked at, and `over` all: rms over noise."""
-    if within < QUIET:
+    if within < MIN_NOISE_RATIO:
         return "at the noise"
     worst = max(bands, key=lambda b: b[2])
     where = "in the mean" if worst[0] == 0 else f"from {worst[0]:.3g} to {worst[1]:.3g} Hz"
     return f"{number(over, 2)} times the noise, most of it {where}"
 
 
-def signature(search: Search, before: State, after: State) -> tuple[float, str]:
+def signature(search: Search, before: FitState, after: FitState) -> tuple[float, str]:
     """Share of the error's energy above the floor that is left in what the tests are about, every motion over its own, and what
     is known of it."""
     study = search.study
@@ -57,7 +57,7 @@ def signature(search: Search, before: State, after: State) -> tuple[float, str]:
     spread = np.array([one.spread for one in study.series])
     total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = left / total if total > 0 else 0.0
-    if not (after.left.squares.sum(axis=1) > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
+    if not (after.left.squares.sum(axis=1) > (MIN_NOISE_RATIO**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
         fitted = [record for record in search.campaign.records if record.use == "fit"]
         declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
         return share, f"white at the {'declared noise level' if declared else 'level of the noise, which was estimated'}"

@@ -7,19 +7,19 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.strip_conventions import USUAL, Strips
-from calibration.discovery.acceptance import LEAST_TOGETHER
+from calibration.discovery.acceptance import MIN_LIKELIHOOD_GAIN
 from calibration.fitting.decay_fit import Fit, observations, prepare, run
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.strip_drag import StripDrag
 
-SIMPLER = Strips(directions="earth", drag_speed="component", centripetal=False)  # as simpler programs take them
-FOLLOWED = (
+SIMPLER_STRIPS = Strips(directions="earth", drag_speed="component", centripetal=False)  # as simpler programs take them
+SIMPLER_STRIPS_NOTE = (
     "decays are followed better with strips loaded along earth axes, drag by components of the speed and no centripetal "
-    f"acceleration, as programs may have it ({SIMPLER} in a platform file): so are they taken here, and in what is found"
+    f"acceleration, as programs may have it ({SIMPLER_STRIPS} in a platform file): so are they taken here, and in what is found"
 )
 
 
-class Conventions(NamedTuple):
+class StripTrial(NamedTuple):
     """A campaign with strips as its decays have them, calibrated to these (None: nothing had to be found out), how they are
     taken where that is not as its platform file says, and why."""
 
@@ -29,7 +29,7 @@ class Conventions(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Conventions:
+def try_strip_conventions(campaign: Campaign, say: Callable[[str, float], None]) -> StripTrial:
     """Strips as simpler programs take them where the decays, calibrated, are then followed better; as they are where the
     platform file says how they are taken, or has other laws of drag than a constant coefficient."""
     decays = [record for record in campaign.used("fit") if record.kind == "decay"]
@@ -37,15 +37,15 @@ def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Con
     said = bool(set(Strips.model_fields) & campaign.platform.model_fields_set) or Strips.of(model) != USUAL
     other_drag = any(hasattr(load, "coupled") and not isinstance(load, StripDrag) for load in model.loads)
     if said or other_drag or campaign.platform.sea_state_laws is not None or not decays or not model.hull.strips.element:
-        return Conventions(campaign)
+        return StripTrial(campaign)
     say("calibrating to the decays", 0.01)
     run(fit := prepare(campaign), near=True)
     say("calibrating to the decays, strips as simpler programs take them", 0.02)
-    other = campaign.with_model(SIMPLER.given_to(model))
+    other = campaign.with_model(SIMPLER_STRIPS.given_to(model))
     run(again := prepare(other), near=True)
-    if (better := _unlikelihood(fit) - _unlikelihood(again)) < LEAST_TOGETHER:
-        return Conventions(campaign, fit)
-    return Conventions(other, again, SIMPLER, (f"{FOLLOWED} (by {better:.0f} in -2 ln L of the decays)",))
+    if (better := _unlikelihood(fit) - _unlikelihood(again)) < MIN_LIKELIHOOD_GAIN:
+        return StripTrial(campaign, fit)
+    return StripTrial(other, again, SIMPLER_STRIPS, (f"{SIMPLER_STRIPS_NOTE} (by {better:.0f} in -2 ln L of the decays)",))
 
 
 def _unlikelihood(fit: Fit) -> float:

@@ -11,8 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
-from calibration.discovery.frequency_bands import Rows, step_of
-from calibration.discovery.linearisations import Look, Place, Seen, Series
+from calibration.discovery.frequency_bands import FourierRows, step_of
+from calibration.discovery.linearisations import Linearisation, Point, SeaSelection, Series
 from calibration.discovery.residuals import Frame, SeaRecord, decay_residuals, decay_slopes, sea_residuals, sea_slopes
 from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
@@ -22,7 +22,7 @@ from calibration.residuals.measured_seas import Options, moving
 from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
 
-LOST = 1e100  # motions and slopes that are as large are of a simulation that overflows: nothing is known there
+OVERFLOW = 1e100  # motions and slopes that are as large are of a simulation that overflows: nothing is known there
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Study:
     series: tuple[Series, ...]
     decay_records: tuple[Record, ...]
     own_width: np.ndarray
-    cuts: tuple[Rows, ...]
+    cuts: tuple[FourierRows, ...]
     options: Mapping[str, Options]
     expected: np.ndarray | None = None
 
@@ -191,16 +191,16 @@ class Study:
         i = self.labels.index(label)
         return float(self.space.free[i].transform.forward(x[i]))
 
-    def seen(self, seas: Seen) -> list[bool]:
+    def seen(self, seas: SeaSelection) -> list[bool]:
         """Which seas are looked at: those with a fitted test, or all."""
         uses = {one.test: one.use for one in self.series}
         return [seas == "all" or any(uses[test] == "fit" for test in record.tests) for record in self.seas]
 
-    def _steps(self, record: SeaRecord, seas: Seen) -> Any:
+    def _steps(self, record: SeaRecord, seas: SeaSelection) -> Any:
         """Over how many steps a sea is simulated: to the end of what is looked at."""
         return jnp.asarray(record.steps if seas == "all" else record.fitted)
 
-    def motions(self, place: Place, seas: Seen = "all") -> list[np.ndarray | None]:
+    def motions(self, place: Point, seas: SeaSelection = "all") -> list[np.ndarray | None]:
         """Simulated less measured in time (s, t), of the decays' motions and of every sea's."""
         x = jnp.asarray(place.x)
 
@@ -216,18 +216,20 @@ class Study:
         with stoppable_threads(cores()) as pool:
             return [None if job is None else job.result() for job in self._parts(pool, of_decays, of_sea, seas)]
 
-    def _parts(self, pool: Executor, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: Seen) -> list[Any]:
+    def _parts(
+        self, pool: Executor, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: SeaSelection
+    ) -> list[Any]:
         """Work on the decays and on every sea, begun side by side, as XLA runs a loop on one core; None where there is nothing
         to be seen."""
         jobs: list[Any] = [pool.submit(decays)] if self.decays is not None else []
         return jobs + [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.seen(seas))]
 
-    def residual(self, place: Place, seas: Seen = "fit") -> np.ndarray:
+    def residual(self, place: Point, seas: SeaSelection = "fit") -> np.ndarray:
         """Rows of the residual at a place; zeros of tests in waves that are not looked at."""
         parts = self.motions(place, seas)
         return np.concatenate([np.zeros(2 * len(cut.take)) if one is None else cut(one) for cut, one in zip(self.cuts, parts)])
 
-    def look(self, place: Place, active: Sequence[int]) -> Look:
+    def look(self, place: Point, active: Sequence[int]) -> Linearisation:
         """Residual and slopes at a place, of the decays and the seas with a fitted test."""
         some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
         with stoppable_threads(cores()) as pool:
@@ -240,7 +242,7 @@ class Study:
             whole = whole.beside(one)
         return whole
 
-    def _slopes(self, pool: Executor, place: Place, active: tuple[int, ...]) -> list[Any]:
+    def _slopes(self, pool: Executor, place: Point, active: tuple[int, ...]) -> list[Any]:
         """Work on a place's residual and slopes along at most `width` directions."""
         basis = np.zeros((len(place.x), self.width))
         basis[:, : len(active)] = self.directions[list(active)].T
@@ -256,7 +258,9 @@ class Study:
 
         return self._parts(pool, of_decays, lambda one: flat(sea_slopes(one, frame, self._steps(one, "fit"))), "fit")
 
-    def _look(self, place: Place, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]) -> Look:
+    def _look(
+        self, place: Point, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]
+    ) -> Linearisation:
         q = len(active)
         residual, slopes, own = [], [], np.zeros((0, 0))
         for i, (cut, part) in enumerate(zip(self.cuts, parts)):
@@ -269,8 +273,8 @@ class Study:
             if i == 0 and self.decays is not None:
                 own = cut(part[1][..., self.width :])
         along = np.concatenate(slopes)
-        along[:, ~(np.abs(along) < LOST).all(axis=0)] = 0.0
-        return Look(place, active, np.concatenate(residual), along, own)
+        along[:, ~(np.abs(along) < OVERFLOW).all(axis=0)] = 0.0
+        return Linearisation(place, active, np.concatenate(residual), along, own)
 
     def levels(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by series and pool (s, b), rows by their `share`."""

@@ -17,14 +17,14 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.commands.calibrate_command import simulate_campaign
 from calibration.discovery import strip_trials as conventions
-from calibration.discovery.channel_signs import turned
-from calibration.discovery.checkpoint import keep, resumed
+from calibration.discovery.channel_signs import with_signs_reversed
+from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude
-from calibration.discovery.effects.phase_shift_start import FINENESS, from_afar
-from calibration.discovery.greedy_search import FIRST_ORDER, SIMPLER, Search
-from calibration.discovery.linearisations import Place
-from calibration.discovery.set_up import pose
+from calibration.discovery.effects.phase_shift_start import PHASE_SPACING, phase_shift_start
+from calibration.discovery.greedy_search import FIRST_ORDER_NOTE, SIMPLER_SEA_NOTES, Search
+from calibration.discovery.linearisations import Point
+from calibration.discovery.set_up import set_up_study
 from calibration.discovery.wave_records import by_a_program, highest_difference, options_for
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import seas_of
@@ -189,12 +189,12 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
     for shift in (far, near):
         (folder := tmp_path / f"{shift}").mkdir()
         campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
-        posed = pose(campaign, options_for(campaign)[0])
+        posed = set_up_study(campaign, options_for(campaign)[0])
         (one,) = (one for one in posed.candidates if label in one.amplitudes)
-        look = posed.study.look(Place(np.asarray(posed.study.space.start), np.zeros((0, 0))), posed.study.index([label]))
-        found.append(from_afar(posed.study, look, label, one.turns))
+        look = posed.study.look(Point(np.asarray(posed.study.space.start), np.zeros((0, 0))), posed.study.index([label]))
+        found.append(phase_shift_start(posed.study, look, label, one.turns))
     there, nothing = found
-    assert there.values[label] == pytest.approx(far, abs=FINENESS / abs(turns(0.65))) and there.gain > 500
+    assert there.values[label] == pytest.approx(far, abs=PHASE_SPACING / abs(turns(0.65))) and there.gain > 500
     assert nothing is None
 
 
@@ -251,18 +251,18 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     assert highest_difference(seas_of(campaign, model.environment, options)) == pytest.approx(HIGHEST, abs=0.002)
     cut = dataclasses.replace(options, highest_difference=HIGHEST)
     assert highest_difference(seas_of(campaign, model.environment, cut)) is None
-    posed = pose(campaign, options)
+    posed = set_up_study(campaign, options)
     search = Search(campaign, posed, lambda *_: None)
     state = search.declared()
     assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
     taken = search.study.options[search.order]
     assert taken == dataclasses.replace(cut, highest_difference=taken.highest_difference, acting="at the origin")
-    told = [said.format(highest=taken.highest_difference) for said in SIMPLER.values()]
+    told = [said.format(highest=taken.highest_difference) for said in SIMPLER_SEA_NOTES.values()]
     assert [note for note in search.notes if all(said in note for said in told)]
-    keep(tmp_path / "kept", search, [state], 1.0)
+    save_checkpoint(tmp_path / "kept", search, [state], 1.0)
     again = Search(campaign, posed, lambda *_: None)
-    assert len(resumed(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
-    assert set(pose(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
+    assert len(load_checkpoint(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
+    assert set(set_up_study(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
     found = conclude(campaign, search, state, state, (), 1.0)
     write_diagnosis(found, tmp_path / "found", figures=False)
     assert simulate_campaign(tmp_path, tmp_path / "seas", calibration=tmp_path / "found")
@@ -277,14 +277,14 @@ def test_second_order_is_taken_again(tmp_path: Path) -> None:
     """Where waves of first order were taken, and follow no better any more, those of the record; with the declared model that
     was fitted in them."""
     campaign = campaign_of(tmp_path, pressure)
-    search = Search(campaign, pose(campaign, options_for(campaign)[0]), lambda *_: None)
+    search = Search(campaign, set_up_study(campaign, options_for(campaign)[0]), lambda *_: None)
     declared = search.declared()
     assert search.declared_in_second_order is None and search.in_second_order(declared, 1) is None
     of_second = search.blocks
     search.take_seas("first")
     assert of_second is not None and search.blocks is not None  # which are of the seas in hand
     assert search.blocks.study.seas[0].sea is search.study.seas[0].sea is not of_second.study.seas[0].sea
-    search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER} (by 30 in -2 ln L)", "another"]
+    search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER_NOTE} (by 30 in -2 ln L)", "another"]
     lost = dataclasses.replace(declared, likelihood=declared.likelihood - 1e3)  # waves of first order follow far better
     assert search.in_second_order(lost, 1) is None and search.study.seas is search.study.other_seas["first"]
     again = search.in_second_order(declared, 1)
@@ -316,7 +316,10 @@ def test_a_campaign_turned_round(tmp_path: Path) -> None:
     manifest["tests"][1]["channels"] = {"heave": {"sign": -1}}
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     one = load_campaign(tmp_path)
-    made, again = turned(one, ["wave", "heave"]), turned(turned(one, ["wave", "heave"]), ["wave", "heave"])
+    made, again = (
+        with_signs_reversed(one, ["wave", "heave"]),
+        with_signs_reversed(with_signs_reversed(one, ["wave", "heave"]), ["wave", "heave"]),
+    )
     for was, now, right in zip(campaign.records, made.records, (-1, 1), strict=True):
         assert_allclose(now.values["heave"], right * was.values["heave"])
         assert_allclose(now.wave, -was.wave)
@@ -350,10 +353,10 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     windows = {"fit": [0, 0.4 * DURATION], "holdout": [0.4 * DURATION, DURATION - STEP]}
     manifest["tests"] = [{"id": use, "window": window, "use": use, **sea} for use, window in windows.items()]
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
-    study = pose(campaign := load_campaign(tmp_path), options_for(campaign)[0]).study
+    study = set_up_study(campaign := load_campaign(tmp_path), options_for(campaign)[0]).study
     (record,) = study.seas
     assert record.fitted < 0.45 * record.steps
-    place = Place(np.asarray(study.space.start), np.zeros((0, 0)))
+    place = Point(np.asarray(study.space.start), np.zeros((0, 0)))
     every, some, fitted = study.residual(place, "all"), study.residual(place), study.used[study.row_series]
     assert_allclose(some[fitted], every[fitted], rtol=0, atol=1e-12)
     assert np.abs(every[~fitted]).max() > 1e-3 and not some[~fitted].any()
@@ -372,14 +375,14 @@ def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatc
     monkeypatch.setattr(conventions, "prepare", lambda one: asked.append(one) or one)
     monkeypatch.setattr(conventions, "run", lambda one, near: None)
     monkeypatch.setattr(conventions, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
-    found = conventions.conventions_of(campaign, lambda *_: None)
+    found = conventions.try_strip_conventions(campaign, lambda *_: None)
     model = found.campaign.model
     assert [one.model.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
     assert (model.directions, model.centripetal) == (("earth", False) if simpler else ("body", True))
     assert [load.coupled for load in model.loads if isinstance(load, StripDrag)] == [not simpler]
-    assert bool(found.notes) is simpler and found.strips == (conventions.SIMPLER if simpler else None)
+    assert bool(found.notes) is simpler and found.strips == (conventions.SIMPLER_STRIPS if simpler else None)
     said = dataclasses.replace(campaign, platform=campaign.platform.model_copy(update={"drag_speed": "vector"}))
-    assert conventions.conventions_of(said, lambda *_: None) == conventions.Conventions(said)
+    assert conventions.try_strip_conventions(said, lambda *_: None) == conventions.StripTrial(said)
     assert len(asked) == 2
 
 

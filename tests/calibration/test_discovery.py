@@ -15,17 +15,17 @@ from calibration import calibrate
 from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery import checkpoint as kept
 from calibration.discovery import greedy_search as search
-from calibration.discovery.acceptance import SLIGHT, Left, Verdict, given_up
-from calibration.discovery.candidate_trials import Found, Scored
+from calibration.discovery.acceptance import NEGLIGIBLE, ResidualSummary, Verdict, abandoned_decays
+from calibration.discovery.candidate_trials import AcceptedEffect, ScoredCandidate
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import scales_of
-from calibration.discovery.eliminated_least_squares import Predicted
-from calibration.discovery.frequency_bands import Rows, bands_of
+from calibration.discovery.effects.listed import noticeable_scales
+from calibration.discovery.eliminated_least_squares import FirstOrderGain
+from calibration.discovery.frequency_bands import FourierRows, bands_of
 from calibration.discovery.greedy_search import Search
-from calibration.discovery.linearisations import Place, Prior
-from calibration.discovery.set_up import pose
+from calibration.discovery.linearisations import Point, Prior
+from calibration.discovery.set_up import set_up_study
 from calibration.residuals.measured_seas import Options
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
@@ -98,7 +98,7 @@ def test_rows_hold_the_sum_of_squares():
     rng = np.random.default_rng(0)
     values = rng.normal(size=(2, 401, 3))  # an odd number has no line at half the sampling rate
     cut = bands_of(40.1, 0.1, 401, 12, 6.0)  # all frequencies
-    rows = Rows.of([cut, cut], 401)
+    rows = FourierRows.of([cut, cut], 401)
     found = rows(values)
     for i, one in enumerate(values):
         mine = found[rows.series == i]
@@ -110,7 +110,7 @@ def test_a_series_without_rows_keeps_its_place():
     """A motion that a record lacks has no lines, and is counted all the same: what comes after it stays where it was."""
     cut = bands_of(40.1, 0.1, 401, 12, 6.0)
     nothing = cut._replace(member=np.zeros_like(cut.member))
-    rows = Rows.of([cut, nothing], 401)
+    rows = FourierRows.of([cut, nothing], 401)
     assert rows.members == 2
     assert set(rows.series) == {0}
 
@@ -118,7 +118,7 @@ def test_a_series_without_rows_keeps_its_place():
 def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
     """What is declared is fitted, not looked for."""
     campaign = campaign_of(tmp_path, lambda x, v: 0.0)
-    names = {one.name for one in pose(campaign, Options()).candidates}
+    names = {one.name for one in set_up_study(campaign, Options()).candidates}
     assert {"coulomb_friction (roll)", "nonlinear_hydrostatics (roll)", "quadratic_damping (roll)"} <= names
     assert not any("surge" in name for name in names)
 
@@ -195,10 +195,10 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
     assert not any("ended with" in note for note in found.notes)
     search = SimpleNamespace()
     monkeypatch.setattr(kept, "fingerprint", lambda search: "of another campaign")
-    assert kept.resumed(path, search) == []
+    assert kept.load_checkpoint(path, search) == []
     path.write_bytes(path.read_bytes()[:1000])
-    assert kept.resumed(path, search) == []
-    assert kept.resumed(tmp_path / "none", search) == []
+    assert kept.load_checkpoint(path, search) == []
+    assert kept.load_checkpoint(tmp_path / "none", search) == []
 
 
 class Sine(AbstractLoad):
@@ -278,7 +278,9 @@ def test_the_best_of_every_motion_is_tried_where_the_best_of_all_do_not_last():
     study = SimpleNamespace(series=series, used=np.array([True, True, True, False]))
     gains = {"a": [9, 30, 0, 99], "b": [20, 29, 1, 0], "c": [1, 31, 2, 0]}
     rest = [
-        Scored(Candidate(name, None, ()), Predicted(np.zeros(0), np.array(gain, float), study.used, np.zeros((0, 0))), None)
+        ScoredCandidate(
+            Candidate(name, None, ()), FirstOrderGain(np.zeros(0), np.array(gain, float), study.used, np.zeros((0, 0))), None
+        )
         for name, gain in gains.items()
     ]
     found = Search.by_motion(SimpleNamespace(study=study), rest, 5.0)
@@ -301,7 +303,7 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         return z * (1 + (z / 3) ** 2), 0
 
     def state(x, chosen=()):
-        look = SimpleNamespace(place=Place(np.array(x), None), active=(0, 1))
+        look = SimpleNamespace(place=Point(np.array(x), None), active=(0, 1))
         return SimpleNamespace(look=look, chosen=chosen, likelihood=np.zeros(1))
 
     monkeypatch.setattr(search, "predict", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
@@ -329,7 +331,8 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
 
 
 @pytest.mark.parametrize(
-    ("bic", "refused", "stays"), [(150.0, SLIGHT, True), (90.0, SLIGHT, False), (150.0, "grows", False), (90.0, "", True)]
+    ("bic", "refused", "stays"),
+    [(150.0, NEGLIGIBLE, True), (90.0, NEGLIGIBLE, False), (150.0, "grows", False), (90.0, "", True)],
 )
 def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, refused, stays):
     """Where it hardly matters with them in the model: it is they that share what is its own."""
@@ -338,7 +341,7 @@ def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, ref
     whole, without = (SimpleNamespace(chosen=chosen, look=look) for chosen in ((first, last), (last,)))
     of_last, of_first = Verdict(60.0, 0.5, True, 120.0, 9.0, 1.2, ""), Verdict(bic, 0.5, True, 60.0, 9.0, 0.9, refused)
     under_way = SimpleNamespace(
-        found={one.name: Found(1.0, None, None, of_last, ()) for one in (first, last)},
+        found={one.name: AcceptedEffect(1.0, None, None, of_last, ()) for one in (first, last)},
         rejected={},
         notes=[],
         study=SimpleNamespace(look=lambda *_: look),
@@ -362,10 +365,10 @@ def test_a_decay_that_the_seas_take_away_is_said():
     used, main = np.array([True, True, True, True, False, True]), np.array([True, True, True, True, True, False])
     study = SimpleNamespace(series=series, used=used, main=main)
     alone, now = (
-        Left(np.zeros((6, 1)), np.array(error)[:, None], np.zeros(6))
+        ResidualSummary(np.zeros((6, 1)), np.array(error)[:, None], np.zeros(6))
         for error in ([0.1, 0.1, 0.6, 0.1, 0.1, 0.1], [1.5, 0.19, 1.5, 1.5, 1.5, 1.5])
     )
-    (said,) = given_up(study, alone, now)
+    (said,) = abandoned_decays(study, alone, now)
     assert "the decay a is given up: 75 % of its motion is left, 5 % where decays are fitted alone" in said
 
 
@@ -373,7 +376,7 @@ def test_every_candidate_can_be_put_into_a_model_of_the_platform():
     """By its labels alone, as a file of a diagnosis has them; amplitudes silent."""
     model = jh.load_model("volturnus-s")
     mass, stiffness = (np.asarray(m) for m in linearised(model, equilibrium(model)))
-    scales = scales_of(mass, stiffness, dict.fromkeys(DOFS, 0.1))
+    scales = noticeable_scales(mass, stiffness, dict.fromkeys(DOFS, 0.1))
     candidates, free, units = catalogue(model, scales, True, 1.0)
     assert {"wave_excitation", "wave_drift", "umbilical", "amplitude_dependent_drag"} <= {one.effect for one in candidates}
     for one in candidates:

@@ -14,9 +14,9 @@ from typer.testing import CliRunner
 
 import jaxhydro as jh
 from calibration.campaign.load_campaign import load_campaign
-from calibration.discovery.effects.candidates import sought
+from calibration.discovery.effects.candidates import requested_table_labels
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import Scales
+from calibration.discovery.effects.listed import NoticeableScales
 from jaxhydro.cli import app as cli
 from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_excitation import read_excitation
@@ -205,8 +205,8 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     assert _platform_text(str(path)) != (tmp_path / "b" / "platform.yaml").read_text(encoding="utf-8")
     path.write_text(text + "\nexcitation: {file: hull.3, use: candidate}\n", encoding="utf-8")
     model = jh.load_model(path)
-    assert sought(model) == {"computed_excitation.share"}
-    scales = {"surge": Scales(5.0, 0.1, 1e5, 2e7)}
+    assert requested_table_labels(model) == {"computed_excitation.share"}
+    scales = {"surge": NoticeableScales(5.0, 0.1, 1e5, 2e7)}
     known = {waves: [one.effect for one in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
     assert "computed_excitation" in known[True] and "computed_excitation" not in known[False]
     (alone,) = [one for one in catalogue(model, scales, True, 1.0)[0] if one.effect == "computed_excitation"]

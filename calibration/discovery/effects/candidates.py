@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 
-from calibration.discovery.effects.mode_splitting import Begins
-from calibration.discovery.effects.oscillator_start import Places
-from calibration.discovery.effects.phase_shift_start import Turns
+from calibration.discovery.effects.mode_splitting import StartingValuesFinder
+from calibration.discovery.effects.oscillator_start import ShapeFinder
+from calibration.discovery.effects.phase_shift_start import PhasePerUnit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
@@ -58,11 +58,11 @@ class Candidate:
     amplitudes: tuple[str, ...]
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
-    places: Places | None = None
+    places: ShapeFinder | None = None
     positive: tuple[str, ...] = ()
     begin: Mapping[str, float] = field(default_factory=dict)
-    begins: Begins | None = None
-    turns: Turns | None = None
+    begins: StartingValuesFinder | None = None
+    turns: PhasePerUnit | None = None
     telling: str = ""
     source: str = ""
     load: AbstractLoad | None = None
@@ -100,7 +100,7 @@ def _dofs(labels: Iterable[str], effect: str) -> list[str]:
     return [dof for dof in DOFS if dof in found]
 
 
-BY_DOF: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
+PER_MOTION_LOADS: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
     "coulomb_friction": CoulombFriction.null,
     "hysteresis": Hysteresis.null,
     "mooring_nonlinearity": MooringNonlinearity.null,
@@ -112,7 +112,7 @@ BY_DOF: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
     "wave_drift": WaveDrift.null,
     "wave_drift_damping": WaveDriftDamping.null,
 }
-WHOLE: dict[str, Callable[[], AbstractLoad]] = {
+WHOLE_PLATFORM_LOADS: dict[str, Callable[[], AbstractLoad]] = {
     "umbilical": Umbilical.null,
     "current": Current.null,
     "sensor_reference": SensorReference.null,
@@ -121,10 +121,10 @@ WHOLE: dict[str, Callable[[], AbstractLoad]] = {
     "wave_reflection": WaveReflection.null,
     "covered_ends": CoveredEnds.null,
 }
-DRAG = ("amplitude_dependent_drag", "sea_state_dependent_drag")
+DRAG_EFFECTS = ("amplitude_dependent_drag", "sea_state_dependent_drag")
 
 
-class Computed(NamedTuple):
+class TableEffect(NamedTuple):
     """What a platform file may declare as a candidate: its load, whether it acts in waves only, and what would tell it."""
 
     load: type[AbstractLoad]
@@ -132,20 +132,20 @@ class Computed(NamedTuple):
     telling: str
 
 
-COMPUTED = {
-    "computed_excitation": Computed(
+TABLE_EFFECTS = {
+    "computed_excitation": TableEffect(
         ComputedExcitation, True, "the platform held in regular waves of three periods, its forces measured"
     ),
-    "drift_transfer": Computed(DriftTransfer, True, "the same irregular sea at another height: drift goes as Hs^2"),
-    "computed_radiation": Computed(
+    "drift_transfer": TableEffect(DriftTransfer, True, "the same irregular sea at another height: drift goes as Hs^2"),
+    "computed_radiation": TableEffect(
         ComputedRadiation, False, "forced oscillation at three periods, or a decay in each motion from a small amplitude"
     ),
 }
 
 
-def sought(model: Model) -> set[str]:
+def requested_table_labels(model: Model) -> set[str]:
     """Labels of what the platform declares to be looked for: its load is there, at its null."""
-    labels = (f"{effect}.share" for effect in COMPUTED)
+    labels = (f"{effect}.share" for effect in TABLE_EFFECTS)
     return {label for label in labels if label in model.values and float(model.values[label]) == 0}
 
 
@@ -155,10 +155,10 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
     effects = dict.fromkeys(label.split(".")[0] for label in labels)
     for effect in effects:
         mine = [label for label in labels if label.startswith(f"{effect}.")]
-        if effect in BY_DOF:
-            model = model.with_load(BY_DOF[effect](_dofs(mine, effect)))
-        elif effect in WHOLE:
-            model = model.with_load(WHOLE[effect]())
+        if effect in PER_MOTION_LOADS:
+            model = model.with_load(PER_MOTION_LOADS[effect](_dofs(mine, effect)))
+        elif effect in WHOLE_PLATFORM_LOADS:
+            model = model.with_load(WHOLE_PLATFORM_LOADS[effect]())
         elif effect == "mass_properties":
             model = model.with_load(MassError.null(model.body.mass, model.body.centre))
         elif effect == "coupled_damping":
@@ -167,7 +167,7 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
             model = model.with_load(QuadraticDamping({label: jnp.zeros(()) for label in mine}))
         elif effect == "wave_excitation":
             model = model.with_load(WaveExcitation.null([label.split(".", 1)[1] for label in mine]))
-        elif effect in DRAG:
+        elif effect in DRAG_EFFECTS:
             model = with_drag(model)
         else:
             raise KeyError(f"no effect {effect!r}")

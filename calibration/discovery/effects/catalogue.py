@@ -5,11 +5,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from calibration.discovery.effects.candidates import COMPUTED, Candidate, sought
-from calibration.discovery.effects.catalogue_of_motions import of_motion
-from calibration.discovery.effects.listed import Listed, Scales
-from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, size
-from calibration.discovery.effects.reflection_start import AT_ONCE, delays
+from calibration.discovery.effects.candidates import TABLE_EFFECTS, Candidate, requested_table_labels
+from calibration.discovery.effects.catalogue_of_motions import add_motion_effects
+from calibration.discovery.effects.listed import CatalogueBuilder, NoticeableScales
+from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, displaced_length
+from calibration.discovery.effects.reflection_start import ZERO_DELAY_GRID, reflection_delays
 from calibration.parameters.space import Free
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS, STANDARD_GRAVITY
@@ -30,13 +30,13 @@ from jaxhydro.loads import (
 from jaxhydro.loads.wave_reflection import COEFFICIENT, DELAY, LATER, LATEST, SEEN
 from jaxhydro.waves.dispersion import wavenumber
 
-SIZE = 27.0  # m, of a platform of 20 000 t
-CUTOFFS = (0.03, 0.015, 0.06)  # Hz: below which motion is slow, tried in turn
-SHARE = 0.1  # of computed radiation or drift that is noticeable
+REFERENCE_LENGTH = 27.0  # m, of a platform of 20 000 t
+SLOW_MOTION_CUTOFFS = (0.03, 0.015, 0.06)  # Hz: below which motion is slow, tried in turn
+NOTICEABLE_SHARE = 0.1  # of computed radiation or drift that is noticeable
 
 
 def catalogue(
-    model: Model, scales: Mapping[str, Scales], waves: bool, wave_variance: float, step: float = 0.0
+    model: Model, scales: Mapping[str, NoticeableScales], waves: bool, wave_variance: float, step: float = 0.0
 ) -> tuple[list[Candidate], dict[str, Free], dict[str, float]]:
     """Candidates for the motions that `scales` has, their parameters, and what is noticeable of each of these.
 
@@ -44,10 +44,10 @@ def catalogue(
     that programs compiled for one campaign serve all of a platform.
     """
     # by octaves' tenths: programs compiled for one campaign serve others
-    known = Listed(2.0 ** (round(10 * math.log2(size(model) / SIZE)) / 10))
+    known = CatalogueBuilder(2.0 ** (round(10 * math.log2(displaced_length(model) / REFERENCE_LENGTH)) / 10))
     for dof in DOFS:
         if dof in scales:
-            of_motion(known, dof, scales, wave_variance if waves else None, step)
+            add_motion_effects(known, dof, scales, wave_variance if waves else None, step)
     _of_tables(known, model, waves)
     _of_the_whole(known, scales)
     _of_mass(known, model, scales)
@@ -58,12 +58,12 @@ def catalogue(
     return known.found, known.free, known.units
 
 
-def _of_tables(known: Listed, model: Model, waves: bool) -> None:
+def _of_tables(known: CatalogueBuilder, model: Model, waves: bool) -> None:
     """Those that the platform file names."""
-    looked_for = sought(model)
-    tables = {k: one for k, one in COMPUTED.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
+    looked_for = requested_table_labels(model)
+    tables = {k: one for k, one in TABLE_EFFECTS.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
     for effect, one in tables.items():
-        share, alone = known.linear(f"{effect}.share", SHARE), len(tables) == 1
+        share, alone = known.linear(f"{effect}.share", NOTICEABLE_SHARE), len(tables) == 1
         begin = {share: 1.0} if alone else {}
         known.add(effect, None, [share], passive=True, begin=begin, telling=one.telling, source=one.load.source)
     if len(tables) > 1:  # what one program has computed belongs together: one table alone may not be better than none
@@ -72,7 +72,7 @@ def _of_tables(known: Listed, model: Model, waves: bool) -> None:
         known.add("potential_flow", None, list(shares), passive=True, begin=shares, telling=telling, source=sources)
 
 
-def _of_the_whole(known: Listed, scales: Mapping[str, Scales]) -> None:
+def _of_the_whole(known: CatalogueBuilder, scales: Mapping[str, NoticeableScales]) -> None:
     """Those of several motions at once."""
     if "surge" in scales:
         s = scales["surge"]
@@ -115,7 +115,7 @@ def _of_the_whole(known: Listed, scales: Mapping[str, Scales]) -> None:
         )
 
 
-def _of_mass(known: Listed, model: Model, scales: Mapping[str, Scales]) -> None:
+def _of_mass(known: CatalogueBuilder, model: Model, scales: Mapping[str, NoticeableScales]) -> None:
     """What was weighed wrongly."""
     mass = float(model.body.mass)
     turning = np.asarray(model.body.inertia)
@@ -124,13 +124,13 @@ def _of_mass(known: Listed, model: Model, scales: Mapping[str, Scales]) -> None:
         if dof in scales:
             labels.append(known.linear(f"mass_properties.{name}", INERTIA * float(scale)))
     if {"pitch", "roll"} & set(scales):
-        labels.append(known.linear("mass_properties.centre_z", CENTRE_UP * size(model)))
+        labels.append(known.linear("mass_properties.centre_z", CENTRE_UP * displaced_length(model)))
     if "pitch" in scales:
-        labels.append(known.linear("mass_properties.centre_x", CENTRE_ALONG * size(model)))
+        labels.append(known.linear("mass_properties.centre_x", CENTRE_ALONG * displaced_length(model)))
     known.add("mass_properties", None, labels, telling="weigh the model and swing it in air", source=MassError.source)
 
 
-def _of_strips(known: Listed, model: Model, waves: bool) -> None:
+def _of_strips(known: CatalogueBuilder, model: Model, waves: bool) -> None:
     """Other drag than by one coefficient, other excitation than by added mass."""
     groups = sorted({label.rsplit(".", 1)[0] for label in model.values if ".Cd_" in label})
     if groups and any(type(load) in (StripDrag, EndDrag, ChangingDrag) for load in model.loads):
@@ -146,7 +146,7 @@ def _of_strips(known: Listed, model: Model, waves: bool) -> None:
             None,
             [known.linear("sea_state_dependent_drag.low_share", 0.1, 1.0)],
             shapes=(known.shape(cutoff := "sea_state_dependent_drag.cutoff", *(f / known.time for f in (0.03, 0.005, 0.08))),),
-            grid=tuple({cutoff: frequency / known.time} for frequency in CUTOFFS),
+            grid=tuple({cutoff: frequency / known.time} for frequency in SLOW_MOTION_CUTOFFS),
             telling="a decay in surge in still water against one in waves",
             source="OpenFAST HydroDyn, pull request 2895",
         )
@@ -161,7 +161,7 @@ def _of_strips(known: Listed, model: Model, waves: bool) -> None:
         )
 
 
-def _of_gauges(known: Listed) -> None:
+def _of_gauges(known: CatalogueBuilder) -> None:
     """What was measured at another time or place."""
     known.add(
         "sensor_lag",
@@ -181,7 +181,7 @@ def _of_gauges(known: Listed) -> None:
     )
 
 
-def _of_the_basin(known: Listed) -> None:
+def _of_the_basin(known: CatalogueBuilder) -> None:
     """What is in the water that was not sent: the gauge saw it, too, or did not."""
     known.linear(SEEN, 1.0)
     known.add(
@@ -189,8 +189,8 @@ def _of_the_basin(known: Listed) -> None:
         None,
         [known.linear(COEFFICIENT, 0.02)],
         shapes=(known.linear(DELAY, LATEST / 3, LATER),),
-        grid=AT_ONCE,
-        places=delays,
+        grid=ZERO_DELAY_GRID,
+        places=reflection_delays,
         telling="a few regular waves that stop: what comes after them, at a row of gauges",
         source=WaveReflection.source,
     )

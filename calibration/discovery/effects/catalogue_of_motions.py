@@ -4,9 +4,9 @@ import math
 from collections.abc import Mapping
 from functools import partial
 
-from calibration.discovery.effects.listed import Listed, Scales
-from calibration.discovery.effects.mode_splitting import beginnings
-from calibration.discovery.effects.oscillator_start import RATIO, periods
+from calibration.discovery.effects.listed import CatalogueBuilder, NoticeableScales
+from calibration.discovery.effects.mode_splitting import oscillator_starts
+from calibration.discovery.effects.oscillator_start import NEUTRAL_DAMPING_RATIO, oscillator_period_finder
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     CoulombFriction,
@@ -22,16 +22,21 @@ from jaxhydro.loads import (
     WaveDriftDamping,
 )
 
-SHORT, LONGER = 0.4, 1.5  # of the shortest and the longest natural period: between them hidden oscillators are sought
-BRIEF, LASTING = 0.7, 250.0  # s: ... 0.8 times and twice of which they can have
-STEPS = 20  # in a period at least: Adams-Bashforth's fourth order is unstable below 15
-RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
-LONG = ("surge", "sway")
-SHARP = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
-YIELDS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hysteresis yields
+MIN_NATURAL_PERIOD_RATIO, MAX_NATURAL_PERIOD_RATIO = (
+    0.4,
+    1.5,
+)  # of the shortest and the longest natural period: between them hidden oscillators are sought
+MIN_OSCILLATOR_PERIOD, MAX_OSCILLATOR_PERIOD = 0.7, 250.0  # s: ... 0.8 times and twice of which they can have
+MIN_STEPS_PER_PERIOD = 20  # in a period at least: Adams-Bashforth's fourth order is unstable below 15
+MEMORY_RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
+HORIZONTAL_MOTIONS = ("surge", "sway")
+FRICTION_SPEED_SHARE = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
+YIELD_FACTORS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hysteresis yields
 
 
-def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_variance: float | None, step: float) -> None:
+def add_motion_effects(
+    known: CatalogueBuilder, dof: str, scales: Mapping[str, NoticeableScales], wave_variance: float | None, step: float
+) -> None:
     """One motion's own; `wave_variance` (m2) is None where there are no waves, `step` (s) that of simulations in waves."""
     s, i, of = scales[dof], DOFS.index(dof) + 1, f".{dof}."
     known.add(
@@ -39,7 +44,7 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         dof,
         [known.linear(f"coulomb_friction{of}force", s.force)],
         # sharp beside the motion, and yet resolved by the time step; rounded, so that it compiles for many campaigns
-        shapes=(known.shape(f"coulomb_friction{of}speed", 2.0 ** round(math.log2(SHARP * s.rate)), 1e-6, 1.0),),
+        shapes=(known.shape(f"coulomb_friction{of}speed", 2.0 ** round(math.log2(FRICTION_SPEED_SHARE * s.rate)), 1e-6, 1.0),),
         passive=True,
         telling=f"a slow static pull-out and return in {dof}: friction leaves the platform off zero",
         source=CoulombFriction.source,
@@ -65,25 +70,25 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         dof,
         [known.linear(f"radiation_memory{of}strength", s.force / s.rate)],
         shapes=(known.shape(f"radiation_memory{of}frequency", *(rate / known.time for rate in (0.6, 0.03, 4.0))),),
-        grid=tuple({f"radiation_memory{of}frequency": rate / known.time} for rate in RATES),
+        grid=tuple({f"radiation_memory{of}frequency": rate / known.time} for rate in MEMORY_RATES),
         passive=True,
         telling=f"forced oscillation in {dof} at three periods",
         source=RadiationMemory.source,
     )
     natural = [one.period for one in scales.values()]
-    shortest = max(SHORT * min(natural), STEPS * step, BRIEF)
-    longest = max(min(LONGER * max(natural), LASTING), shortest)
+    shortest = max(MIN_NATURAL_PERIOD_RATIO * min(natural), MIN_STEPS_PER_PERIOD * step, MIN_OSCILLATOR_PERIOD)
+    longest = max(min(MAX_NATURAL_PERIOD_RATIO * max(natural), MAX_OSCILLATOR_PERIOD), shortest)
     known.add(
         "hidden_oscillator",
         dof,
         [known.linear(f"hidden_oscillator{of}mass", 0.02 * s.mass)],
         shapes=(
             known.shape(f"hidden_oscillator{of}period", min(max(s.period, shortest), longest), 0.8 * shortest, 2 * longest),
-            known.shape(f"hidden_oscillator{of}damping_ratio", RATIO, 0.002, 0.5),
+            known.shape(f"hidden_oscillator{of}damping_ratio", NEUTRAL_DAMPING_RATIO, 0.002, 0.5),
         ),
         grid=({f"hidden_oscillator{of}period": shortest},),
-        places=periods(dof, shortest, longest),
-        begins=partial(beginnings, dof),
+        places=oscillator_period_finder(dof, shortest, longest),
+        begins=partial(oscillator_starts, dof),
         passive=True,
         telling=f"a longer decay in {dof}, and a hammer test of what may be loose in the hull",
         source=HiddenOscillator.source,
@@ -95,19 +100,19 @@ def of_motion(known: Listed, dof: str, scales: Mapping[str, Scales], wave_varian
         telling="the same test with the platform moored, and its zero taken before and after",
         source=StaticForce.source,
     )
-    if dof in (*LONG, "pitch", "roll"):
+    if dof in (*HORIZONTAL_MOTIONS, "pitch", "roll"):
         default = 0.5 * known.length if DOFS.index(dof) < 3 else 0.01
         known.add(
             "hysteresis",
             dof,
             [known.linear(f"hysteresis{of}force", s.force)],
             shapes=(known.shape(f"hysteresis{of}yield_displacement", default, 0.02 * default, 20 * default),),
-            grid=tuple({f"hysteresis{of}yield_displacement": share * default} for share in YIELDS),
+            grid=tuple({f"hysteresis{of}yield_displacement": share * default} for share in YIELD_FACTORS),
             passive=True,
             telling=f"slow static cycles in {dof} at two amplitudes: the loop's area tells",
             source=Hysteresis.source,
         )
-    if dof in LONG:
+    if dof in HORIZONTAL_MOTIONS:
         names = {"odd_quadratic": 2, "even_quadratic": 2, "cubic": 3}
         known.add(
             "mooring_nonlinearity",

@@ -14,7 +14,7 @@ from jaxhydro.environment import DOFS
 
 
 @dataclass(frozen=True)
-class Scales:
+class NoticeableScales:
     """What is noticeable in one motion: displacement (m, rad), rate, force (N, N m), and moving mass (kg, kg m2)."""
 
     amplitude: float
@@ -28,9 +28,9 @@ class Scales:
         return 2.0 ** (round(10 * math.log2(2 * math.pi * self.amplitude / self.rate)) / 10)
 
 
-def scales_of(
+def noticeable_scales(
     mass: np.ndarray, stiffness: np.ndarray, spread: Mapping[str, float], fraction: float = 0.02
-) -> dict[str, Scales]:
+) -> dict[str, NoticeableScales]:
     """What is noticeable by motion, from the linear model's matrices and the largest standard deviation measured."""
     found = {}
     for dof, size in spread.items():
@@ -38,12 +38,12 @@ def scales_of(
         m, c = float(mass[i, i]), float(stiffness[i, i])
         omega = math.sqrt(c / m) if c > 0 else 0.1
         amplitude = math.sqrt(2) * size
-        found[dof] = Scales(amplitude, omega * amplitude, fraction * max(c, m * omega**2) * amplitude, m)
+        found[dof] = NoticeableScales(amplitude, omega * amplitude, fraction * max(c, m * omega**2) * amplitude, m)
     return found
 
 
 @dataclass(frozen=True)
-class Listed:
+class CatalogueBuilder:
     """What is listed so far: candidates, their parameters, and what is noticeable of each of these. `length` is the platform's
     over that of one of 20 000 t, for which lengths and frequencies are stated: Froude's law has them of another, or of a model
     that is declared at its own scale."""

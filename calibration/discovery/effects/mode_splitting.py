@@ -24,17 +24,21 @@ from jaxhydro.dynamics.statics import equilibrium, linearised, natural_modes, wi
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.linearisations import Place
+    from calibration.discovery.linearisations import Point
     from calibration.discovery.study import Study
 
-Begins = Callable[["Study", "Place", Sequence[int], np.ndarray], tuple[Mapping[str, float], ...]]
+StartingValuesFinder = Callable[["Study", "Point", Sequence[int], np.ndarray], tuple[Mapping[str, float], ...]]
 
-SAMPLES = 16  # in a natural period: those of a decay that are looked at
-FEWEST = 16  # samples for every mode
-WITHIN = 2.0  # times longer or shorter than the natural period: where its two modes are looked for
-APART = 0.03  # of their periods: modes that are closer are one
-RATIOS = (0.002, 0.5)  # damping ratios of a mass that may be
-ROUNDS, STEP, FURTHEST = 4, 1e-3, 3.0  # of the hull's own period; of a direction; standard deviations
+SAMPLES_PER_PERIOD = 16  # in a natural period: those of a decay that are looked at
+MIN_SAMPLES_PER_MODE = 16  # samples for every mode
+MAX_PERIOD_RATIO = 2.0  # times longer or shorter than the natural period: where its two modes are looked for
+MIN_PERIOD_SEPARATION = 0.03  # of their periods: modes that are closer are one
+DAMPING_RATIO_LIMITS = (0.002, 0.5)  # damping ratios of a mass that may be
+PERIOD_ITERATIONS, DIFFERENCE_STEP, MAX_STEP_DEVIATIONS = (
+    4,
+    1e-3,
+    3.0,
+)  # of the hull's own period; of a direction; standard deviations
 
 
 class Modes(NamedTuple):
@@ -45,7 +49,7 @@ class Modes(NamedTuple):
     left: float
 
 
-class Swinging(NamedTuple):
+class OscillatorEstimate(NamedTuple):
     """Natural period (s) of a hull without what swings in it; that mass's share of the hull's, its period and damping ratio."""
 
     hull: float
@@ -68,7 +72,7 @@ def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
     return Modes(eigenvalue[upper], 2 * amplitude[upper], left)
 
 
-def swinging(eigenvalue: np.ndarray, amplitude: np.ndarray) -> Swinging | None:
+def oscillator_from_modes(eigenvalue: np.ndarray, amplitude: np.ndarray) -> OscillatorEstimate | None:
     """What makes two modes (2,) of a hull's one, released from rest; None where nothing does.
 
     Damping is what each mode loses: 2 sigma_k (1 + mu r_k^2) = b + 2 zeta omega_0 mu (r_k - 1)^2, b the hull's.
@@ -87,32 +91,34 @@ def swinging(eigenvalue: np.ndarray, amplitude: np.ndarray) -> Swinging | None:
     both = np.column_stack([np.ones(2), 2 * np.sqrt(own) * share * (moved - 1) ** 2])
     damping = np.linalg.solve(both, 2 * loss * (1 + share * moved**2))[1]
     hull_period, period = (2 * math.pi / math.sqrt(one) for one in (hull, own))
-    return Swinging(hull_period, float(share), period, float(np.clip(damping, *RATIOS)))
+    return OscillatorEstimate(hull_period, float(share), period, float(np.clip(damping, *DAMPING_RATIO_LIMITS)))
 
 
-def split(values: np.ndarray, step: float, period: float, others: Sequence[float], count: int) -> tuple[Swinging | None, float]:
+def oscillator_in_decay(
+    values: np.ndarray, step: float, period: float, others: Sequence[float], count: int
+) -> tuple[OscillatorEstimate | None, float]:
     """What a decay's two strongest modes near its natural `period` (s) say, and the share of the decay that all modes leave;
     `others` are periods of other motions, `count` the modes there may be. Nothing, where a record is too short or too
     coarse."""
-    if len(values) < FEWEST * count or step > 2 * period / SAMPLES:
+    if len(values) < MIN_SAMPLES_PER_MODE * count or step > 2 * period / SAMPLES_PER_PERIOD:
         return None, 1.0
     found = modes_of(values - values.mean(), step, 2 * count + 1)
     here = 2 * np.pi / found.eigenvalue.imag
-    near = (np.abs(np.log(here / period)) < np.log(WITHIN)) & (found.eigenvalue.real < 0)
+    near = (np.abs(np.log(here / period)) < np.log(MAX_PERIOD_RATIO)) & (found.eigenvalue.real < 0)
     for other in others:
-        near &= np.abs(np.log(here / other)) > APART
+        near &= np.abs(np.log(here / other)) > MIN_PERIOD_SEPARATION
     two = np.flatnonzero(near)[np.argsort(-np.abs(found.amplitude[near]))][:2]
     left = found.left / max(float(np.std(values)), 1e-300)
     if len(two) < 2:
         return None, left
     apart = abs(float(np.diff(found.eigenvalue.imag[two])[0]))
     widths = -float(found.eigenvalue.real[two].sum())
-    if apart < max(widths, APART * float(found.eigenvalue.imag[two].mean())):
+    if apart < max(widths, MIN_PERIOD_SEPARATION * float(found.eigenvalue.imag[two].mean())):
         return None, left  # one mode, whose damping or stiffness is not linear
-    return swinging(found.eigenvalue[two], found.amplitude[two]), left
+    return oscillator_from_modes(found.eigenvalue[two], found.amplitude[two]), left
 
 
-def own_mode(model: Model, dof: str) -> tuple[float, float]:
+def natural_mode(model: Model, dof: str) -> tuple[float, float]:
     """Natural period (s) of a motion, what has a memory at rest, and the mass (kg, kg m2) of its mode, were all of it in that
     motion."""
     position = equilibrium(model)
@@ -122,8 +128,8 @@ def own_mode(model: Model, dof: str) -> tuple[float, float]:
     return float(modes.period[i]), float(shape @ mass @ shape) / float(shape[DOFS.index(dof)]) ** 2
 
 
-def beginnings(
-    dof: str, study: "Study", place: "Place", base: Sequence[int], width: np.ndarray
+def oscillator_starts(
+    dof: str, study: "Study", place: "Point", base: Sequence[int], width: np.ndarray
 ) -> tuple[Mapping[str, float], ...]:
     """Where a fit of `HiddenOscillator` in a motion may begin: as the two modes of a fitted decay say, with the coefficients
     as near a place as can be, in standard deviations (d,) along directions, that give the hull its period without what swings
@@ -135,32 +141,34 @@ def beginnings(
     others = [float(one) for one in modes.period if one != period]
     said = []
     for record in records:
-        step = max(period / SAMPLES, float(np.diff(record.time).max()))
+        step = max(period / SAMPLES_PER_PERIOD, float(np.diff(record.time).max()))
         time = np.arange(record.time[0], record.time[-1], step)
         values = np.interp(time, record.time, record.values[dof])
-        said.append(split(values, step, period, others, 1 + len(record.values)))
+        said.append(oscillator_in_decay(values, step, period, others, 1 + len(record.values)))
     best = min(((left, one) for one, left in said if one is not None), key=lambda each: each[0], default=None)
     if best is None:
         return ()
-    x = with_period(study, place.x, base, width, dof, best[1].hull)
-    mass = own_mode(study.space.model(study.model, jnp.asarray(x)), dof)[1]
+    x = coordinates_with_period(study, place.x, base, width, dof, best[1].hull)
+    mass = natural_mode(study.space.model(study.model, jnp.asarray(x)), dof)[1]
     values = {label: study.value(label, x) for label, at, to in zip(study.labels, place.x, x) if at != to}
     of = f"hidden_oscillator.{dof}."
     about = {f"{of}mass": best[1].share * mass, f"{of}period": best[1].period, f"{of}damping_ratio": best[1].ratio}
     return (values | about,)
 
 
-def with_period(study: "Study", x: np.ndarray, base: Sequence[int], width: np.ndarray, dof: str, period: float) -> np.ndarray:
+def coordinates_with_period(
+    study: "Study", x: np.ndarray, base: Sequence[int], width: np.ndarray, dof: str, period: float
+) -> np.ndarray:
     """Coordinates where a motion has a natural `period` (s): the shortest way there along the `base` directions, in their
     standard deviations."""
 
     def off(x: np.ndarray) -> float:
-        return math.log(own_mode(study.space.model(study.model, jnp.asarray(x)), dof)[0] / period)
+        return math.log(natural_mode(study.space.model(study.model, jnp.asarray(x)), dof)[0] / period)
 
     directions, size = study.directions[list(base)], width[list(base)]
-    for _ in range(ROUNDS):
+    for _ in range(PERIOD_ITERATIONS):
         now = off(x)
-        slopes = np.array([(off(x + STEP * one) - now) / STEP for one in directions]) * size
+        slopes = np.array([(off(x + DIFFERENCE_STEP * one) - now) / DIFFERENCE_STEP for one in directions]) * size
         step = -now * slopes / max(float(slopes @ slopes), 1e-300)
-        x = x + (step * size * min(1.0, FURTHEST / max(float(np.abs(step).max()), 1e-300))) @ directions
+        x = x + (step * size * min(1.0, MAX_STEP_DEVIATIONS / max(float(np.abs(step).max()), 1e-300))) @ directions
     return x

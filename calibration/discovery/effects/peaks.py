@@ -3,11 +3,11 @@
 import numpy as np
 from scipy.signal import find_peaks
 
-TRIED = 2  # values
-WORTH = 10.0  # of -2 ln L: a value that promises less is not tried
+MAX_PEAKS = 2  # values
+MIN_PEAK_GAIN = 10.0  # of -2 ln L: a value that promises less is not tried
 
 
-def likeliest(gain: np.ndarray) -> np.ndarray:
+def highest_peaks(gain: np.ndarray) -> np.ndarray:
     """Numbers of the highest peaks of what -2 ln L would gain, the highest first."""
-    peaks = find_peaks(gain, height=WORTH)[0]
-    return peaks[np.argsort(-gain[peaks])][:TRIED]
+    peaks = find_peaks(gain, height=MIN_PEAK_GAIN)[0]
+    return peaks[np.argsort(-gain[peaks])][:MAX_PEAKS]

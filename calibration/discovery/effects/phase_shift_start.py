@@ -14,28 +14,28 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from calibration.discovery.effects.peaks import likeliest
-from calibration.discovery.eliminated_least_squares import likelihoods
+from calibration.discovery.effects.peaks import highest_peaks
+from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from jaxhydro.environment import Environment
 
 if TYPE_CHECKING:
-    from calibration.discovery.linearisations import Look
+    from calibration.discovery.linearisations import Linearisation
     from calibration.discovery.study import Study
 
-Turns = Callable[[np.ndarray, Environment], np.ndarray]
+PhasePerUnit = Callable[[np.ndarray, Environment], np.ndarray]
 
-FINENESS = 0.2  # rad: phase from one value that is looked at to the next
-NEAR = 0.5  # rad: what is no further is found by slopes
+PHASE_SPACING = 0.2  # rad: phase from one value that is looked at to the next
+MIN_PHASE_SHIFT = 0.5  # rad: what is no further is found by slopes
 
 
-class Afar(NamedTuple):
+class PhaseShiftStart(NamedTuple):
     """Values by label where a refit begins, and what -2 ln L of the fitted tests would gain there, nothing else moved."""
 
     values: Mapping[str, float]
     gain: float
 
 
-def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> Afar | None:
+def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: PhasePerUnit) -> PhaseShiftStart | None:
     """The likeliest value of a parameter that turns waves by `turns` (rad a unit, of rates and the water), null where a look
     is that has its direction's slopes; None where that is near the null, or promises nothing."""
     (i,) = study.index([label])
@@ -49,15 +49,15 @@ def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> Afar | 
     if motion == 0:
         return None
     usual = math.sqrt(float(weight @ np.abs(along) ** 2) / motion)  # rad a unit
-    tried = np.arange(about.lower, about.upper, FINENESS / usual)
+    tried = np.arange(about.lower, about.upper, PHASE_SPACING / usual)
 
     def left(value: float) -> float:
         residual = look.residual.reshape(-1, 2).copy()
         change = along * np.expm1(1j * phase * value) / (1j * phase)
         residual[waves] += np.stack([change.real, change.imag], axis=1)
-        return float(likelihoods(study, residual.ravel())[study.used].sum())
+        return float(minus_two_log_likelihood(study, residual.ravel())[study.used].sum())
 
     gain = left(0.0) - np.array([left(value) for value in tried])
-    best = likeliest(gain)[:1]
-    far = best[np.abs(tried[best]) * usual > NEAR]
-    return Afar({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None
+    best = highest_peaks(gain)[:1]
+    far = best[np.abs(tried[best]) * usual > MIN_PHASE_SHIFT]
+    return PhaseShiftStart({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None

@@ -7,10 +7,10 @@ import numpy as np
 
 from jaxhydro.waves.sea import AbstractSea
 
-VISIBLE = 20.0  # times the noise, in power, that the highest peak of a force has: without it there is none
+MIN_PEAK_OVER_NOISE = 20.0  # times the noise, in power, that the highest peak of a force has: without it there is none
 
 
-class Moved(NamedTuple):
+class ResampledTest(NamedTuple):
     """A test on an even clock (s): motions (m, rad) measured and simulated, noise, the sea that it was in, and its wave (m)."""
 
     id: str
@@ -29,13 +29,13 @@ class Moved(NamedTuple):
         return float(self.time[1] - self.time[0])
 
 
-class Force(NamedTuple):
+class RecoveredForce(NamedTuple):
     """The latent force (N, N m) of one motion of a test; motion (m, rad; /s; /s2) and force all along its clock, and the
     `simulated` motion and its rate without it. Of these `inside` is to be believed. `gain` by Fourier line and `taper` in time
     are what the force was seen through, `noise` (N, N m) what the sensor's noise leaves in it, `peak` by how much its spectrum
     is above that at most, in power."""
 
-    test: Moved
+    test: ResampledTest
     motion: str
     force: np.ndarray
     position: np.ndarray
@@ -60,7 +60,7 @@ class Force(NamedTuple):
     @property
     def visible(self) -> bool:
         """Whether it is more than noise."""
-        return self.peak > VISIBLE and self.root_mean_square > 0
+        return self.peak > MIN_PEAK_OVER_NOISE and self.root_mean_square > 0
 
 
 def filtered(values: np.ndarray, gain: np.ndarray) -> np.ndarray:
