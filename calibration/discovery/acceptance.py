@@ -73,18 +73,18 @@ class HeldOutComparison(NamedTuple):
     had not seen them."""
 
     study: Study
-    asked: np.ndarray
+    compared: np.ndarray
     before: ResidualSummary
     after: ResidualSummary
     unseen: bool
 
-    def gain(self) -> tuple[float, bool]:
+    def error_reduction(self) -> tuple[float, bool]:
         """Share of the squared error above the floor that is gone in the motion and region where it is most (a geometric mean
         over tests), and whether there is anything to tell. An effect acts in a motion and in some frequencies: what goes on as
         before elsewhere does not speak against it, and what becomes worse is in `net`."""
         dof = self.study.by_region(self.study.pooled)
         before, after = self.before.squares, self.after.squares
-        some = self.asked[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
+        some = self.compared[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
         if not some.any():
             return 0.0, self.unseen
         ratio = np.log(np.where(some, after + 0.1 * dof, 1.0) / np.where(some, before + 0.1 * dof, 1.0))
@@ -96,11 +96,11 @@ class HeldOutComparison(NamedTuple):
         return 1 - math.exp(min(found)), True
 
     @property
-    def net(self) -> float:
+    def likelihood_gain(self) -> float:
         """By how much -2 ln L of all that is asked falls."""
-        return float((self.before.likelihood - self.after.likelihood)[self.asked].sum())
+        return float((self.before.likelihood - self.after.likelihood)[self.compared].sum())
 
-    def matters(self) -> float:
+    def relevance(self) -> float:
         """By how much the error of a motion in a region falls at most, over what matters. Of what a decay is not about, the
         floor alone is a measure."""
         study = self.study
@@ -109,12 +109,12 @@ class HeldOutComparison(NamedTuple):
         noise = study.by_region(study.dof) * np.array([[one.noise**2] for one in study.series]) / samples
         of_floor = np.array([[RELATIVE_FLOOR[one.kind]] for one in study.series])
         decay = np.array([[one.kind == "decay"] for one in study.series])
-        spread, seen = np.array([[(one.spread, one.least)] for one in study.series]).transpose(2, 0, 1)
+        spread, seen = np.array([[(one.spread, one.floor_rms)] for one in study.series]).transpose(2, 0, 1)
         motion = np.where(decay, spread, np.sqrt(np.maximum(squares - noise, 0.0)) / of_floor)
         asked = np.where(study.main[:, None], MIN_MOTION_SHARE * motion, math.inf)
         least = np.minimum(asked, MIN_FLOOR_MULTIPLE * np.where(decay, seen, np.sqrt(squares)))
-        fallen = (self.before.parts - self.after.parts)[self.asked]
-        return float((fallen / np.maximum(least[self.asked], 1e-300)).max(initial=0.0))
+        fallen = (self.before.parts - self.after.parts)[self.compared]
+        return float((fallen / np.maximum(least[self.compared], 1e-300)).max(initial=0.0))
 
 
 class Verdict(NamedTuple):
@@ -140,8 +140,8 @@ def assess_effect(
 ) -> Verdict:
     """Whether an effect is believed; `count` are independent observations, for BIC."""
     bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(one.labels) * math.log(count)
-    held, told = grounds.gain()
-    net, clear, matters = grounds.net, significance(study, one, after, prior), grounds.matters()
+    held, told = grounds.error_reduction()
+    net, clear, matters = grounds.likelihood_gain, significance(study, one, after, prior), grounds.relevance()
     values = {label: study.value(label, after.look.place.x) for label in one.positive}
     wrong = [label for label, value in values.items() if value < 0 and is_significant(study, label, one, after, prior)]
     refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow" if wrong else ""

@@ -22,8 +22,8 @@ REFIT_ITERATIONS = 8  # of a refit
 class CandidateScoring(EffectFits):
     """Fits of a campaign, what was seen of every candidate, and why those are not in the model that are not."""
 
-    def __init__(self, campaign: Campaign, posed: StudySetup, say: Callable[[str, float], None]) -> None:
-        super().__init__(campaign, posed, say)
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+        super().__init__(campaign, setup, say)
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
 
@@ -32,27 +32,34 @@ class CandidateScoring(EffectFits):
         self.say(f"round {number}: scoring", fraction)
         self.scores = [one for one in self.scores if one.round != number]  # of a fit that was bettered on the way
         there = {label for one in state.chosen for label in one.labels}
-        others = [one for one in self.posed.candidates if not set(one.labels) <= there]
+        others = [one for one in self.setup.candidates if not set(one.labels) <= there]
         best: dict[str, ScoredCandidate] = {}
         grids = {one.name: one.grid or ({},) for one in others}
         for g in count():
             if not (todo := [one for one in others if g < len(grids[one.name])]):
                 break
-            place = self.shaped(state.look.place, {k: v for one in todo for k, v in grids[one.name][g].items()})
+            place = self.with_values(state.look.place, {k: v for one in todo for k, v in grids[one.name][g].items()})
             columns = dict.fromkeys(i for one in todo for i in self.study.index(one.amplitudes) if i not in state.look.active)
-            seen = self.study.look(place, list(columns))
+            seen = self.study.linearise(place, list(columns))
             for one in todo:
                 self.say(f"round {number}: scoring {one.name}", fraction)
                 mine = [i for i in self.study.index(one.amplitudes) if i not in state.look.active]
-                look = replace(state.look.beside(seen.along(mine)), place=self.shaped(state.look.place, grids[one.name][g]))
+                look = replace(
+                    state.look.joined_with(seen.restricted_to(mine)),
+                    place=self.with_values(state.look.place, grids[one.name][g]),
+                )
                 found = predict_gain(self.study, look, self.prior([*state.chosen, one]))
-                if one.places is not None and g < len(one.grid):
-                    found_at = one.places(self.study, state.look, seen.along(mine[:1]).slopes[:, 0])
+                if one.shape_finder is not None and g < len(one.grid):
+                    found_at = one.shape_finder(self.study, state.look, seen.restricted_to(mine[:1]).slopes[:, 0])
                     grids[one.name] += tuple({**one.grid[g], **shape} for shape in found_at)
                 if self.wrong_sign(one, look, found):
                     found = found._replace(gain=0 * found.gain)
                 if one.name not in best or found.fitted > best[one.name].predicted.fitted:
-                    far = None if one.turns is None else phase_shift_start(self.study, look, one.amplitudes[0], one.turns)
+                    far = (
+                        None
+                        if one.phase_per_unit is None
+                        else phase_shift_start(self.study, look, one.amplitudes[0], one.phase_per_unit)
+                    )
                     best[one.name] = ScoredCandidate(one, found, look, far)
         ranked = sorted(best.values(), key=lambda item: -item.promise)
         for item in ranked:
@@ -60,12 +67,12 @@ class CandidateScoring(EffectFits):
             self.scores.append(Score(number, one.effect, one.dof, found.fitted, len(one.amplitudes), found.held, None, None))
         return ranked
 
-    def begins(self, one: Candidate, state: FitState) -> tuple[Mapping[str, float], ...]:
+    def starting_values(self, one: Candidate, state: FitState) -> tuple[Mapping[str, float], ...]:
         """Values at which a refit begins, too: of another program, or what decays say."""
-        place = self.renewed(state.look.place, self.posed.base)
-        base, width = self.study.index(self.posed.base), self.posed.prior.width
-        said = () if one.begins is None else one.begins(self.study, place, base, width)
-        return (*([one.begin] if one.begin else ()), *said)
+        place = self.with_starting_values(state.look.place, self.setup.base)
+        base, width = self.study.index(self.setup.base), self.setup.prior.width
+        said = () if one.starting_values_finder is None else one.starting_values_finder(self.study, place, base, width)
+        return (*([one.starting_values] if one.starting_values else ()), *said)
 
     def wrong_sign(self, one: Candidate, look: Linearisation, found: FirstOrderGain) -> bool:
         """Whether what physics wants above zero goes below it, and clearly so."""
@@ -75,26 +82,26 @@ class CandidateScoring(EffectFits):
                 return True
         return False
 
-    def refuse(self, one: Candidate, why: str, taken_out: Verdict | None = None) -> None:
+    def reject(self, one: Candidate, why: str, taken_out: Verdict | None = None) -> None:
         """Keep why a candidate is not in the model; "": nothing to keep. `taken_out`, the verdict on one that was in it."""
         if why:
             self.rejected[one.name] = Rejected(one.effect, one.dof, why, taken_out)
 
-    def attempt(self, state: FitState, scored: ScoredCandidate, number: int, fraction: float) -> RefittedCandidate:
+    def refit_candidate(self, state: FitState, scored: ScoredCandidate, number: int, fraction: float) -> RefittedCandidate:
         """A candidate refitted, everything else free: its shape too, once it is off its null."""
         one = scored.candidate
         chosen = (*state.chosen, one)
         name = f"round {number}: {one.name}"
         reached = self.fit(scored.look, chosen, REFIT_ITERATIONS, 0, name, fraction)
         if one.shapes:
-            look = self.study.look(reached.look.place, self.active(chosen))
+            look = self.study.linearise(reached.look.place, self.active(chosen))
             reached = self.fit(look, chosen, REFIT_ITERATIONS, 0, name, fraction)
         after = self.state(chosen, reached)
-        for values in (*scored.begins, *([scored.afar.values] if scored.afar else ())):
-            place = self.shaped(self.renewed(state.look.place, self.posed.base), values)
-            other = self.refit(self.study.look(place, self.active(chosen)), chosen, f"{name}, from afar", fraction)
+        for values in (*scored.starting_values, *([scored.phase_shift.values] if scored.phase_shift else ())):
+            place = self.with_values(self.with_starting_values(state.look.place, self.setup.base), values)
+            other = self.refit(self.study.linearise(place, self.active(chosen)), chosen, f"{name}, from afar", fraction)
             after = self.likeliest(after, other)
-        verdict = self.judge(state, after, one)
+        verdict = self.assess(state, after, one)
         gains = state.likelihood - after.likelihood
         fitted, held = float(gains[self.study.used].sum()), float(gains[~self.study.used].sum())
         for i, score in enumerate(self.scores):

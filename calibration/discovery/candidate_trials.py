@@ -21,13 +21,13 @@ class ScoredCandidate(NamedTuple):
     candidate: Candidate
     predicted: FirstOrderGain
     look: Linearisation
-    afar: PhaseShiftStart | None = None
-    begins: tuple[Mapping[str, float], ...] = ()
+    phase_shift: PhaseShiftStart | None = None
+    starting_values: tuple[Mapping[str, float], ...] = ()
 
     @property
     def promise(self) -> float:
         """What -2 ln L of the fitted tests may gain."""
-        return max(self.predicted.fitted, self.afar.gain if self.afar else 0.0)
+        return max(self.predicted.fitted, self.phase_shift.gain if self.phase_shift else 0.0)
 
 
 class RefittedCandidate(NamedTuple):
@@ -39,7 +39,7 @@ class RefittedCandidate(NamedTuple):
     verdict: Verdict
     worth: float
 
-    def like(self, best: "RefittedCandidate") -> bool:
+    def indistinguishable_from(self, best: "RefittedCandidate") -> bool:
         """Whether it cannot be told from another."""
         return best.worth - self.worth < INDISTINGUISHABLE_SHARE * abs(best.worth)
 
@@ -50,7 +50,7 @@ def in_order_of_belief(good: Sequence[RefittedCandidate]) -> list[RefittedCandid
     best = max(good, key=lambda one: one.worth, default=None)
 
     def rank(one: RefittedCandidate) -> tuple[float, ...]:
-        if best is None or not one.like(best):
+        if best is None or not one.indistinguishable_from(best):
             return 1, -one.worth
         return 0, one.candidate.effect not in SENSOR_EFFECTS, len(one.candidate.labels), -one.worth
 

@@ -38,7 +38,7 @@ class SignComparison(NamedTuple):
     use: str
     correlation: float
     error: float
-    turned: float
+    reversed_error: float
 
 
 def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
@@ -101,7 +101,7 @@ def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
 def _effect(channel: str, met: Sequence[SignComparison], alike: tuple[str, ...]) -> Effect:
     def gone(use: str) -> float:
         """Share of the squared error, motion by motion alike."""
-        shares = [1 - one.turned / one.error for one in met if one.use == use]
+        shares = [1 - one.reversed_error / one.error for one in met if one.use == use]
         return float(np.mean(shares)) if shares else float("nan")
 
     label, meaning = f"sensor_sign.{channel}", f"sign of the recorded {channel}, by that which is declared"

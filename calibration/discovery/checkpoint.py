@@ -95,7 +95,7 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
                 tell(f"{path}: {_other(about['computed_with'])}; the diagnosis starts anew")
                 return []
             arrays = {name: file[name] for name in file.files if name != DOCUMENT_KEY}
-        candidates = {one.name: one for one in search.posed.candidates}
+        candidates = {one.name: one for one in search.setup.candidates}
         reached: Checkpoint = _rebuilt(Checkpoint, about["reached"], arrays, candidates)
         _check(reached, search)
     except FileNotFoundError:
@@ -115,12 +115,12 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
 
 def fingerprint(search: "Search") -> str:
     """Of all that a diagnosis depends on: what computes it, the campaign and its files, platform, candidates and options."""
-    posed, campaign = search.posed, search.campaign
+    setup, campaign = search.setup, search.campaign
     manifest, folder = campaign.manifest, campaign.folder
     files = [folder / test.file for test in manifest.tests]
     files += [Path(platform_source(manifest, folder)), *map(Path, campaign.platform.files().values())]
-    model = (campaign.platform, campaign.own, posed.declared)
-    study = (posed.study.names, posed.study.options, posed.motions, posed.candidates)
+    model = (campaign.platform, campaign.own, setup.declared)
+    study = (setup.study.names, setup.study.options, setup.motions, setup.candidates)
     return fingerprints.fingerprint(manifest, campaign.records, files, model, study)
 
 

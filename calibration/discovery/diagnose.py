@@ -67,7 +67,7 @@ def diagnose(
         how, notes = options_for(campaign) if options is None else (options, ())
         taken = try_strip_conventions(campaign, say) if by_a_program(how) else StripTrial(campaign)
         search = Search(taken.campaign, set_up_study(taken.campaign, how, candidates), say)
-        search.plain, search.strips, notes = taken.fit, taken.strips, (*notes, *taken.notes)
+        search.decay_calibration, search.strips, notes = taken.fit, taken.strips, (*notes, *taken.notes)
         states.extend([] if kept is None else load_checkpoint(kept, search, unusable.append))
         return search, notes
 
@@ -81,7 +81,7 @@ def diagnose(
     else:
         if unusable:
             warnings.warn(unusable[-1], CheckpointWarning, stacklevel=2)
-        reach(search.declared())
+        reach(search.fit_baseline())
 
     def concluded() -> Diagnosis:
         lost = [] if search.alone is None else abandoned_decays(search.study, search.alone, states[-1].left)
@@ -94,18 +94,18 @@ def diagnose(
         for again in range(2 * MAX_EFFECTS):
             if len(states) > MAX_EFFECTS:  # an earlier run may have reached them
                 break
-            if len(states) > 1 and (second := search.in_second_order(states[-1], len(states))) is not None:
+            if len(states) > 1 and (second := search.second_order_again(states[-1], len(states))) is not None:
                 states[0], states[-1] = second
-            states[-1], after = search.grow(fitted := states[-1], len(states))
+            states[-1], after = search.add_effect(fitted := states[-1], len(states))
             if after is not None:
                 reach(after)
             elif states[-1] is fitted or again >= MAX_EFFECTS:
                 break
         if len(states) > MAX_EFFECTS:
             search.notes.append(f"the search ended with the effect number {MAX_EFFECTS}, not because nothing more was found")
-        states.append(search.pruned(states[-1]))
+        states.append(search.without_needless_effects(states[-1]))
         if not unexplained_motions(search, anatomy(search, states[-1])):  # what is unexplained may have bent them
-            states.append(search.weighed(states[-1]))
+            states.append(search.with_mass_properties(states[-1]))
     except KeyboardInterrupt as stopped:
         stopping()
         stopped.partial = concluded()  # type: ignore[attr-defined]

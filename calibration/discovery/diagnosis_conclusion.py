@@ -54,7 +54,7 @@ def conclude(
     more = unexplained_motions(search, left)
     sure = [one for one in effects if one.in_doubt is None]
     verdict = "found" if sure else ("unexplained" if effects or more else "nothing_missing")
-    lost = strays([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
+    lost = strays([test for test in augmented.tests if test.kind == "decay"], search.setup.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name,
@@ -93,7 +93,7 @@ def next_test(search: Search, after: FitState, verdict: str) -> str:
         tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
         best = max(tried, key=lambda one: one.verdict.bic if one.verdict else 0.0, default=None)
         name = None if best is None else (best.effect, best.degree_of_freedom)
-        mine = [one for one in search.posed.candidates if (one.effect, one.dof) == name]
+        mine = [one for one in search.setup.candidates if (one.effect, one.dof) == name]
         return "; ".join(f"{one.telling} (of what was tried, {called(one.name)} came nearest)" for one in mine if one.telling)
     return next((one.telling for one in after.chosen if one.telling), "")
 
@@ -105,7 +105,7 @@ def augmented_model(search: Search, state: FitState) -> Model:
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
     values |= {label: search.study.value(label, state.look.place.x) for one in state.chosen for label in one.choices}
     own = [one for one in state.chosen if one.load is not None]
-    return with_effects(with_candidates(search.posed.declared, own), values).at_values(values)
+    return with_effects(with_candidates(search.setup.declared, own), values).at_values(values)
 
 
 def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
@@ -134,8 +134,8 @@ def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[
 def calibration_of(campaign: Campaign, search: Search, state: FitState, before: Calibration | None) -> Calibration:
     """A fit in the form of a calibration: all tests, errors, bands. `before` gives the motions to compare with."""
     effects = [label for one in state.chosen for label in one.labels]
-    nuisances = [name for name in search.posed.nuisances if name in search.study.labels and name not in effects]
-    names = [*search.posed.base, *nuisances, *effects]
+    nuisances = [name for name in search.setup.nuisances if name in search.study.labels and name not in effects]
+    names = [*search.setup.base, *nuisances, *effects]
     lines = [one.label for one in search.study.space.free if one.label.startswith("mooring.")]
     choices = [label for one in state.chosen for label in one.choices]
     parameters = estimates_of(search, state, names) | _as_given(search, state, lines, False) | _as_given(search, state, choices)
@@ -210,7 +210,7 @@ def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestF
         for test, begin, values, residual in zip(sea.tests, sea.begins, np.asarray(sea.measured), every):
             record = by_id[test]
             series = tuple(
-                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in search.posed.motions)
+                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in search.setup.motions)
                 for dof, m, r in zip(sea.dofs, values, residual)
             )
             time = np.asarray(sea.times[begin : begin + n])

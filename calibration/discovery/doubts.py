@@ -53,7 +53,7 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     model's (`before`), and what acts in a motion of which it has; drift where the waves' own second order was left out as
     motions follow worse with it: what acts in its place goes with the waves' square as well."""
     last = max((one.round for one in search.scores), default=0)
-    candidates = {(one.effect, one.dof): one.name for one in search.posed.candidates}
+    candidates = {(one.effect, one.dof): one.name for one in search.setup.candidates}
     tried = {
         candidates[one.effect, one.degree_of_freedom]: one.verdict
         for one in search.scores
@@ -104,7 +104,7 @@ def moving_release_notes(search: Search, state: FitState) -> list[str]:
 
 def far_coefficient_notes(search: Search, fitted: Calibration) -> list[str]:
     """In words, the coefficients that end far from what was declared."""
-    some = [fitted.parameters[label] for label in search.posed.base if label in fitted.parameters]
+    some = [fitted.parameters[label] for label in search.setup.base if label in fitted.parameters]
     far = [
         one
         for one in some

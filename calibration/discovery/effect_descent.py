@@ -58,7 +58,7 @@ def bounded_step(
     low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
     kept = np.clip(step, low, high)
     if (held := kept != step).any() and not held.all():
-        rest = look.along([i for i, out in zip(look.active, held) if not out])
+        rest = look.restricted_to([i for i, out in zip(look.active, held) if not out])
         rest = replace(rest, residual=look.residual + look.slopes[:, held] @ kept[held])
         kept[~held], own = damped_step(study, rest, used, prior, damping)
     return np.clip(kept, low, high), own
@@ -76,19 +76,19 @@ def fit(
     prior: Prior,
     *,
     iterations: int,
-    looks: int = 0,
+    relinearisations: int = 0,
     tolerance: float = 0.5,
-    say: Callable[[int, float], None] = lambda *_: None,
+    report: Callable[[int, float], None] = lambda *_: None,
 ) -> FitOutcome:
     """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
-    `tolerance`, or than `MIN_RELATIVE_GAIN` of what is minimised there; slopes are taken anew at most `looks` times, and once more at the
+    `tolerance`, or than `MIN_RELATIVE_GAIN` of what is minimised there; slopes are taken anew at most `relinearisations` times, and once more at the
     end. It stays where a simulation diverges."""
     logarithmic = study.logarithmic[list(look.active)]
     directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
     if has_diverged(look.residual):
         return FitOutcome(look, 0, False)
-    damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
+    damping, settled, fresh, taken, left = 1e-3, False, True, 0, relinearisations
     while taken < iterations and not settled:
         stop_if_asked()
         taken += 1
@@ -105,14 +105,14 @@ def fit(
         if gain > 0:
             look, now, fresh = broyden_update(study, look, there, residual, step, own), cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
-            say(taken, now)
+            report(taken, now)
         if gain >= max(least, MIN_PREDICTED_SHARE * expected):
             continue
         if known and little:
             settled = True
         elif not known:
-            look, fresh, left, damping = study.look(look.place, look.active), True, left - 1, 1e-3
+            look, fresh, left, damping = study.linearise(look.place, look.active), True, left - 1, 1e-3
         elif gain <= 0:
             damping = max(damping * 8, 1e-2)
             settled = damping > 1e6
-    return FitOutcome(study.look(look.place, look.active) if looks and not fresh else look, taken, settled)
+    return FitOutcome(study.linearise(look.place, look.active) if relinearisations and not fresh else look, taken, settled)

@@ -32,13 +32,13 @@ MIN_FIT_GAIN = 1.0  # of -2 ln L: what another fit has to gain to be gone on wit
 class EffectFits:
     """Fits of a campaign with some effects in the model, and what they are worth."""
 
-    def __init__(self, campaign: Campaign, posed: StudySetup, say: Callable[[str, float], None]) -> None:
-        self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+        self.campaign, self.setup, self.study, self.say = campaign, setup, setup.study, say
         self.order: SecondOrderTreatment = "second"
-        self.plain: Fit | None = None  # an ordinary calibration to the decays, where one is at hand
+        self.decay_calibration: Fit | None = None  # an ordinary calibration to the decays, where one is at hand
         self.strips: Strips | None = None  # where they are not taken as the platform file says
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
-        self.base = self.study.index([*posed.base, *posed.nuisances])
+        self.base = self.study.index([*setup.base, *setup.nuisances])
         # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only
         self.count = max(2.0, float(self.study.dof[self.study.used].sum()) / 4)
 
@@ -48,10 +48,10 @@ class EffectFits:
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
         """What is nearly known, mass properties or draught, is not where it is what is looked for."""
-        width = self.posed.prior.width.copy()
+        width = self.setup.prior.width.copy()
         for one in chosen:
             width[self.study.index(one.amplitudes)] = CANDIDATE_PRIOR_WIDTH
-        return Prior(self.posed.prior.mean, width)
+        return Prior(self.setup.prior.mean, width)
 
     @cached_property
     def start(self) -> Point:
@@ -62,7 +62,7 @@ class EffectFits:
             return Point(x, np.zeros((0, 0)))
         own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
-            if (plain := self.plain) is None:
+            if (plain := self.decay_calibration) is None:
                 run(plain := prepare(self.campaign), near=True)
             for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
@@ -80,50 +80,65 @@ class EffectFits:
         if not self.study.seas:
             return
         stated = {one.label for one in self.study.space.free if math.isfinite(one.prior_deviation)}
-        mine = self.study.index([name for name in self.posed.base if name not in stated])
-        mean = self.posed.prior.mean.copy()
+        mine = self.study.index([name for name in self.setup.base if name not in stated])
+        mean = self.setup.prior.mean.copy()
         mean[mine] = self.study.steps(x)[mine]
-        self.posed = self.posed._replace(prior=Prior(mean, self.posed.prior.width))
+        self.setup = self.setup._replace(prior=Prior(mean, self.setup.prior.width))
 
-    def expect(self, place: Point) -> None:
+    def weigh_by_expected(self, place: Point) -> None:
         """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
         self.study = replace(self.study, expected=expected_rows(self.study, place))
 
     def take_seas(self, order: SecondOrderTreatment) -> None:
         """From now on the seas of this order."""
         self.order = order
-        self.study = replace(self.study, seas=self.posed.study.seas if order == "second" else self.study.other_seas[order])
+        self.study = replace(self.study, seas=self.setup.study.seas if order == "second" else self.study.other_seas[order])
         self.__dict__.pop("blocks", None)  # which were cut from others
 
     def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """All directions of a look, until nothing is gained."""
         return self.state(chosen, self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction))
 
-    def tried_from(self, place: Point, state: FitState, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
+    def refitted_from(self, place: Point, state: FitState, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """A state; where a fit of some effects from another place follows the fitted tests better, that one. It is looked for
         with the state's slopes, and fitted anew only where it seems to be there."""
-        look = state.look.along(self.active(chosen))
+        look = state.look.restricted_to(self.active(chosen))
         there = replace(look, place=place, residual=self.study.residual(place))
         reached = self.fit(there, chosen, MAX_ITERATIONS, 0, name, fraction).look
         gain = float((state.likelihood - minus_two_log_likelihood(self.study, reached.residual))[self.study.used].sum())
         if gain < MIN_FIT_GAIN:
             return state
-        return self.likeliest(state, self.refit(self.study.look(reached.place, look.active), chosen, name, fraction))
+        return self.likeliest(state, self.refit(self.study.linearise(reached.place, look.active), chosen, name, fraction))
 
     def fit(
-        self, look: Linearisation, chosen: Sequence[Candidate], iterations: int, looks: int, name: str, fraction: float
+        self,
+        look: Linearisation,
+        chosen: Sequence[Candidate],
+        iterations: int,
+        relinearisations: int,
+        name: str,
+        fraction: float,
     ) -> FitOutcome:
         def report(i: int, cost: float) -> None:
             self.say(f"{name}: iteration {i}, -2 ln L {cost:.0f}", fraction)
 
         prior = self.prior(chosen)
-        return fit(self.study, look, self.study.used, prior, iterations=iterations, looks=looks, tolerance=1.0, say=report)
+        return fit(
+            self.study,
+            look,
+            self.study.used,
+            prior,
+            iterations=iterations,
+            relinearisations=relinearisations,
+            tolerance=1.0,
+            report=report,
+        )
 
     def state(self, chosen: Sequence[Candidate], reached: FitOutcome) -> FitState:
         """What a fit has reached; the held-out decays' own unknowns are fitted to them, the parameters as they are."""
         study, look = self.study, reached.look
         if study.decays is not None and not study.fitted_decays.all():
-            alone = fit(study, look.along(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
+            alone = fit(study, look.restricted_to(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
             look = replace(alone, active=look.active, slopes=look.slopes)
         residual, settled, taken = study.residual(look.place, "all"), reached.settled, reached.iterations
         return FitState(
@@ -136,7 +151,7 @@ class EffectFits:
             ResidualSummary.of(study, residual),
         )
 
-    def shaped(self, place: Point, values: Mapping[str, float]) -> Point:
+    def with_values(self, place: Point, values: Mapping[str, float]) -> Point:
         """A place with some parameters as given."""
         x = place.x.copy()
         for label, value in values.items():
@@ -144,7 +159,7 @@ class EffectFits:
             x[i] = self.study.space.free[i].transform.inverse(value)
         return Point(x, place.own)
 
-    def renewed(self, place: Point, names: Sequence[str]) -> Point:
+    def with_starting_values(self, place: Point, names: Sequence[str]) -> Point:
         """A place where some directions are as they were where the search began."""
         at = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
         return replace(place, x=np.where(at, self.begun, place.x))
@@ -153,15 +168,15 @@ class EffectFits:
         """The one that follows the fitted tests best."""
         return min(states, key=lambda state: float(state.likelihood[self.study.used].sum()))
 
-    def judge(self, before: FitState, after: FitState, one: Candidate, last: bool = False) -> Verdict:
+    def assess(self, before: FitState, after: FitState, one: Candidate, last: bool = False) -> Verdict:
         """Whether an effect is believed: by the tests held out; where there are none by the fitted ones, and at `last` by their
         blocks left out in turn."""
         study, prior = self.study, self.prior(after.chosen)
         grounds = HeldOutComparison(study, ~study.used, before.left, after.left, True)
         if study.used.all():
-            grounds = grounds._replace(asked=study.used, unseen=False)
+            grounds = grounds._replace(compared=study.used, unseen=False)
             if last and self.blocks is not None:
-                without, with_it = (self.blocks.left(state, self.prior(state.chosen)) for state in (before, after))
+                without, with_it = (self.blocks.residual_summary(state, self.prior(state.chosen)) for state in (before, after))
                 grounds = HeldOutComparison(self.blocks.study, np.ones(len(without.error), bool), without, with_it, True)
         return assess_effect(study, before, after, one, prior, self.count, grounds)
 

@@ -29,16 +29,16 @@ class HeldOutBlocks:
 
     def __init__(self, study: Study, records: Sequence[Record]) -> None:
         self.study, self.block = study_in_blocks(study, records)
-        self.known: dict[tuple[str, ...], ResidualSummary] = {}
+        self.summaries: dict[tuple[str, ...], ResidualSummary] = {}
 
-    def left(self, state: FitState, prior: Prior) -> ResidualSummary:
+    def residual_summary(self, state: FitState, prior: Prior) -> ResidualSummary:
         """What is left of every block where the others are fitted, beginning at a state."""
         names = tuple(one.name for one in state.chosen)
-        if names not in self.known:
-            self.known[names] = self._left(state, prior)
-        return self.known[names]
+        if names not in self.summaries:
+            self.summaries[names] = self._residual_summary(state, prior)
+        return self.summaries[names]
 
-    def _left(self, state: FitState, prior: Prior) -> ResidualSummary:
+    def _residual_summary(self, state: FitState, prior: Prior) -> ResidualSummary:
         study = self.study
         own = np.zeros((0, 0))
         if study.decays is not None:
@@ -46,16 +46,18 @@ class HeldOutBlocks:
         place = Point(state.look.place.x, own)
         every = np.ones(len(study.series), bool)
         if study.decays is not None:
-            place = fit(study, study.look(place, ()), every, prior, iterations=BLOCK_ITERATIONS, looks=1).look.place
+            place = fit(
+                study, study.linearise(place, ()), every, prior, iterations=BLOCK_ITERATIONS, relinearisations=1
+            ).look.place
         if study.seas and study.expected is None:
             self.study = study = replace(study, expected=expected_rows(study, place))
-        look = study.look(place, state.look.active)
+        look = study.linearise(place, state.look.active)
         found = ResidualSummary.of(study, look.residual)
         for number in range(BLOCKS_PER_TEST):
             out = self.block == number
             there = fit(study, look, ~out, prior, iterations=BLOCK_ITERATIONS).look
             if study.decays is not None:
-                there = fit(study, there.along(()), out, prior, iterations=BLOCK_ITERATIONS).look
+                there = fit(study, there.restricted_to(()), out, prior, iterations=BLOCK_ITERATIONS).look
             left = ResidualSummary.of(study, study.residual(there.place))
             found = ResidualSummary(
                 *(np.where(out if one.ndim == 1 else out[:, None], one, old) for one, old in zip(left, found))

@@ -43,14 +43,14 @@ class Series:
         return 0 * self.pool if self.kind == "decay" else np.minimum(self.pool, 2)
 
     @property
-    def least(self) -> float:
+    def floor_rms(self) -> float:
         """The floor over all bands (m, rad)."""
         return float(np.sqrt(self.noise**2 + (self.dof * (self.floor**2 - self.noise**2)).sum() / self.samples))
 
     @property
     def weight(self) -> float:
         """Motions count by how much of them there is over their floor, up to a point."""
-        return min(self.spread / self.least, 50.0)
+        return min(self.spread / self.floor_rms, 50.0)
 
 
 @dataclass(frozen=True)
@@ -76,11 +76,11 @@ class Linearisation:
     slopes: np.ndarray
     own: np.ndarray
 
-    def beside(self, other: "Linearisation") -> "Linearisation":
+    def joined_with(self, other: "Linearisation") -> "Linearisation":
         """The directions of another look too, as seen from there."""
         return replace(self, active=(*self.active, *other.active), slopes=np.hstack([self.slopes, other.slopes]))
 
-    def along(self, active: Sequence[int]) -> "Linearisation":
+    def restricted_to(self, active: Sequence[int]) -> "Linearisation":
         """Some of the directions."""
         at = [self.active.index(i) for i in active]
         return replace(self, active=tuple(active), slopes=self.slopes[:, at])

@@ -26,7 +26,7 @@ def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
     mean_square, dof = study.mean_squares(state.residual) * study.floor**2 / noise**2, study.dof
     found = []
     for one, squares, freedom in zip(study.series, mean_square, dof):
-        if one.channel not in search.posed.motions or not freedom.sum():
+        if one.channel not in search.setup.motions or not freedom.sum():
             continue
         ratio = math.sqrt(float((squares * freedom).sum() / freedom.sum()))
         # noise is in all bands, what is above it in those that are looked at
@@ -53,7 +53,7 @@ def signature(search: Search, before: FitState, after: FitState) -> tuple[float,
     """Share of the error's energy above the floor that is left in what the tests are about, every motion over its own, and what
     is known of it."""
     study = search.study
-    told = study.main & np.array([one.channel in search.posed.motions for one in study.series])
+    told = study.main & np.array([one.channel in search.setup.motions for one in study.series])
     spread = np.array([one.spread for one in study.series])
     total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = left / total if total > 0 else 0.0

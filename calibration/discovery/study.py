@@ -191,7 +191,7 @@ class Study:
         i = self.labels.index(label)
         return float(self.space.free[i].transform.forward(x[i]))
 
-    def seen(self, seas: SeaSelection) -> list[bool]:
+    def selected_seas(self, seas: SeaSelection) -> list[bool]:
         """Which seas are looked at: those with a fitted test, or all."""
         uses = {one.test: one.use for one in self.series}
         return [seas == "all" or any(uses[test] == "fit" for test in record.tests) for record in self.seas]
@@ -222,24 +222,25 @@ class Study:
         """Work on the decays and on every sea, begun side by side, as XLA runs a loop on one core; None where there is nothing
         to be seen."""
         jobs: list[Any] = [pool.submit(decays)] if self.decays is not None else []
-        return jobs + [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.seen(seas))]
+        return jobs + [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.selected_seas(seas))]
 
     def residual(self, place: Point, seas: SeaSelection = "fit") -> np.ndarray:
         """Rows of the residual at a place; zeros of tests in waves that are not looked at."""
         parts = self.motions(place, seas)
         return np.concatenate([np.zeros(2 * len(cut.take)) if one is None else cut(one) for cut, one in zip(self.cuts, parts)])
 
-    def look(self, place: Point, active: Sequence[int]) -> Linearisation:
+    def linearise(self, place: Point, active: Sequence[int]) -> Linearisation:
         """Residual and slopes at a place, of the decays and the seas with a fitted test."""
         some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
         with stoppable_threads(cores()) as pool:
             jobs = [self._slopes(pool, place, mine) for mine in some]
             looks = [
-                self._look(place, mine, [None if job is None else job.result() for job in one]) for mine, one in zip(some, jobs)
+                self._linearisation(place, mine, [None if job is None else job.result() for job in one])
+                for mine, one in zip(some, jobs)
             ]
         whole = looks[0]
         for one in looks[1:]:
-            whole = whole.beside(one)
+            whole = whole.joined_with(one)
         return whole
 
     def _slopes(self, pool: Executor, place: Point, active: tuple[int, ...]) -> list[Any]:
@@ -258,7 +259,7 @@ class Study:
 
         return self._parts(pool, of_decays, lambda one: flat(sea_slopes(one, frame, self._steps(one, "fit"))), "fit")
 
-    def _look(
+    def _linearisation(
         self, place: Point, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]
     ) -> Linearisation:
         q = len(active)

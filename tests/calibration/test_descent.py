@@ -28,7 +28,7 @@ class Oscillations(Study):
     def residual(self, place: Point, seas="fit") -> np.ndarray:
         return self.cuts[0](self.values(place) - self.measured)
 
-    def look(self, place: Point, active) -> Linearisation:
+    def linearise(self, place: Point, active) -> Linearisation:
         self.looks.append(place)
         steps = 1e-6 * np.eye(4)
 
@@ -78,7 +78,7 @@ PRIOR = Prior(np.zeros(2), np.full(2, 10.0))
 
 def best(study: Study, begin: Point) -> np.ndarray:
     """By SciPy, of the fitted records."""
-    look = study.look(begin, (0, 1))
+    look = study.linearise(begin, (0, 1))
 
     def cost(z):
         place = Point(z[:2], np.vstack([z[2:].reshape(2, 2), begin.own[2:]]))
@@ -95,7 +95,9 @@ def test_a_fit_ends_where_scipy_does(study, looks, close):
     begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
     expected = best(study, begin)
     study.looks.clear()
-    reached = fit(study, study.look(begin, (0, 1)), study.used, PRIOR, iterations=60, looks=looks, tolerance=1e-6)
+    reached = fit(
+        study, study.linearise(begin, (0, 1)), study.used, PRIOR, iterations=60, relinearisations=looks, tolerance=1e-6
+    )
     assert reached.settled
     assert len(study.looks) <= 1 + looks + 1
     assert_allclose(reached.look.place.x, expected[:2], atol=close)
@@ -107,7 +109,7 @@ def test_a_fit_stays_where_its_parameters_make_sense(study):
     """What would leave is at the end of its range, and all others where SciPy has them with it there."""
     begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
     study.__dict__["limits"] = np.array([[-np.inf, np.inf], [-0.02, np.inf]])
-    look = study.look(begin, (0, 1))
+    look = study.linearise(begin, (0, 1))
 
     def cost(z):
         place = Point(np.array([z[0], 0.08]), np.vstack([z[1:].reshape(2, 2), begin.own[2:]]))
@@ -115,7 +117,7 @@ def test_a_fit_stays_where_its_parameters_make_sense(study):
 
     options = {"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}
     expected = minimize(cost, [1.25, *begin.own[:2].ravel()], method="Nelder-Mead", options=options).x
-    reached = fit(study, look, study.used, PRIOR, iterations=60, looks=3, tolerance=1e-6)
+    reached = fit(study, look, study.used, PRIOR, iterations=60, relinearisations=3, tolerance=1e-6)
     assert_allclose(reached.look.place.x, [expected[0], 0.08], atol=2e-4)
     assert_allclose(reached.look.place.own[:2].ravel(), expected[1:], atol=2e-3)
 
@@ -123,7 +125,7 @@ def test_a_fit_stays_where_its_parameters_make_sense(study):
 def test_held_out_records_are_fitted_with_parameters_as_they_are(study):
     """No directions: only the own unknowns of what is asked for move."""
     begin = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.1, 0.3]]))
-    reached = fit(study, study.look(begin, ()), ~study.used, PRIOR, iterations=10, tolerance=1e-6)
+    reached = fit(study, study.linearise(begin, ()), ~study.used, PRIOR, iterations=10, tolerance=1e-6)
     assert_allclose(reached.look.place.own[2], [0.5, 0.0], atol=0.02)
     assert_allclose(reached.look.place.own[:2], begin.own[:2])
     assert_allclose(reached.look.place.x, begin.x)
@@ -132,7 +134,7 @@ def test_held_out_records_are_fitted_with_parameters_as_they_are(study):
 def test_mended_slopes_give_the_step_that_was_taken(study):
     """The secant equation, record by record."""
     begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
-    look = study.look(begin, (0, 1))
+    look = study.linearise(begin, (0, 1))
     step, own = np.array([0.03, -0.02]), np.array([[0.1, 0.05], [0.2, -0.1], [0.0, 0.0]])
     there = begin.moved(study.directions, step, own)
     residual = study.residual(there)
@@ -143,7 +145,7 @@ def test_mended_slopes_give_the_step_that_was_taken(study):
 def test_a_prediction_is_exact_where_the_model_is_linear(study):
     """Along the own unknowns alone the model is linear: what is predicted is what a fit gains, held-out tests too."""
     begin = Point(np.array([1.3, 0.06]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.1]]))
-    look = study.look(begin, ())
+    look = study.linearise(begin, ())
     found = predict_gain(study, look, PRIOR)
     for used, gain in ((study.used, found.fitted), (~study.used, found.held)):
         reached = fit(study, look, used, PRIOR, iterations=20, tolerance=1e-9)
@@ -159,11 +161,11 @@ def test_a_fit_is_converged_to_the_tolerance_of_where_it_ends(study, far):
     costs = []
     reached = fit(
         study,
-        study.look(begin, (0, 1)),
+        study.linearise(begin, (0, 1)),
         study.used,
         PRIOR,
         iterations=200,
-        looks=20,
+        relinearisations=20,
         tolerance=1e-6,
         say=lambda _, cost: costs.append(cost),
     )

@@ -191,8 +191,8 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
         campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
         posed = set_up_study(campaign, options_for(campaign)[0])
         (one,) = (one for one in posed.candidates if label in one.amplitudes)
-        look = posed.study.look(Point(np.asarray(posed.study.space.start), np.zeros((0, 0))), posed.study.index([label]))
-        found.append(phase_shift_start(posed.study, look, label, one.turns))
+        look = posed.study.linearise(Point(np.asarray(posed.study.space.start), np.zeros((0, 0))), posed.study.index([label]))
+        found.append(phase_shift_start(posed.study, look, label, one.phase_per_unit))
     there, nothing = found
     assert there.values[label] == pytest.approx(far, abs=PHASE_SPACING / abs(turns(0.65))) and there.gain > 500
     assert nothing is None
@@ -253,7 +253,7 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     assert highest_difference(seas_of(campaign, model.environment, cut)) is None
     posed = set_up_study(campaign, options)
     search = Search(campaign, posed, lambda *_: None)
-    state = search.declared()
+    state = search.fit_baseline()
     assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
     taken = search.study.options[search.order]
     assert taken == dataclasses.replace(cut, highest_difference=taken.highest_difference, acting="at the origin")
@@ -278,17 +278,17 @@ def test_second_order_is_taken_again(tmp_path: Path) -> None:
     was fitted in them."""
     campaign = campaign_of(tmp_path, pressure)
     search = Search(campaign, set_up_study(campaign, options_for(campaign)[0]), lambda *_: None)
-    declared = search.declared()
-    assert search.declared_in_second_order is None and search.in_second_order(declared, 1) is None
+    declared = search.fit_baseline()
+    assert search.declared_in_second_order is None and search.second_order_again(declared, 1) is None
     of_second = search.blocks
     search.take_seas("first")
     assert of_second is not None and search.blocks is not None  # which are of the seas in hand
     assert search.blocks.study.seas[0].sea is search.study.seas[0].sea is not of_second.study.seas[0].sea
     search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER_NOTE} (by 30 in -2 ln L)", "another"]
     lost = dataclasses.replace(declared, likelihood=declared.likelihood - 1e3)  # waves of first order follow far better
-    assert search.in_second_order(lost, 1) is None and search.study.seas is search.study.other_seas["first"]
-    again = search.in_second_order(declared, 1)
-    assert again is not None and again[0] is declared and search.study.seas is search.posed.study.seas
+    assert search.second_order_again(lost, 1) is None and search.study.seas is search.study.other_seas["first"]
+    again = search.second_order_again(declared, 1)
+    assert again is not None and again[0] is declared and search.study.seas is search.setup.study.seas
     assert search.notes == ["another"] and search.declared_in_second_order is None
     used = search.study.used
     assert_allclose(again[1].likelihood[used].sum(), declared.likelihood[used].sum(), atol=1.0)
@@ -361,7 +361,7 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     assert_allclose(some[fitted], every[fitted], rtol=0, atol=1e-12)
     assert np.abs(every[~fitted]).max() > 1e-3 and not some[~fitted].any()
     active = range(study.width + 5)
-    looks = [one.look(place, active) for one in (study, dataclasses.replace(study, width=study.width + 8))]
+    looks = [one.linearise(place, active) for one in (study, dataclasses.replace(study, width=study.width + 8))]
     assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)
     assert not looks[0].slopes[~fitted].any() and np.abs(looks[0].slopes[fitted]).max() > 1e-3
     assert_allclose(looks[0].slopes, looks[1].slopes, rtol=0, atol=1e-9 * np.abs(looks[1].slopes).max())

@@ -187,7 +187,7 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
     assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
     assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
     with monkeypatch.context() as limited:
-        limited.setattr("calibration.discovery.diagnose.ROUNDS", 1)
+        limited.setattr("calibration.discovery.diagnose.MAX_EFFECTS", 1)
         seen.clear()
         again = found_in(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
     assert not any(stage.startswith("round") for stage in seen) and len(again.effects) == 1
@@ -283,10 +283,10 @@ def test_the_best_of_every_motion_is_tried_where_the_best_of_all_do_not_last():
         )
         for name, gain in gains.items()
     ]
-    found = Search.by_motion(SimpleNamespace(study=study), rest, 5.0)
+    found = Search.best_by_motion(SimpleNamespace(study=study), rest, 5.0)
     assert [one.candidate.effect for one in found] == ["b", "c"]
     assert (rest[0].predicted.fitted, rest[0].predicted.held) == (39.0, 99.0)
-    assert Search.by_motion(SimpleNamespace(study=study), [], 5.0) == []
+    assert Search.best_by_motion(SimpleNamespace(study=study), [], 5.0) == []
 
 
 @pytest.mark.parametrize(
@@ -306,23 +306,23 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         look = SimpleNamespace(place=Point(np.array(x), None), active=(0, 1))
         return SimpleNamespace(look=look, chosen=chosen, likelihood=np.zeros(1))
 
-    monkeypatch.setattr(search, "predict", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
-    monkeypatch.setattr(search, "away", away)
+    monkeypatch.setattr(search, "predict_gain", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
+    monkeypatch.setattr(search, "prior_residuals", away)
     after = state([0.1, inertia], (one,))
     under_way = SimpleNamespace(
-        posed=SimpleNamespace(candidates=[one], prior=nearly),
+        setup=SimpleNamespace(candidates=[one], prior=nearly),
         found={},
         rejected={},
         notes=[],
         count=500.0,
-        study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], look=lambda *_: None, steps=lambda x: x),
+        study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], linearise=lambda *_: None, steps=lambda x: x),
         active=lambda chosen: [0, 1],
         refit=lambda *_: after,
         prior=lambda chosen: free if chosen else nearly,
-        gain=lambda *_: 0.0,
-        judge=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
+        likelihood_gain=lambda *_: 0.0,
+        assess=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
     )
-    found = Search.weighed(under_way, state([0.1, 0.9 * inertia]))
+    found = Search.with_mass_properties(under_way, state([0.1, 0.9 * inertia]))
     assert (found is after) == told == ("mass_properties" in under_way.found)
     if told:
         evidence = under_way.found["mass_properties"].verdict
@@ -344,14 +344,14 @@ def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, ref
         found={one.name: AcceptedEffect(1.0, None, None, of_last, ()) for one in (first, last)},
         rejected={},
         notes=[],
-        study=SimpleNamespace(look=lambda *_: look),
+        study=SimpleNamespace(linearise=lambda *_: look),
         active=lambda chosen: [],
-        renewed=lambda *_: None,
+        with_starting_values=lambda *_: None,
         refit=lambda *_: without,
-        judge=lambda *_, **__: of_first,
-        refuse=lambda one, why, verdict: under_way.rejected.update({one.name: why}),
+        assess=lambda *_, **__: of_first,
+        reject=lambda one, why, verdict: under_way.rejected.update({one.name: why}),
     )
-    assert Search.pruned(under_way, whole) is (whole if stays else without)
+    assert Search.without_needless_effects(under_way, whole) is (whole if stays else without)
     assert bool(under_way.rejected) is not stays and bool(under_way.notes) is (stays and bool(refused))
     assert not stays or under_way.found[first.name].verdict == of_first._replace(refused="")
 

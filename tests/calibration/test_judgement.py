@@ -70,9 +70,9 @@ def left(squares, error) -> ResidualSummary:
 
 def test_a_quiet_sensor_does_not_make_a_motion_count_more():
     """A series' least is its floor over all bands, and its weight is by that, up to a point."""
-    assert_allclose(series("surge", 0.01).least, 0.01)
+    assert_allclose(series("surge", 0.01).floor_rms, 0.01)
     share = CUT.lines.sum() * 2 / 4000  # of the samples' degrees of freedom that is looked at
-    assert_allclose(series("surge", 0.1).least, np.sqrt(0.01**2 + share * (0.1**2 - 0.01**2)))
+    assert_allclose(series("surge", 0.1).floor_rms, np.sqrt(0.01**2 + share * (0.1**2 - 0.01**2)))
     assert series("surge", 0.5, noise=1e-6).weight == pytest.approx(1 / (0.5 * np.sqrt(share)))
     assert series("surge", 1e-6, noise=1e-6).weight == 50.0
 
@@ -148,7 +148,7 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
         scores=scores,
         rejected=rejected,
         found={friction.name: SimpleNamespace(verdict=good)},
-        posed=SimpleNamespace(candidates=[friction, drag, memory]),
+        setup=SimpleNamespace(candidates=[friction, drag, memory]),
         declared_in_second_order=None,
     )
     state: Any = SimpleNamespace(chosen=(friction,))
@@ -167,7 +167,7 @@ def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
         scores=[],
         rejected={},
         found={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
-        posed=SimpleNamespace(candidates=[drift, friction]),
+        setup=SimpleNamespace(candidates=[drift, friction]),
         declared_in_second_order=None,
     )
     state: Any = SimpleNamespace(chosen=(drift, friction))
@@ -241,14 +241,14 @@ def test_gain_is_of_what_is_asked():
     study = study_of(series("surge", 0.01), series("surge", 0.01, use="fit"))
     before, after = left([400, 400], [0.2, 0.2]), left([100, 400], [0.1, 0.2])
     grounds = HeldOutComparison(study, np.array([True, False]), before, after, True)
-    gain, told = grounds.gain()
+    gain, told = grounds.error_reduction()
     assert told
     assert gain == pytest.approx(0.75, abs=1e-3)
-    assert grounds.net == pytest.approx(300 * 2 * CUT.lines.sum())
-    assert HeldOutComparison(study, np.array([False, True]), before, after, True).gain()[0] == pytest.approx(0.0)
+    assert grounds.likelihood_gain == pytest.approx(300 * 2 * CUT.lines.sum())
+    assert HeldOutComparison(study, np.array([False, True]), before, after, True).error_reduction()[0] == pytest.approx(0.0)
     nothing = left([0, 0], [0, 0])
-    assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, True).gain() == (0.0, True)
-    assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, False).gain() == (0.0, False)
+    assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, True).error_reduction() == (0.0, True)
+    assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, False).error_reduction() == (0.0, False)
 
 
 @pytest.mark.parametrize(("refused", "said"), [("", "worse"), (NEGLIGIBLE, "worse"), ("grows", "grows")])
@@ -257,7 +257,9 @@ def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against
         monkeypatch.setattr(judgement, name, lambda *_, value=value: value)
     study = SimpleNamespace(used=np.array([True]))
     state = SimpleNamespace(likelihood=np.zeros(1), left=None, look=SimpleNamespace(place=SimpleNamespace(x=None)))
-    grounds = SimpleNamespace(gain=lambda: (0.5, True), net=20.0, matters=lambda: 0.5, unseen=True, study=study)
+    grounds = SimpleNamespace(
+        error_reduction=lambda: (0.5, True), likelihood_gain=20.0, relevance=lambda: 0.5, unseen=True, study=study
+    )
     assert assess_effect(study, state, state, Candidate("a", None, ("a",)), None, 100.0, grounds).refused == said
 
 
@@ -290,7 +292,9 @@ def test_gain_in_waves_is_where_an_effect_acts():
     for other, expected in ((0.25, 0.75), (4.0, 0.0)):
         after = before * [[1, 0.25, 1], [1, other, 1]]
         two = (ResidualSummary(squares, np.sqrt(squares), squares.sum(axis=1)) for squares in (before, after))
-        assert HeldOutComparison(study, np.array([True, True]), *two, True).gain()[0] == pytest.approx(expected, abs=2e-3)
+        assert HeldOutComparison(study, np.array([True, True]), *two, True).error_reduction()[0] == pytest.approx(
+            expected, abs=2e-3
+        )
 
 
 @pytest.mark.parametrize(("channel", "least"), [("surge", MIN_MOTION_SHARE), ("pitch", 0.3)])
@@ -300,7 +304,7 @@ def test_what_matters_of_a_decay(channel, least):
     for share, matters in ((0.99, False), (1.01, True)):
         after = 0.5 - share * least
         grounds = HeldOutComparison(study, np.array([True]), left([1], [0.5]), left([1], [after]), True)
-        assert (grounds.matters() >= 1) == matters
+        assert (grounds.relevance() >= 1) == matters
 
 
 @pytest.mark.parametrize(
@@ -368,7 +372,7 @@ def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatc
     for variances in ((1.0, 1.0), (1.0, 1e-12), (1.0, 1e-20), (1e-20, 1.0)):
         covariance, steps = np.diag(variances), 5 * np.sqrt(variances)
         study = SimpleNamespace(index=lambda names: [0, 1], steps=lambda x, steps=steps: steps)
-        monkeypatch.setattr(judgement, "predict", lambda *_, c=covariance: SimpleNamespace(covariance=c))
+        monkeypatch.setattr(judgement, "predict_gain", lambda *_, c=covariance: SimpleNamespace(covariance=c))
         state = SimpleNamespace(look=SimpleNamespace(active=(0, 1), place=SimpleNamespace(x=None)))
         assert judgement.significance(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
 

@@ -104,7 +104,7 @@ def test_the_force_is_found_back(model, torque, least):
         some = found.inside
         assert found.visible and some.stop - some.start > 0.85 * len(TIME)
         assert np.corrcoef(found.force[some], true[some])[0, 1] > least
-        seen = found.seen(true)[some]
+        seen = found.through_filter(true)[some]
         assert np.corrcoef(found.force[some], seen)[0, 1] > 0.995
         assert_allclose(np.std(found.force[some]), np.std(seen), rtol=0.02)
         assert np.std(found.force[some] - seen) < 3 * found.noise + 0.02 * np.std(seen)
@@ -271,7 +271,7 @@ def test_what_is_written(model, tmp_path):
         for test, _ in made
     )
     campaign = SimpleNamespace(manifest=SimpleNamespace(zero=None), records=[SimpleNamespace(id=test.id) for test in tests])
-    search = SimpleNamespace(campaign=campaign, study=SimpleNamespace(seas=()), posed=SimpleNamespace(motions=("roll",)))
+    search = SimpleNamespace(campaign=campaign, study=SimpleNamespace(seas=()), setup=SimpleNamespace(motions=("roll",)))
     latent = latent_of(search, SimpleNamespace(model=model(), tests=tests))
     assert_allclose({term.name: term.coefficient for term in latent[0].law.terms}["x^3"], -500.0, rtol=0.15)
     folder = write_diagnosis(replace(fake_diagnosis(), verdict="unexplained", effects=(), latent=latent), tmp_path)

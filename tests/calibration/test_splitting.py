@@ -36,9 +36,9 @@ def test_modes_of_a_record_are_those_that_made_it() -> None:
     order = np.argsort(-found.eigenvalue.imag)
     assert_allclose(found.eigenvalue[order], value, rtol=1e-6)
     assert_allclose(found.amplitude[order], amplitude, rtol=1e-5)
-    assert found.left < 1e-8
+    assert found.residual_rms < 1e-8
     noisy = modes_of(decay(value, amplitude, 0.01), STEP, 4)
-    assert noisy.left == pytest.approx(0.01, rel=0.15)
+    assert noisy.residual_rms == pytest.approx(0.01, rel=0.15)
 
 
 @pytest.mark.parametrize("period", [2.2, 2.58, 2.7, 3.5])
@@ -48,10 +48,10 @@ def test_two_modes_tell_what_swings(share: float, period: float) -> None:
     modes are apart, the damping ratio to the first power of that."""
     found = oscillator_from_modes(*two_modes(share, period, 0.01))
     assert found is not None
-    assert found.hull == pytest.approx(2.58, rel=2e-3)
+    assert found.hull_period == pytest.approx(2.58, rel=2e-3)
     assert found.period == pytest.approx(period, rel=2e-3)
-    assert found.share == pytest.approx(share, rel=0.08)
-    assert found.ratio == pytest.approx(0.01, rel=0.25)
+    assert found.mass_ratio == pytest.approx(share, rel=0.08)
+    assert found.damping_ratio == pytest.approx(0.01, rel=0.25)
 
 
 def test_a_record_is_split_by_what_swings_alone() -> None:

@@ -188,7 +188,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     campaign = load_campaign(folder)
     posed = set_up_study(campaign, OPTIONS)
     study, started = posed.study, np.asarray(posed.study.space.start)
-    search = SimpleNamespace(study=study, posed=posed)
+    search = SimpleNamespace(study=study, setup=posed)
     kinds = {one.effect: one for one in reversed(posed.candidates)}
     assert {
         "sensor_reference",

@@ -58,11 +58,11 @@ class Candidate:
     amplitudes: tuple[str, ...]
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
-    places: ShapeFinder | None = None
+    shape_finder: ShapeFinder | None = None
     positive: tuple[str, ...] = ()
-    begin: Mapping[str, float] = field(default_factory=dict)
-    begins: StartingValuesFinder | None = None
-    turns: PhasePerUnit | None = None
+    starting_values: Mapping[str, float] = field(default_factory=dict)
+    starting_values_finder: StartingValuesFinder | None = None
+    phase_per_unit: PhasePerUnit | None = None
     telling: str = ""
     source: str = ""
     load: AbstractLoad | None = None

@@ -49,25 +49,25 @@ class CatalogueBuilder:
     that is declared at its own scale."""
 
     length: float = 1.0
-    found: list[Candidate] = field(default_factory=list)
+    candidates: list[Candidate] = field(default_factory=list)
     free: dict[str, Free] = field(default_factory=dict)
-    units: dict[str, float] = field(default_factory=dict)
+    noticeable: dict[str, float] = field(default_factory=dict)
 
     @property
     def time(self) -> float:
         """Times over those of a platform of 20 000 t, and speeds."""
         return math.sqrt(self.length)
 
-    def linear(self, label: str, scale: float, null: float = 0.0) -> str:
+    def add_linear(self, label: str, scale: float, null: float = 0.0) -> str:
         self.free[label] = Free(label, null, Scaled(null, 1.0), 0.0, math.inf)
-        self.units[label] = float(scale)
+        self.noticeable[label] = float(scale)
         return label
 
-    def shape(self, label: str, start: float, lower: float, upper: float) -> str:
+    def add_shape(self, label: str, start: float, lower: float, upper: float) -> str:
         transform = LogInterval(lower, upper)
         self.free[label] = Free(label, start, transform, transform.inverse(start), 0.7)
         return label
 
     def add(self, effect: str, dof: str | None, amplitudes: Sequence[str], **more: Any) -> None:
         positive = more.pop("positive", tuple(amplitudes) if more.pop("passive", False) else ())
-        self.found.append(Candidate(effect, dof, tuple(amplitudes), positive=tuple(positive), **more))
+        self.candidates.append(Candidate(effect, dof, tuple(amplitudes), positive=tuple(positive), **more))

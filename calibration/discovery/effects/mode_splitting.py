@@ -46,16 +46,16 @@ class Modes(NamedTuple):
 
     eigenvalue: np.ndarray
     amplitude: np.ndarray
-    left: float
+    residual_rms: float
 
 
 class OscillatorEstimate(NamedTuple):
     """Natural period (s) of a hull without what swings in it; that mass's share of the hull's, its period and damping ratio."""
 
-    hull: float
-    share: float
+    hull_period: float
+    mass_ratio: float
     period: float
-    ratio: float
+    damping_ratio: float
 
 
 def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
@@ -108,7 +108,7 @@ def oscillator_in_decay(
     for other in others:
         near &= np.abs(np.log(here / other)) > MIN_PERIOD_SEPARATION
     two = np.flatnonzero(near)[np.argsort(-np.abs(found.amplitude[near]))][:2]
-    left = found.left / max(float(np.std(values)), 1e-300)
+    left = found.residual_rms / max(float(np.std(values)), 1e-300)
     if len(two) < 2:
         return None, left
     apart = abs(float(np.diff(found.eigenvalue.imag[two])[0]))
@@ -148,11 +148,11 @@ def oscillator_starts(
     best = min(((left, one) for one, left in said if one is not None), key=lambda each: each[0], default=None)
     if best is None:
         return ()
-    x = coordinates_with_period(study, place.x, base, width, dof, best[1].hull)
+    x = coordinates_with_period(study, place.x, base, width, dof, best[1].hull_period)
     mass = natural_mode(study.space.model(study.model, jnp.asarray(x)), dof)[1]
     values = {label: study.value(label, x) for label, at, to in zip(study.labels, place.x, x) if at != to}
     of = f"hidden_oscillator.{dof}."
-    about = {f"{of}mass": best[1].share * mass, f"{of}period": best[1].period, f"{of}damping_ratio": best[1].ratio}
+    about = {f"{of}mass": best[1].mass_ratio * mass, f"{of}period": best[1].period, f"{of}damping_ratio": best[1].damping_ratio}
     return (values | about,)
 
 

@@ -106,7 +106,7 @@ def columns_of(one: RecoveredForce, slow: float, pace: float, without: bool = Fa
     else:
         eta, square = one.test.wave - one.test.wave.mean(), squared_envelope(one.test.wave, step)
         rows += [square, quarter_period_later(square), eta, quarter_period_later(eta)]
-    return np.stack([one.seen(row)[one.inside] for row in rows], axis=1)
+    return np.stack([one.through_filter(row)[one.inside] for row in rows], axis=1)
 
 
 class RegressionBlock(NamedTuple):

@@ -172,7 +172,7 @@ def latent_forces(
 def latent_of(search: Search, fitted: Calibration) -> tuple[LatentForce, ...]:
     """Of a diagnosis's last model. See `latent_forces`."""
     from_rest = search.campaign.manifest.zero is not None
-    return latent_forces(fitted.model, list(_moved(search, fitted)), search.posed.motions, from_rest)
+    return latent_forces(fitted.model, list(_moved(search, fitted)), search.setup.motions, from_rest)
 
 
 def _moved(search: Search, fitted: Calibration) -> Iterator[ResampledTest]:

@@ -48,7 +48,7 @@ class RecoveredForce(NamedTuple):
     noise: float
     peak: float
 
-    def seen(self, values: np.ndarray) -> np.ndarray:
+    def through_filter(self, values: np.ndarray) -> np.ndarray:
         """What the reconstruction would have left of a force."""
         return filtered(values * self.taper, self.gain)
 
