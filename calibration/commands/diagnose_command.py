@@ -89,7 +89,7 @@ def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
         say(f"Note: {note}")
     say(f"\n{words.verdict(saved)}", "bold")
     for one in saved.missing.effects:
-        name = words.capital(words.called(one.effect, one.degree_of_freedom))
+        name = words.capitalised(words.effect_in_words(one.effect, one.degree_of_freedom))
         say(f"{name}: {' '.join(words.sureness(saved, one))} {words.alternatives(one)}")
     say(words.left_over(saved))
     for force in saved.missing.unexplained.forces:

@@ -1,4 +1,4 @@
-"""Whether an effect is believed: what it gains in the fitted tests, and in what was not fitted."""
+"""Acceptance of an effect: BIC, held-out error, significance and relevance."""
 
 import math
 from dataclasses import dataclass
@@ -32,8 +32,13 @@ MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO = (
 
 
 class ResidualSummary(NamedTuple):
-    """What is above the floor, by series and region (s, 3; see `Study.by_region`): sums over degrees of freedom of squares over
-    the floor's, and root mean squares (m, rad); -2 ln L by series (s,)."""
+    """Residual above the noise floor, by motion and frequency region.
+
+    Attributes:
+        squares: Sum over degrees of freedom of (residual / floor)^2 less 1, by series and region (s, 3).
+        parts: Root mean square above the floor (m, rad), by series and region (s, 3). Regions: see `Study.by_region`.
+        likelihood: -2 ln L by series (s,).
+    """
 
     squares: np.ndarray
     parts: np.ndarray
@@ -41,7 +46,7 @@ class ResidualSummary(NamedTuple):
 
     @classmethod
     def of(cls, study: Study, residual: np.ndarray) -> "ResidualSummary":
-        """From rows of a residual."""
+        """The summary of a residual given in rows (n,)."""
         above = study.dof * np.maximum(study.mean_squares(residual) - 1, 0.0)
         samples = np.array([one.samples for one in study.series])
         squares = study.by_region(study.pooled * np.maximum(study.levels(residual) - 1, 0.0))
@@ -50,14 +55,23 @@ class ResidualSummary(NamedTuple):
 
     @property
     def error(self) -> np.ndarray:
-        """Root mean squares by series (s,; m, rad)."""
+        """Root mean square above the floor by series (s,; m, rad)."""
         return np.sqrt((self.parts**2).sum(axis=1))
 
 
 @dataclass(frozen=True)
 class FitState:
-    """Effects in the model and the fit with them: its look, the residual of all tests, and by series (s,) -2 ln L and what is
-    left."""
+    """A fit with some effects in the model.
+
+    Attributes:
+        chosen: The effects in the model.
+        look: Linearisation at the fitted point.
+        residual: Residual of all tests, in rows (n,).
+        settled: Whether the fit converged.
+        iterations: Iterations taken.
+        likelihood: -2 ln L by series (s,).
+        left: Residual above the noise floor.
+    """
 
     chosen: tuple[Candidate, ...]
     look: Linearisation
@@ -69,8 +83,15 @@ class FitState:
 
 
 class HeldOutComparison(NamedTuple):
-    """What an effect is judged by: what is left of the `asked` series (s,) of a study without it and with it; whether the fits
-    had not seen them."""
+    """Residuals without and with an effect, in the series that decide on it.
+
+    Attributes:
+        study: The study whose series are compared.
+        compared: Which of its series (s,) count.
+        before: Residual without the effect.
+        after: Residual with the effect.
+        unseen: Whether the compared series were not fitted.
+    """
 
     study: Study
     compared: np.ndarray
@@ -79,9 +100,15 @@ class HeldOutComparison(NamedTuple):
     unseen: bool
 
     def error_reduction(self) -> tuple[float, bool]:
-        """Share of the squared error above the floor that is gone in the motion and region where it is most (a geometric mean
-        over tests), and whether there is anything to tell. An effect acts in a motion and in some frequencies: what goes on as
-        before elsewhere does not speak against it, and what becomes worse is in `net`."""
+        """Fraction of the squared error above the floor that the effect removes, where it removes most.
+
+        Motions and frequency regions are compared one by one; tests are averaged geometrically. An effect acts in one motion
+        and some frequencies: an unchanged error elsewhere does not count against it, and a larger one counts in
+        `likelihood_gain`.
+
+        Returns:
+            The fraction (1: all of it), and whether there was an error to reduce.
+        """
         dof = self.study.by_region(self.study.pooled)
         before, after = self.before.squares, self.after.squares
         some = self.compared[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
@@ -97,12 +124,14 @@ class HeldOutComparison(NamedTuple):
 
     @property
     def likelihood_gain(self) -> float:
-        """By how much -2 ln L of all that is asked falls."""
+        """Decrease of -2 ln L summed over the compared series."""
         return float((self.before.likelihood - self.after.likelihood)[self.compared].sum())
 
     def relevance(self) -> float:
-        """By how much the error of a motion in a region falls at most, over what matters. Of what a decay is not about, the
-        floor alone is a measure."""
+        """Largest decrease of a motion's error in a region, divided by the smallest decrease that matters.
+
+        In motions other than a decay's own, only the noise floor sets what matters.
+        """
         study = self.study
         samples = np.array([[one.samples] for one in study.series])
         squares = study.by_region(study.dof * study.floor**2) / samples
@@ -118,8 +147,17 @@ class HeldOutComparison(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the squared error that goes, whether that is of what was not fitted, by how
-    much -2 ln L of all that falls, how clear the effect is, how much it matters, and why it is refused ("" where it is not)."""
+    """Outcome of the tests that an effect has to pass.
+
+    Attributes:
+        bic: Decrease of BIC in the fitted tests.
+        held: Fraction of the squared error that the effect removes.
+        unseen: Whether `held` is of data that were not fitted.
+        net: Decrease of -2 ln L of these data.
+        clear: Parameters over their standard deviations.
+        matters: Largest decrease of an error over the smallest that matters.
+        refused: Why the effect is rejected; "" where it is accepted.
+    """
 
     bic: float
     held: float
@@ -131,14 +169,27 @@ class Verdict(NamedTuple):
 
     @property
     def worth(self) -> float:
-        """What it gains in fitted and held-out tests together."""
+        """Gain in fitted and held-out tests together."""
         return self.bic + self.net
 
 
 def assess_effect(
     study: Study, before: FitState, after: FitState, one: Candidate, prior: Prior, count: float, grounds: HeldOutComparison
 ) -> Verdict:
-    """Whether an effect is believed; `count` are independent observations, for BIC."""
+    """Whether an effect is accepted.
+
+    Args:
+        study: The study.
+        before: Fit without the effect.
+        after: Fit with the effect.
+        one: The effect.
+        prior: Priors of the fit with the effect.
+        count: Number of independent observations, for BIC.
+        grounds: Residuals without and with the effect, in the series that decide.
+
+    Returns:
+        The verdict, with the reason where the effect is rejected.
+    """
     bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(one.labels) * math.log(count)
     held, told = grounds.error_reduction()
     net, clear, matters = grounds.likelihood_gain, significance(study, one, after, prior), grounds.relevance()
@@ -153,7 +204,16 @@ def assess_effect(
 
 
 def reason_to_reject(bic: float, held: float | None, net: float, clear: float, matters: float, where: str) -> str:
-    """Why numbers are not enough to believe an effect, `held` and `net` of what is `where` (None: nothing to tell); else ""."""
+    """Reason why an effect is rejected, in words; "" where none applies.
+
+    Args:
+        bic: Decrease of BIC in the fitted tests.
+        held: Fraction of the squared error removed; None where there was no error to reduce.
+        net: Decrease of -2 ln L of the compared data.
+        clear: Parameters over their standard deviations.
+        matters: Largest decrease of an error over the smallest that matters.
+        where: Which data were compared: `FITTED`, `HELD_OUT` or `BLOCKS`.
+    """
     apart = held is not None and where == HELD_OUT
     if bic < (least := MIN_BIC_GAIN if apart else MIN_LIKELIHOOD_GAIN):
         asked = f"{least:.0f} are asked" if apart else f"{least:.0f} are asked where nothing held out can tell"
@@ -173,8 +233,17 @@ def reason_to_reject(bic: float, held: float | None, net: float, clear: float, m
 
 
 def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, after: ResidualSummary) -> str:
-    """Why an effect is refused for J of the motion that it acts in (None: of all), in all tests or the held-out ones; "" where
-    it is not. Likelihoods weigh little what is slow, as unknown forces could do it (`Study.expected`); engineers ask for it."""
+    """Reason to reject an effect with which its own motion is followed worse; "" where there is none.
+
+    The objective (sum of RMSE / standard deviation) is compared over all tests and over the held-out ones. Likelihoods give
+    slow motion little weight, since unknown forces could cause it (`Study.expected`); engineers ask for it.
+
+    Args:
+        study: The study.
+        dof: The motion that the effect acts in; None: all motions.
+        before: Residual without the effect.
+        after: Residual with the effect.
+    """
     mine = study.main & np.array([one.channel == (dof or one.channel) and one.spread > 0 for one in study.series])
     spread = np.array([one.spread if one.spread > 0 else 1.0 for one in study.series])
     for some, where in ((mine, "all tests"), (mine & ~study.used, f"the {HELD_OUT}")):
@@ -186,7 +255,13 @@ def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, afte
 
 
 def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary) -> list[str]:
-    """In words, the decays that a fit to them `alone` follows and one to seas, too, does not."""
+    """Decays that a fit to decays alone follows and a joint fit to decays and seas does not, in words.
+
+    Args:
+        study: The study.
+        alone: Residual of the fit to decays alone.
+        now: Residual of the joint fit.
+    """
     said = []
     for i, one in enumerate(study.series):
         if one.kind == "decay" and study.used[i] and study.main[i] and one.spread > 0:
@@ -201,14 +276,20 @@ def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary)
 
 
 def is_significant(study: Study, label: str, one: Candidate, state: FitState, prior: Prior) -> bool:
-    """Whether a parameter is what it is beyond doubt: the only one of an effect always, of several by two deviations."""
+    """Whether a parameter differs from zero beyond doubt.
+
+    The only amplitude of an effect always does; one of several has to be two standard deviations away.
+    """
     i = study.names.index(label)
     variance = predict_gain(study, state.look, prior).covariance[state.look.active.index(i), state.look.active.index(i)]
     return len(one.amplitudes) == 1 or abs(float(study.steps(state.look.place.x)[i])) > 2 * math.sqrt(variance)
 
 
 def significance(study: Study, one: Candidate, state: FitState, prior: Prior) -> float:
-    """The effect's parameters over their standard deviations: of several together, as one normal variable would be."""
+    """An effect's amplitudes over their standard deviations.
+
+    Several amplitudes together are expressed as one normal variable (Wald statistic less the extra degrees of freedom).
+    """
     look = state.look
     columns = [look.active.index(i) for i in study.index(one.amplitudes)]
     covariance = predict_gain(study, look, prior).covariance[np.ix_(columns, columns)]

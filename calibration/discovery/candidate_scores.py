@@ -1,4 +1,4 @@
-"""What a search makes of one candidate: what it would gain at its null, and what a refit gains."""
+"""Scores of candidate effects: first-order gain at the neutral value, and gain of a refit."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ REFIT_ITERATIONS = 8  # of a refit
 
 
 class CandidateScoring(EffectFits):
-    """Fits of a campaign, what was seen of every candidate, and why those are not in the model that are not."""
+    """Fits of a campaign, scores of all candidates, and reasons of rejections."""
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
         super().__init__(campaign, setup, say)
@@ -28,7 +28,18 @@ class CandidateScoring(EffectFits):
         self.rejected: dict[str, Rejected] = {}
 
     def score(self, state: FitState, number: int, fraction: float) -> list[ScoredCandidate]:
-        """Every candidate that is not in the model, at its null, the fitted directions projected out; the best first."""
+        """Rank all candidates that are not in the model by their first-order gain.
+
+        Every candidate is linearised at its neutral value; what the fitted directions can explain is projected out.
+
+        Args:
+            state: The fit so far.
+            number: Number of the round.
+            fraction: Progress to report (0 to 1).
+
+        Returns:
+            Scored candidates, the most promising first.
+        """
         self.say(f"round {number}: scoring", fraction)
         self.scores = [one for one in self.scores if one.round != number]  # of a fit that was bettered on the way
         there = {label for one in state.chosen for label in one.labels}
@@ -68,14 +79,14 @@ class CandidateScoring(EffectFits):
         return ranked
 
     def starting_values(self, one: Candidate, state: FitState) -> tuple[Mapping[str, float], ...]:
-        """Values at which a refit begins, too: of another program, or what decays say."""
+        """Further values at which a candidate's refit begins: from another program, or from the decays."""
         place = self.with_starting_values(state.look.place, self.setup.base)
         base, width = self.study.index(self.setup.base), self.setup.prior.width
         said = () if one.starting_values_finder is None else one.starting_values_finder(self.study, place, base, width)
         return (*([one.starting_values] if one.starting_values else ()), *said)
 
     def wrong_sign(self, one: Candidate, look: Linearisation, found: FirstOrderGain) -> bool:
-        """Whether what physics wants above zero goes below it, and clearly so."""
+        """Whether an amplitude that physics requires to be positive is clearly negative."""
         for label in one.positive:
             i = look.active.index(self.study.names.index(label))
             if found.step[i] < 0 and (len(one.amplitudes) == 1 or found.step[i] < -2 * found.deviation[i]):
@@ -83,12 +94,18 @@ class CandidateScoring(EffectFits):
         return False
 
     def reject(self, one: Candidate, why: str, taken_out: Verdict | None = None) -> None:
-        """Keep why a candidate is not in the model; "": nothing to keep. `taken_out`, the verdict on one that was in it."""
+        """Record why a candidate is not in the model.
+
+        Args:
+            one: The candidate.
+            why: The reason; "" records nothing.
+            taken_out: The verdict that removed it, where it was in the model.
+        """
         if why:
             self.rejected[one.name] = Rejected(one.effect, one.dof, why, taken_out)
 
     def refit_candidate(self, state: FitState, scored: ScoredCandidate, number: int, fraction: float) -> RefittedCandidate:
-        """A candidate refitted, everything else free: its shape too, once it is off its null."""
+        """Refit the model with one candidate, everything else free; its shape is freed in a second step."""
         one = scored.candidate
         chosen = (*state.chosen, one)
         name = f"round {number}: {one.name}"

@@ -1,4 +1,4 @@
-"""What a search makes of candidates: scored at their nulls, tried by a refit, found; and in which order they are believed."""
+"""Candidates scored at first order, refitted, accepted; order of acceptance."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -14,9 +14,15 @@ SENSOR_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
 
 
 class ScoredCandidate(NamedTuple):
-    """A candidate at its null, at the best of its shapes: what it would gain at first order, and the look that says so; where
-    it may be, what it gains there, further off than first order tells; and values at which a refit begins, too, whatever is
-    said at first order."""
+    """A candidate with its first-order gain.
+
+    Attributes:
+        candidate: The candidate.
+        predicted: First-order gain at the neutral value, at the best of its shapes.
+        look: The linearisation that gives this gain.
+        phase_shift: For a phase shift too large for first order: where it may be, and its gain there.
+        starting_values: Further values at which a refit begins, whatever the first-order gain.
+    """
 
     candidate: Candidate
     predicted: FirstOrderGain
@@ -26,12 +32,20 @@ class ScoredCandidate(NamedTuple):
 
     @property
     def promise(self) -> float:
-        """What -2 ln L of the fitted tests may gain."""
+        """Largest predicted decrease of -2 ln L of the fitted tests."""
         return max(self.predicted.fitted, self.phase_shift.gain if self.phase_shift else 0.0)
 
 
 class RefittedCandidate(NamedTuple):
-    """A refit: where it ended, what it says, and what that is worth beside others; `score` is the first-order gain."""
+    """A candidate after its refit.
+
+    Attributes:
+        candidate: The candidate.
+        score: First-order gain of -2 ln L.
+        state: The refitted model.
+        verdict: Outcome of the acceptance tests.
+        worth: Gain in fitted and held-out tests less the BIC penalty, to compare candidates by.
+    """
 
     candidate: Candidate
     score: float
@@ -40,13 +54,16 @@ class RefittedCandidate(NamedTuple):
     worth: float
 
     def indistinguishable_from(self, best: "RefittedCandidate") -> bool:
-        """Whether it cannot be told from another."""
+        """Whether its gain is so close to the best one's that the records cannot tell them apart."""
         return best.worth - self.worth < INDISTINGUISHABLE_SHARE * abs(best.worth)
 
 
 def in_order_of_belief(good: Sequence[RefittedCandidate]) -> list[RefittedCandidate]:
-    """As they are to be believed: among those that cannot be told from the best one first what sensors make of a motion, then
-    what has the fewest parameters; the others by what they are worth."""
+    """Accepted candidates in the order in which they are tried.
+
+    Among those indistinguishable from the best one, sensor effects come first, then those with the fewest parameters. The
+    others follow by their gain.
+    """
     best = max(good, key=lambda one: one.worth, default=None)
 
     def rank(one: RefittedCandidate) -> tuple[float, ...]:
@@ -58,8 +75,15 @@ def in_order_of_belief(good: Sequence[RefittedCandidate]) -> list[RefittedCandid
 
 
 class AcceptedEffect(NamedTuple):
-    """An effect's evidence: its first-order gain, the states before it was let in and after, the verdict, and what the records
-    cannot tell from it."""
+    """Evidence of an effect in the model.
+
+    Attributes:
+        score: First-order gain of -2 ln L.
+        before: Fit without the effect.
+        after: Fit with the effect.
+        verdict: Outcome of the acceptance tests.
+        alike: Names of effects that the records cannot tell from it.
+    """
 
     score: float
     before: FitState

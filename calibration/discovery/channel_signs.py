@@ -1,4 +1,4 @@
-"""Channels recorded with the other sign: what the declared model does in waves, turned round.
+"""Channels recorded with the wrong sign, found from motions in waves.
 
 Looked at before anything is fitted to the waves, at their own frequencies, where motions follow from the waves by first-order
 theory: a phase of half a turn in every test is no physics.
@@ -31,8 +31,15 @@ MIN_NOISE_RATIO = 5.0  # times the noise, that a motion has to be to say anythin
 
 
 class SignComparison(NamedTuple):
-    """A motion in the waves of a test, as the declared model has it: correlation, and squares of the error as it is recorded
-    and turned round."""
+    """Comparison of a measured motion with the declared model in one test, at wave frequencies.
+
+    Attributes:
+        channel: The motion.
+        use: Use of the test (fit, holdout).
+        correlation: Correlation of measurement and model (-1 to 1).
+        error: Squared error as recorded.
+        reversed_error: Squared error with the sign reversed.
+    """
 
     channel: str
     use: str
@@ -42,7 +49,10 @@ class SignComparison(NamedTuple):
 
 
 def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
-    """Effects by channel (motion, or `wave`): what has to be turned round. Of all motions alike it is the wave."""
+    """Channels whose sign is wrong, as effects by channel (a motion, or `wave`).
+
+    Where all motions are reversed, it is the wave.
+    """
     if not search.study.seas:
         return {}
     met = _met(campaign, search)
@@ -56,7 +66,7 @@ def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
 
 
 def with_signs_reversed(campaign: Campaign, channels: Sequence[str]) -> Campaign:
-    """The campaign with these channels' signs changed."""
+    """The campaign with the signs of these channels changed."""
     manifest = campaign.manifest.turned(channels)
     tests = {test.id: test for test in manifest.tests}
     records = []
@@ -68,7 +78,7 @@ def with_signs_reversed(campaign: Campaign, channels: Sequence[str]) -> Campaign
 
 
 def reversal_note(channels: Sequence[str]) -> str:
-    """What was turned, and how to mend it."""
+    """Note on reversed channels and how to correct the campaign file."""
     are, signs = ("is", "its sign") if len(channels) == 1 else ("are", "their signs")
     other = " It is as if the waves came from the other side." if {"surge", "pitch"} <= set(channels) else ""
     return (

@@ -1,4 +1,4 @@
-"""What a model of a campaign lacks, from the records to the conclusion: the search, kept as it goes."""
+"""Diagnosis of a campaign: which effects its model lacks."""
 
 import math
 import time as clock
@@ -18,7 +18,7 @@ from calibration.discovery.greedy_search import MAX_EFFECTS, Search
 from calibration.discovery.residual_anatomy import anatomy
 from calibration.discovery.set_up import set_up_study
 from calibration.discovery.strip_trials import StripTrial, try_strip_conventions
-from calibration.discovery.wave_records import by_a_program, options_for
+from calibration.discovery.wave_records import options_for, simulated_by_program
 from calibration.fitting.decay_fit import Progress
 from calibration.residuals.measured_seas import NO_ZERO, Options
 from jaxhydro.dynamics.model import Model
@@ -37,12 +37,27 @@ def diagnose(
     options: Options | None = None,
     kept: Path | None = None,
 ) -> Diagnosis:
-    """What a model of a campaign (that declared: `campaign.model`) lacks: found, added, judged by the tests marked `holdout`.
+    """Find the effects that a model lacks to explain a campaign.
 
-    `candidates` of one's own take part beside the catalogue's. `kept` is a file that has what was reached by round; where it is
-    there, of the same campaign, options, program and libraries, the search goes on from it; where it is of others or damaged,
-    a CheckpointWarning says so and the search starts anew. Raises InputError where a campaign has nothing to diagnose,
-    and KeyboardInterrupt where it is stopped, what was found until then as its `partial`.
+    Effects are added one by one. Each is accepted by its gain in the fitted tests and in those marked `holdout`.
+
+    Args:
+        model: The model to diagnose; the declared one is `campaign.model`.
+        campaign: The campaign.
+        candidates: The user's own candidate effects, beside the catalogue.
+        progress: Called with the stage of the search.
+        options: How seas are reconstructed; by default the wave records decide.
+        kept: Checkpoint file. An existing one of the same campaign, options, program and libraries is resumed.
+
+    Returns:
+        The baseline fit, the effects found with their evidence, and the augmented model.
+
+    Raises:
+        InputError: If the campaign has nothing to diagnose.
+        KeyboardInterrupt: If stopped; its attribute `partial` is the diagnosis so far.
+
+    Warns:
+        CheckpointWarning: If a checkpoint file is damaged or of another run; the search then starts anew.
     """
     begun, campaign = clock.monotonic(), campaign.with_model(model)
 
@@ -65,7 +80,7 @@ def diagnose(
 
     def begun_with(campaign: Campaign) -> tuple[Search, tuple[str, ...]]:
         how, notes = options_for(campaign) if options is None else (options, ())
-        taken = try_strip_conventions(campaign, say) if by_a_program(how) else StripTrial(campaign)
+        taken = try_strip_conventions(campaign, say) if simulated_by_program(how) else StripTrial(campaign)
         search = Search(taken.campaign, set_up_study(taken.campaign, how, candidates), say)
         search.decay_calibration, search.strips, notes = taken.fit, taken.strips, (*notes, *taken.notes)
         states.extend([] if kept is None else load_checkpoint(kept, search, unusable.append))

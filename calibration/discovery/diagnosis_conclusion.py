@@ -1,4 +1,4 @@
-"""What a diagnosis says in the end: models before and after, every test, effects with their evidence, and the verdict."""
+"""Conclusion of a search: fits before and after, effects with evidence, verdict."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from calibration.campaign.runs import runs
 from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding
 from calibration.discovery.doubts import doubted_effects, doubts_of
 from calibration.discovery.effects.candidates import Candidate, with_candidates, with_effects
-from calibration.discovery.effects.effect_names import called
+from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.residual_anatomy import anatomy, signature
@@ -44,7 +44,17 @@ def conclude(
     seconds: float,
     first: Sequence[Effect] = (),
 ) -> Diagnosis:
-    """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
+    """Assemble the diagnosis from a finished or stopped search.
+
+    Args:
+        campaign: The campaign.
+        search: The search.
+        before: Fit of the declared model.
+        after: Fit of the last model.
+        notes: Notes to report, in words.
+        seconds: Computing time (s).
+        first: Effects found before the search began.
+    """
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
     doubted = doubted_effects(search, after, baseline, augmented)
@@ -78,8 +88,10 @@ def conclude(
 
 
 def unexplained_motions(search: Search, left: Sequence[Finding]) -> list[Finding]:
-    """What is left of motions in the fitted tests, where that is more than noise and a model's last digits leave; the largest
-    share of a motion first."""
+    """Residuals of fitted tests that exceed both noise and the usual error of a model, the largest first.
+
+    Only motions that a test is about count.
+    """
     kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
     main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
     told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
@@ -88,18 +100,20 @@ def unexplained_motions(search: Search, left: Sequence[Finding]) -> list[Finding
 
 
 def next_test(search: Search, after: FitState, verdict: str) -> str:
-    """The test that would tell what was found from others; where that is nothing, what comes nearest from the rest."""
+    """The test that would tell the effects found from others; without any, that of the best rejected one."""
     if verdict == "unexplained":
         tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
         best = max(tried, key=lambda one: one.verdict.bic if one.verdict else 0.0, default=None)
         name = None if best is None else (best.effect, best.degree_of_freedom)
         mine = [one for one in search.setup.candidates if (one.effect, one.dof) == name]
-        return "; ".join(f"{one.telling} (of what was tried, {called(one.name)} came nearest)" for one in mine if one.telling)
+        return "; ".join(
+            f"{one.telling} (of what was tried, {effect_in_words(one.name)} came nearest)" for one in mine if one.telling
+        )
     return next((one.telling for one in after.chosen if one.telling), "")
 
 
 def augmented_model(search: Search, state: FitState) -> Model:
-    """The declared model with what was found, every parameter as fitted."""
+    """The declared model with the effects found, all parameters as fitted."""
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
@@ -109,7 +123,7 @@ def augmented_model(search: Search, state: FitState) -> Model:
 
 
 def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
-    """Parameters with standard deviations, of those directions that are one parameter each."""
+    """Estimates with standard deviations of directions that are one parameter each."""
     look, study = state.look, search.study
     prior = search.prior(state.chosen)
     deviations = predict_gain(study, look, prior).deviation
@@ -132,7 +146,14 @@ def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[
 
 
 def calibration_of(campaign: Campaign, search: Search, state: FitState, before: Calibration | None) -> Calibration:
-    """A fit in the form of a calibration: all tests, errors, bands. `before` gives the motions to compare with."""
+    """A fit as a calibration result: parameters, tests, errors in bands.
+
+    Args:
+        campaign: The campaign.
+        search: The search.
+        state: The fit.
+        before: An earlier fit whose motions are compared with, or None.
+    """
     effects = [label for one in state.chosen for label in one.labels]
     nuisances = [name for name in search.setup.nuisances if name in search.study.labels and name not in effects]
     names = [*search.setup.base, *nuisances, *effects]
@@ -159,7 +180,7 @@ def calibration_of(campaign: Campaign, search: Search, state: FitState, before: 
 
 
 def _as_given(search: Search, state: FitState, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
-    """Values without deviations of their own: of what was chosen, and of mooring lines, nearly known, which move together."""
+    """Values without standard deviations: of discrete choices, and of mooring lines that move together."""
     found = {}
     for label in labels:
         about, start = search.study.model.about(label), search.study.space.free[search.study.labels.index(label)].start
@@ -169,7 +190,7 @@ def _as_given(search: Search, state: FitState, labels: Sequence[str], known: boo
 
 
 def _with_start(test: TestFit, before: TestFit) -> TestFit:
-    """A test with the motions and errors of an earlier fit as those before."""
+    """A test with the motions and errors of an earlier fit as its start."""
     start = {}
     for mine, other in zip(test.series, before.series):
         start[mine.channel] = other.simulated - other.offset + mine.offset if test.kind != "decay" else other.simulated
@@ -181,7 +202,7 @@ def _with_start(test: TestFit, before: TestFit) -> TestFit:
 
 
 def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestFit]:
-    """Every test with the motions at a place."""
+    """Measured and simulated motions of every test at a point."""
     study = search.study
     motions = study.motions(place)
     found = {}
@@ -220,7 +241,7 @@ def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestF
 
 
 def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, dict[str, BandError]]:
-    """Relative errors of energies in bands, as the paper's, of a sea with this peak period (s)."""
+    """Relative errors of energy in frequency bands, for a sea of this peak period (s)."""
     found: dict[str, dict[str, BandError]] = {}
     for one in series:
         if not one.scored:
@@ -235,7 +256,14 @@ def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, di
 
 
 def accepted_effect(search: Search, one: Candidate, after: FitState, doubt: str | None) -> Effect:
-    """An effect that is in the model at the end, with its evidence, and what it is in doubt for."""
+    """An effect of the final model, with its evidence.
+
+    Args:
+        search: The search.
+        one: The effect.
+        after: Fit of the final model.
+        doubt: Why it is in doubt (see `Effect.in_doubt`), or None.
+    """
     found, used = search.found[one.name], search.study.used
     left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
     meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)

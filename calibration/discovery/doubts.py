@@ -1,4 +1,4 @@
-"""What is to be doubted of a diagnosis, in words."""
+"""Doubts about a diagnosis: effects that may stand for others."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Finding
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.effects.effect_names import called
+from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
@@ -28,18 +28,30 @@ MAX_COEFFICIENT_RATIO = 3.0  # times what is declared, or a third of it
 
 
 def doubts_of(search: Search, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
-    """Of the last fit; `more`, what is left of motions beyond noise."""
+    """Notes on what is doubtful in the final fit.
+
+    Args:
+        search: The search.
+        state: The final fit.
+        fitted: The same as a calibration.
+        more: Residuals beyond noise that are left.
+    """
     beside = [unexplained_note(state.chosen, more)] if state.chosen and more else []
     return [*moving_release_notes(search, state), *beside, *far_coefficient_notes(search, fitted)]
 
 
 def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[str, str]:
-    """Effects that explain less than what was refused with all of them in the model, by name, and what that is: `tried` are the
-    verdicts of the last round, and of what was taken out after it, `worth` what an effect gained in fitted and held-out tests
-    together.
+    """Effects that explain less than a rejected effect does with all of them in the model.
 
-    Where the law that follows the fitted tests best by far is not the one that others follow, what acts has a law that no
-    candidate has, and one of a small gain is the next best likeness of it, not its name.
+    If the law that follows the fitted tests best does not hold in other tests, the true law is in no candidate. A small effect
+    may then be its nearest likeness only.
+
+    Args:
+        worth: Gain of every effect in fitted and held-out tests, by name.
+        tried: Verdicts of the last round and of removed effects, by name.
+
+    Returns:
+        The rejected effect by the name of the effect that it outdoes.
     """
     refused = {name: one.bic for name, one in tried.items() if one.refused}
     if not refused or any(name in worth for name in tried if name not in refused):  # the round let something in: there is more
@@ -49,9 +61,14 @@ def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) ->
 
 
 def doubted_effects(search: Search, state: FitState, before: Calibration, after: Calibration) -> dict[str, str]:
-    """What is `outdone_effects` in a search that has come to its end; everything where the held-out error has `held_out_error_rose` from the declared
-    model's (`before`), and what acts in a motion of which it has; drift where the waves' own second order was left out as
-    motions follow worse with it: what acts in its place goes with the waves' square as well."""
+    """Effects in doubt at the end of a search, with the reason.
+
+    Reasons, the later overriding the earlier:
+
+    - a rejected effect explains more (`outdone_effects`);
+    - the held-out error rose, in all or in the effect's motion;
+    - drift, where second-order waves were left out: both grow with the square of the wave.
+    """
     last = max((one.round for one in search.scores), default=0)
     candidates = {(one.effect, one.dof): one.name for one in search.setup.candidates}
     tried = {
@@ -71,13 +88,13 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
 
 
 def held_out_error_rose(before: float | None, after: float | None) -> bool:
-    """Whether the held-out error (J; None: of no test) is larger than that of the declared model, and not by a little."""
+    """Whether the held-out objective clearly exceeds that of the declared model; None: no such test."""
     return before is not None and after is not None and after > MAX_HELD_OUT_RATIO * before
 
 
 def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
-    """In words, that what was found does not make the model follow."""
-    names, worst = listed([called(one.effect, one.dof) for one in chosen]), more[0]
+    """Note that the effects found do not make the model follow the records."""
+    names, worst = listed([effect_in_words(one.effect, one.dof) for one in chosen]), more[0]
     return (
         f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
         "not only, what was found, and sizes are less sure than their deviations say"
@@ -85,8 +102,8 @@ def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> st
 
 
 def moving_release_notes(search: Search, state: FitState) -> list[str]:
-    """In words, the decays that begin in motion, where that matters to what was found."""
-    names = [called(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY_EFFECTS]
+    """Note on decays that begin in motion, where an effect with memory was found."""
+    names = [effect_in_words(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY_EFFECTS]
     study, said = search.study, []
     if study.decays is None or not names:
         return []
@@ -103,7 +120,7 @@ def moving_release_notes(search: Search, state: FitState) -> list[str]:
 
 
 def far_coefficient_notes(search: Search, fitted: Calibration) -> list[str]:
-    """In words, the coefficients that end far from what was declared."""
+    """Note on coefficients that end far from their declared values."""
     some = [fitted.parameters[label] for label in search.setup.base if label in fitted.parameters]
     far = [
         one

@@ -11,10 +11,10 @@ from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from calibration.discovery.frequency_bands import Bands, FourierRows, band_powers, bands_of, step_of
-from calibration.discovery.linearisations import RELATIVE_FLOOR, Series
+from calibration.discovery.linearisations import RELATIVE_FLOOR, MotionSeries
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
-from calibration.discovery.wave_records import by_a_program, highest_difference
+from calibration.discovery.wave_records import highest_difference, simulated_by_program
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import Problem, dominant_period, gather
@@ -58,7 +58,7 @@ def study_of(
     waving = {r.id for r in records if r.kind in IN_WAVES}
     highest = highest_frequency(model)
     from_rest = campaign.manifest.zero is not None
-    series: list[Series] = []
+    series: list[MotionSeries] = []
     cuts: list[FourierRows] = []
     decays, own_width = None, np.zeros((0, 0))
     if decaying:
@@ -116,7 +116,7 @@ def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
     found: dict[str, Options] = {}
     if options.order == 2:
         found["first"] = replace(options, acting="nowhere")
-    if by_a_program(options):
+    if simulated_by_program(options):
         found["origin"] = replace(options, acting="at the origin")
         if (highest := highest_difference(recorded)) is not None:
             found["cut"] = replace(options, highest_difference=highest)
@@ -132,7 +132,7 @@ def highest_frequency(model: Model) -> float:
 
 def gather_decays(
     records: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float, highest: float
-) -> tuple[Problem, list[Series], np.ndarray, FourierRows]:
+) -> tuple[Problem, list[MotionSeries], np.ndarray, FourierRows]:
     """Decays in arrays, simulated in steps of at most `step` (s); every motion's series, how far their own unknowns may go, and
     their rows up to `highest` (Hz)."""
     data = gather(records, model, step, exact=True)
@@ -141,7 +141,7 @@ def gather_decays(
     return decays, [one for one, _ in found], own_width, FourierRows.of([cut for _, cut in found], data.time.shape[1])
 
 
-def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[Series], FourierRows]:
+def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[MotionSeries], FourierRows]:
     """Every motion of every test of a run, and their rows up to `highest` (Hz). What barely moves beside others of its unit has
     no degrees of freedom: a model that sways too much in head waves would else be damped until it does not, and surge with it.
     """
@@ -163,16 +163,18 @@ def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tup
     return found, FourierRows.of([cut] * len(found), n, TAPERED_SHARE)
 
 
-def _series(record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0) -> Series:
+def _series(
+    record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0
+) -> MotionSeries:
     """`motion` (b,) is the mean square of what the test is about, in the channel's unit."""
     noise, spread = record.noise[channel], float(np.std(values))
     floor = np.sqrt(noise**2 + RELATIVE_FLOOR[record.kind] ** 2 * motion)
-    return Series(
+    return MotionSeries(
         record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values), floor, slow
     )
 
 
-def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[Series, Bands]], np.ndarray]:
+def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[MotionSeries, Bands]], np.ndarray]:
     """Every motion of every decay, and how far the decays' own unknowns may go."""
     found = []
     width = np.full((len(records), 3, len(data.dofs)), np.inf)
@@ -189,7 +191,7 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
             else:  # a row of nothing keeps the arrays' shape
                 nothing = cut._replace(member=np.zeros_like(cut.member))
                 none = np.ones(BAND_COUNT)
-                one = Series(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none)
+                one = MotionSeries(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none)
                 found.append((one, nothing))
             width[i, 2, j] = (MAX_OFFSET_SHARE * one.spread + 3 * one.noise / np.sqrt(n)) / float(data.unit[i, j])
     return found, width.reshape(len(records), -1)

@@ -19,7 +19,7 @@ from calibration.discovery.candidate_scores import REFIT_ITERATIONS, CandidateSc
 from calibration.discovery.candidate_trials import AcceptedEffect, RefittedCandidate, ScoredCandidate, in_order_of_belief
 from calibration.discovery.effect_fits import SecondOrderTreatment
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.effects.effect_names import called
+from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, predict_gain, prior_residuals
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
@@ -70,13 +70,13 @@ class Search(CandidateScoring):
         state = self.refit(self.study.linearise(place, self.base), (), "declared model", 0.1)
         best, taken, name = state, self.order, "declared model"
         for order in TREATMENTS_TRIED:
-            called = "declared model in waves of " + ("first order" if order == "first" else f"another kind ({order})")
-            other = self.fitted_in_seas(order, best, called, 0.12) if order in self.study.other_seas else None
+            stage = "declared model in waves of " + ("first order" if order == "first" else f"another kind ({order})")
+            other = self.fitted_in_seas(order, best, stage, 0.12) if order in self.study.other_seas else None
             simpler = set(order.split(", ")) < set(taken.split(", "))  # of what is taken a part, which may be enough
             if other is not None and self.likelihood_gain(best, other) >= (
                 -MIN_LIKELIHOOD_GAIN if simpler else MIN_LIKELIHOOD_GAIN
             ):
-                best, taken, name = other, order, called
+                best, taken, name = other, order, stage
         self.take_seas(taken)
         if best is state:
             return state
@@ -217,7 +217,11 @@ class Search(CandidateScoring):
                 self.found[one.name] = self.found[one.name]._replace(verdict=verdict)
         for one in spared:
             later = state.chosen[state.chosen.index(one) + 1 :]
-            self.notes.append(SHARED_NOTE.format(first=called(one.name), later=listed([called(other.name) for other in later])))
+            self.notes.append(
+                SHARED_NOTE.format(
+                    first=effect_in_words(one.name), later=listed([effect_in_words(other.name) for other in later])
+                )
+            )
         return state
 
     def with_mass_properties(self, state: FitState) -> FitState:

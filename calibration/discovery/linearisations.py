@@ -13,7 +13,7 @@ RELATIVE_FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 
 
 @dataclass(frozen=True)
-class Series:
+class MotionSeries:
     """One motion of one test: what the residual of it is compared with. `noise` is the sensor's; `floor` (b,), by band, has
     beside it what no model of strips is asked to follow. `dof` (b,) are degrees of freedom by band, `samples` how many there
     are. Bands slower than `slow` (Hz) are one pool: see `calibration.discovery.expected_residuals`."""

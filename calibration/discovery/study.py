@@ -12,7 +12,7 @@ import numpy as np
 
 from calibration.campaign.records import Record
 from calibration.discovery.frequency_bands import FourierRows, step_of
-from calibration.discovery.linearisations import Linearisation, Point, SeaSelection, Series
+from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
 from calibration.discovery.residuals import Frame, SeaRecord, decay_residuals, decay_slopes, sea_residuals, sea_slopes
 from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
@@ -41,7 +41,7 @@ class Study:
     decays: Problem | None
     seas: tuple[SeaRecord, ...]
     other_seas: Mapping[str, tuple[SeaRecord, ...]]
-    series: tuple[Series, ...]
+    series: tuple[MotionSeries, ...]
     decay_records: tuple[Record, ...]
     own_width: np.ndarray
     cuts: tuple[FourierRows, ...]

@@ -13,11 +13,13 @@ from calibration.residuals.measured_seas import Options, Seas, options_of, sea_o
 from jaxhydro.environment import Environment
 from jaxhydro.waves.irregular_sea import IrregularSea
 
-PRESENT = 0.4  # of what theory has: a record with less has none
-AROUND = 9  # lines that tell how loud what theory does not bind is
-SEEN = 3.0  # times the noise in the band, that theory's part has to be, to say anything
-ABOVE = 1.35  # of the cutoff: how far above it sums of frequencies are looked for
-CUT = 5.0  # of -2 ln L, by which differences up to a frequency follow records better than all of them where that is tried
+MIN_SECOND_ORDER_SHARE = 0.4  # of what theory has: a record with less has none
+NEIGHBOURING_LINES = 9  # lines that tell how loud what theory does not bind is
+MIN_NOISE_RATIO = 3.0  # times the noise in the band, that theory's part has to be, to say anything
+MAX_CUTOFF_RATIO = 1.35  # of the cutoff: how far above it sums of frequencies are looked for
+MIN_CUT_GAIN = (
+    5.0  # of -2 ln L, by which differences up to a frequency follow records better than all of them where that is tried
+)
 
 
 def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Options, tuple[str, ...]]:
@@ -36,7 +38,7 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
     kinds, words = list(options.kinds), []
     for i, kind in enumerate(("sum", "difference")):
         seen = [share for one in found if (share := one[i]) is not None]
-        if seen and kind in kinds and float(np.median(seen)) < PRESENT:
+        if seen and kind in kinds and float(np.median(seen)) < MIN_SECOND_ORDER_SHARE:
             kinds.remove(kind)  # type: ignore[arg-type]
             percent = 100 * max(0.0, float(np.median(seen)))
             words.append(
@@ -48,7 +50,7 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
     return replace(options, kinds=tuple(kinds)), tuple(words)  # type: ignore[arg-type]
 
 
-def by_a_program(options: Options) -> bool:
+def simulated_by_program(options: Options) -> bool:
     """Whether the records are of a program rather than a basin: water that binds differences of frequencies binds sums, too."""
     return options.order == 2 and options.kinds == ("difference",)
 
@@ -64,7 +66,7 @@ def highest_difference(recorded: Seas) -> float | None:
     grid = np.unique(np.concatenate([frequency for frequency, _ in found]))
     gain = np.sum([np.interp(grid, frequency, np.cumsum(each)) for frequency, each in found], axis=0)
     best = int(np.argmax(gain))
-    return float(grid[best]) if gain[best] - gain[-1] > CUT else None
+    return float(grid[best]) if gain[best] - gain[-1] > MIN_CUT_GAIN else None
 
 
 def _gains(run: Run, made: IrregularSea) -> tuple[np.ndarray, np.ndarray]:
@@ -79,7 +81,9 @@ def _gains(run: Run, made: IrregularSea) -> tuple[np.ndarray, np.ndarray]:
     with_it, without = np.abs(measured - theory) ** 2, np.abs(measured) ** 2
     # by their logarithms, lines may rise steeply: of Gaussian ones that mean is lower by Euler's constant
     logarithms = (np.log(np.maximum(each, 1e-300)) for each in (with_it, without))
-    level = np.exp(np.euler_gamma + np.minimum(*(uniform_filter1d(each, AROUND, mode="nearest") for each in logarithms)))
+    level = np.exp(
+        np.euler_gamma + np.minimum(*(uniform_filter1d(each, NEIGHBOURING_LINES, mode="nearest") for each in logarithms))
+    )
     # of neighbouring lines a taper leaves two of three
     return frequency[inside], (without - with_it) / level * 2 / 3
 
@@ -95,10 +99,10 @@ def _shares(run: Run, environment: Environment, options: Options) -> tuple[float
     measured, theory = (np.fft.rfft(taper * (x - x.mean())) for x in (left, second))
     noise = max(float(r.noise.get("wave", 0.0)) for r in run.records)
     found: list[float | None] = []
-    for low, high in ((1.03 * options.cutoff, ABOVE * options.cutoff), (0.15 * options.low, 0.95 * options.low)):
+    for low, high in ((1.03 * options.cutoff, MAX_CUTOFF_RATIO * options.cutoff), (0.15 * options.low, 0.95 * options.low)):
         inside = (frequency > low) & (frequency < high)
         power = float((np.abs(theory[inside]) ** 2).sum())
         level = noise**2 * float((taper**2).sum()) * inside.sum()
         share = float((np.conj(theory[inside]) * measured[inside]).sum().real) / max(power, 1e-300)
-        found.append(share if power > SEEN**2 * level and inside.sum() > 8 else None)
+        found.append(share if power > MIN_NOISE_RATIO**2 * level and inside.sum() > 8 else None)
     return found[0], found[1]

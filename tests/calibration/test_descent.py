@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from calibration.discovery.effect_descent import MIN_RELATIVE_GAIN, broyden_update, fit
 from calibration.discovery.eliminated_least_squares import cost_of, linear_residual, minus_two_log_likelihood, predict_gain
 from calibration.discovery.frequency_bands import FourierRows, bands_of
-from calibration.discovery.linearisations import Linearisation, Point, Prior, Series
+from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, Prior
 from calibration.discovery.study import Study
 
 SAMPLES, NOISE = 201, 0.05
@@ -47,7 +47,7 @@ def study():
     noise = np.random.default_rng(1).normal(0, NOISE, (3, SAMPLES))
     uses = ("fit", "fit", "holdout")
     series = tuple(
-        Series(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES, np.full(12, NOISE))
+        MotionSeries(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES, np.full(12, NOISE))
         for i, use in enumerate(uses)
     )
     free = tuple(SimpleNamespace(label=name, transform=None) for name in ("rate", "decay"))

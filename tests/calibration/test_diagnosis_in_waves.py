@@ -25,7 +25,7 @@ from calibration.discovery.effects.phase_shift_start import PHASE_SPACING, phase
 from calibration.discovery.greedy_search import FIRST_ORDER_NOTE, SIMPLER_SEA_NOTES, Search
 from calibration.discovery.linearisations import Point
 from calibration.discovery.set_up import set_up_study
-from calibration.discovery.wave_records import by_a_program, highest_difference, options_for
+from calibration.discovery.wave_records import highest_difference, options_for, simulated_by_program
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import seas_of
 from calibration.results.applied_calibration import applied
@@ -247,7 +247,7 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     campaign = load_campaign(tmp_path)
     options, _ = options_for(campaign)
-    assert by_a_program(options)
+    assert simulated_by_program(options)
     assert highest_difference(seas_of(campaign, model.environment, options)) == pytest.approx(HIGHEST, abs=0.002)
     cut = dataclasses.replace(options, highest_difference=HIGHEST)
     assert highest_difference(seas_of(campaign, model.environment, cut)) is None

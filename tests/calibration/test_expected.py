@@ -15,7 +15,7 @@ from calibration.discovery.eliminated_least_squares import deviances, row_weight
 from calibration.discovery.expected_residuals import expected_over_floor, force_spectrum, impedance
 from calibration.discovery.frequency_bands import FourierRows, bands_of
 from calibration.discovery.greedy_search import Search
-from calibration.discovery.linearisations import Prior, Series
+from calibration.discovery.linearisations import MotionSeries, Prior
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.set_up import COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH, StudySetup, prior_width_of
 from calibration.discovery.study import Study
@@ -100,7 +100,9 @@ def study() -> Study:
     """One motion in a sea of an hour, slow to 0.05 Hz."""
     n = 3600
     cut = bands_of(n, 1.0, n, 14, 0.2)
-    series = Series("sea", "irregular", "fit", "surge", 0.01, 1.0, 2 * cut.lines, cut.low, cut.high, n, np.full(14, 0.02), 0.05)
+    series = MotionSeries(
+        "sea", "irregular", "fit", "surge", 0.01, 1.0, 2 * cut.lines, cut.low, cut.high, n, np.full(14, 0.02), 0.05
+    )
     space = SimpleNamespace(labels=(), start=jnp.zeros(0), free=())
     return Study(
         space,

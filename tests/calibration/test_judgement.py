@@ -34,7 +34,7 @@ from calibration.discovery.eliminated_least_squares import minus_two_log_likelih
 from calibration.discovery.frequency_bands import FourierRows, band_powers, bands_of
 from calibration.discovery.gather import gather_sea
 from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
-from calibration.discovery.linearisations import Linearisation, Prior, Series
+from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.study import Study
 
 CUT = bands_of(400.0, 0.1, 4000, 14, 1.0)
@@ -51,11 +51,11 @@ def test_powers_of_white_noise_are_its_variance_in_every_band():
     assert_allclose(2 * CUT.lines[band] * sine[band], 2000.0, rtol=1e-6)
 
 
-def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0, use: str = "holdout") -> Series:
-    return Series("t", "decay", use, channel, noise, spread, 2 * CUT.lines, CUT.low, CUT.high, 4000, np.full(14, floor))
+def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0, use: str = "holdout") -> MotionSeries:
+    return MotionSeries("t", "decay", use, channel, noise, spread, 2 * CUT.lines, CUT.low, CUT.high, 4000, np.full(14, floor))
 
 
-def study_of(*found: Series) -> Study:
+def study_of(*found: MotionSeries) -> Study:
     """Of decays in surge."""
     records = (SimpleNamespace(id="t", degree_of_freedom="surge"),)
     cuts = (FourierRows.of([CUT] * len(found), 4000),)

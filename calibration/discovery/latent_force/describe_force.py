@@ -9,7 +9,7 @@ import numpy as np
 from scipy import signal
 
 from calibration.campaign.signals import SEGMENT, peak_frequency, wave_height
-from calibration.discovery.diagnosis import Followed, LatentForce, Law, LawTerm, Shown
+from calibration.discovery.diagnosis import ForceCoherence, ForceExcerpt, LatentForce, Law, LawTerm
 from calibration.discovery.latent_force.force_law import LAG_RATIOS, LAGGED_TERMS, columns_of, squared_envelope
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
 from calibration.formatting import listed, number, percent, quantity, readable_unit
@@ -25,8 +25,8 @@ MIN_SIZE_RATIO = {
 }  # ratio of the largest to the smallest motion or wave, below which that cannot be told
 MIN_COHERENCE = 0.5  # share of the force that a coherence has to explain to be told
 
-Values = Callable[["RecoveredForce"], np.ndarray]
-MOTION: dict[str, Values] = {
+QuantityOfForce = Callable[["RecoveredForce"], np.ndarray]
+MOTION: dict[str, QuantityOfForce] = {
     "velocity": lambda one: one.velocity,
     "position": lambda one: one.position,
     "acceleration": lambda one: one.acceleration,
@@ -71,8 +71,8 @@ def shares_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
 
 
 def force_coherence(
-    forces: Sequence[RecoveredForce], values: Values, limits: Callable[[RecoveredForce], tuple[float, float]]
-) -> Followed | None:
+    forces: Sequence[RecoveredForce], values: QuantityOfForce, limits: Callable[[RecoveredForce], tuple[float, float]]
+) -> ForceCoherence | None:
     """How a force goes with something else between two frequencies (Hz), by cross-spectra (Bendat and Piersol 2010, Random
     Data, section 6.1); None where there are too few segments to tell."""
     cross, own, other, explained, segments = 0j, 0.0, 0.0, 0.0, 0
@@ -96,10 +96,10 @@ def force_coherence(
         segments += 2 * count // size - 1
     if segments < MIN_SEGMENTS or not own > 0 or not other > 0:
         return None
-    return Followed(explained / own, float(np.angle(cross)), float(cross.real / np.sqrt(own * other)))
+    return ForceCoherence(explained / own, float(np.angle(cross)), float(cross.real / np.sqrt(own * other)))
 
 
-def coherences(forces: Sequence[RecoveredForce]) -> dict[str, Followed]:
+def coherences(forces: Sequence[RecoveredForce]) -> dict[str, ForceCoherence]:
     """How the force goes with the motion, and in waves with the elevation and, slowly, with its squared envelope."""
     found = {name: force_coherence(forces, values, lambda _: (0.0, np.inf)) for name, values in MOTION.items()}
     if (wavy := [one for one in forces if one.test.wave is not None]) and len(wavy) == len(forces):
@@ -107,7 +107,7 @@ def coherences(forces: Sequence[RecoveredForce]) -> dict[str, Followed]:
         found["elevation"] = force_coherence(
             wavy, lambda one: np.asarray(one.test.wave), lambda one: (half[one.test.id], np.inf)
         )
-        envelope: Values = lambda one: squared_envelope(np.asarray(one.test.wave), one.test.step)  # noqa: E731
+        envelope: QuantityOfForce = lambda one: squared_envelope(np.asarray(one.test.wave), one.test.step)  # noqa: E731
         found["squared_envelope"] = force_coherence(wavy, envelope, lambda one: (0.0, half[one.test.id]))
     return {name: one for name, one in found.items() if one is not None}
 
@@ -171,13 +171,13 @@ def described(motion: str, forces: Sequence[RecoveredForce], law: Law) -> Latent
     return replace(made, words=sentence(made))
 
 
-def _shown(one: RecoveredForce, law: Law) -> Shown:
+def _shown(one: RecoveredForce, law: Law) -> ForceExcerpt:
     names, some = [term.kind for term in law.terms], one.inside
     wave, follows = one.test.wave, np.zeros(0)
     if names:
         follows = columns_of(one, law.v0, law.pace)[:, names] @ np.array([term.coefficient for term in law.terms])
     beside, values = ("velocity", one.velocity) if wave is None else ("wave", wave)
-    return Shown(one.test.id, one.test.time[some], one.force[some], follows, beside, values[some])
+    return ForceExcerpt(one.test.id, one.test.time[some], one.force[some], follows, beside, values[some])
 
 
 BAND_WORDS = {
