@@ -1,4 +1,4 @@
-"""Fits along a few parameters: Levenberg-Marquardt with slopes kept from step to step, mended by what every step shows.
+"""Levenberg-Marquardt fit of a few parameters with Broyden updates of the Jacobian.
 
 A simulation costs some twentieth of what all slopes cost. Broyden's update (1965, Mathematics of Computation 19, 577-593) makes
 slopes agree with the last step; they are taken anew where they have ceased to predict.
@@ -23,7 +23,13 @@ MIN_PREDICTED_SHARE = 0.25  # of what was predicted: slopes that give no more ar
 
 
 class FitOutcome(NamedTuple):
-    """Where a fit is: what was seen there, and whether it has settled."""
+    """Result of a fit.
+
+    Attributes:
+        look: Linearisation at the fitted point.
+        iterations: Iterations taken.
+        settled: Whether the fit converged.
+    """
 
     look: Linearisation
     iterations: int
@@ -33,7 +39,19 @@ class FitOutcome(NamedTuple):
 def broyden_update(
     study: Study, look: Linearisation, place: Point, residual: np.ndarray, step: np.ndarray, own: np.ndarray
 ) -> Linearisation:
-    """Slopes that agree with a step: Broyden's update, parameters measured by what they do to the residual."""
+    """The linearisation after a step, its slopes corrected to agree with the step (Broyden's update).
+
+    Args:
+        study: The study.
+        look: Linearisation before the step.
+        place: The point after the step.
+        residual: Residual there, in rows (n,).
+        step: Step along the active directions (q,).
+        own: Step of the decays' own unknowns (r, o).
+
+    References:
+        Broyden 1965, Mathematics of Computation 19, 577-593.
+    """
     weight = row_weights(study, look.residual)
     missed = residual - linear_residual(study, look, step, own)
     slopes, mine = look.slopes.copy(), look.own.copy()
@@ -53,7 +71,13 @@ def broyden_update(
 def bounded_step(
     study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A damped step that stays where parameters make sense: what would leave goes to the end, the others as is best then."""
+    """A damped step within the parameters' bounds.
+
+    Parameters that would leave go to the bound; the others are solved for again.
+
+    Returns:
+        Step along the active directions (q,), and of the decays' own unknowns (r, o).
+    """
     step, own = damped_step(study, look, used, prior, damping)
     low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
     kept = np.clip(step, low, high)
@@ -65,7 +89,7 @@ def bounded_step(
 
 
 def has_diverged(residual: np.ndarray) -> bool:
-    """Whether a simulation diverges, of a test that is fitted or of one that is not: nothing is seen from there."""
+    """Whether a simulation diverges, of a fitted or a held-out test."""
     return not bool((np.abs(residual) < OVERFLOW).all())
 
 
@@ -80,9 +104,21 @@ def fit(
     tolerance: float = 0.5,
     report: Callable[[int, float], None] = lambda *_: None,
 ) -> FitOutcome:
-    """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
-    `tolerance`, or than `MIN_RELATIVE_GAIN` of what is minimised there; slopes are taken anew at most `relinearisations` times, and once more at the
-    end. It stays where a simulation diverges."""
+    """Fit the directions of a linearisation, and the decays' own unknowns, to some series.
+
+    The fit ends where a step gains less than `tolerance`, or than `MIN_RELATIVE_GAIN` of the cost. A step that makes a
+    simulation diverge is rejected.
+
+    Args:
+        study: The study.
+        look: Linearisation where the fit begins.
+        used: Which series (s,) are fitted.
+        prior: Priors of the directions.
+        iterations: Maximum number of iterations.
+        relinearisations: How often slopes may be computed anew; if any, once more at the end.
+        tolerance: Smallest gain in cost that is worth a step.
+        report: Called with the iteration and the cost.
+    """
     logarithmic = study.logarithmic[list(look.active)]
     directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)

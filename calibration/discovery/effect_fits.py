@@ -1,4 +1,4 @@
-"""What a search fits: a campaign's study along the directions that some effects have, from the declared model's on."""
+"""Fits of a campaign's study with a given set of effects."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -30,7 +30,20 @@ MIN_FIT_GAIN = 1.0  # of -2 ln L: what another fit has to gain to be gone on wit
 
 
 class EffectFits:
-    """Fits of a campaign with some effects in the model, and what they are worth."""
+    """Fits of a campaign with some effects in the model, and their assessment.
+
+    Attributes:
+        campaign: The campaign.
+        setup: Study, candidates, priors.
+        study: The study, with the current seas and weights.
+        say: Called with the stage and its progress (0 to 1).
+        order: Current second-order treatment of the seas.
+        decay_calibration: Ordinary calibration to the decays, or None.
+        strips: How strips are taken, where not as the platform file says.
+        begun: Parameter coordinates where the search began (p,).
+        base: Directions that are free without any effect.
+        count: Number of independent observations, for BIC.
+    """
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
         self.campaign, self.setup, self.study, self.say = campaign, setup, setup.study, say
@@ -47,7 +60,7 @@ class EffectFits:
         return list(dict.fromkeys([*self.base, *self.study.index([label for one in chosen for label in one.labels])]))
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
-        """What is nearly known, mass properties or draught, is not where it is what is looked for."""
+        """Priors with some effects in the model, whose amplitudes have wide ones."""
         width = self.setup.prior.width.copy()
         for one in chosen:
             width[self.study.index(one.amplitudes)] = CANDIDATE_PRIOR_WIDTH
@@ -55,7 +68,7 @@ class EffectFits:
 
     @cached_property
     def start(self) -> Point:
-        """Coefficients and releases of an ordinary calibration to the decays, which finds them from far away."""
+        """Starting point: coefficients and releases of an ordinary calibration to the decays."""
         study = self.study
         x = np.asarray(study.space.start).copy()
         if study.decays is None:
@@ -74,8 +87,10 @@ class EffectFits:
         return Point(x, own)
 
     def anchor(self, x: np.ndarray) -> None:
-        """The search begins at these coordinates; in waves coefficients are known from there: what the declared model lacks
-        would else move them to where they stand for it, linear damping for radiation, and slow motion is damped away."""
+        """Set where the search begins, and in waves centre the coefficients' priors there.
+
+        Otherwise coefficients would compensate for what the model lacks: linear damping for radiation, for instance.
+        """
         self.begun = x
         if not self.study.seas:
             return
@@ -86,22 +101,24 @@ class EffectFits:
         self.setup = self.setup._replace(prior=Prior(mean, self.setup.prior.width))
 
     def weigh_by_expected(self, place: Point) -> None:
-        """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
+        """Weigh tests in waves by the residuals that unknown forces would leave, estimated at a point."""
         self.study = replace(self.study, expected=expected_rows(self.study, place))
 
     def take_seas(self, order: SecondOrderTreatment) -> None:
-        """From now on the seas of this order."""
+        """Use the seas of this second-order treatment from now on."""
         self.order = order
         self.study = replace(self.study, seas=self.setup.study.seas if order == "second" else self.study.other_seas[order])
         self.__dict__.pop("blocks", None)  # which were cut from others
 
     def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
-        """All directions of a look, until nothing is gained."""
+        """Fit all directions of a linearisation until nothing is gained."""
         return self.state(chosen, self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction))
 
     def refitted_from(self, place: Point, state: FitState, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
-        """A state; where a fit of some effects from another place follows the fitted tests better, that one. It is looked for
-        with the state's slopes, and fitted anew only where it seems to be there."""
+        """The better of a state and a fit from another point.
+
+        The state's slopes are used to test the other point; only if it seems better are slopes computed anew.
+        """
         look = state.look.restricted_to(self.active(chosen))
         there = replace(look, place=place, residual=self.study.residual(place))
         reached = self.fit(there, chosen, MAX_ITERATIONS, 0, name, fraction).look
@@ -119,6 +136,8 @@ class EffectFits:
         name: str,
         fraction: float,
     ) -> FitOutcome:
+        """Fit all directions of a linearisation for some iterations, reporting progress."""
+
         def report(i: int, cost: float) -> None:
             self.say(f"{name}: iteration {i}, -2 ln L {cost:.0f}", fraction)
 
@@ -135,7 +154,7 @@ class EffectFits:
         )
 
     def state(self, chosen: Sequence[Candidate], reached: FitOutcome) -> FitState:
-        """What a fit has reached; the held-out decays' own unknowns are fitted to them, the parameters as they are."""
+        """The state that a fit reached; held-out decays' own unknowns are fitted with the parameters fixed."""
         study, look = self.study, reached.look
         if study.decays is not None and not study.fitted_decays.all():
             alone = fit(study, look.restricted_to(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
@@ -152,7 +171,7 @@ class EffectFits:
         )
 
     def with_values(self, place: Point, values: Mapping[str, float]) -> Point:
-        """A place with some parameters as given."""
+        """A point with some parameters (SI) as given."""
         x = place.x.copy()
         for label, value in values.items():
             i = self.study.labels.index(label)
@@ -160,17 +179,19 @@ class EffectFits:
         return Point(x, place.own)
 
     def with_starting_values(self, place: Point, names: Sequence[str]) -> Point:
-        """A place where some directions are as they were where the search began."""
+        """A point with some directions set back to where the search began."""
         at = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
         return replace(place, x=np.where(at, self.begun, place.x))
 
     def likeliest(self, *states: FitState) -> FitState:
-        """The one that follows the fitted tests best."""
+        """The state that follows the fitted tests best."""
         return min(states, key=lambda state: float(state.likelihood[self.study.used].sum()))
 
     def assess(self, before: FitState, after: FitState, one: Candidate, last: bool = False) -> Verdict:
-        """Whether an effect is believed: by the tests held out; where there are none by the fitted ones, and at `last` by their
-        blocks left out in turn."""
+        """Whether an effect is accepted, by the held-out tests.
+
+        Without held-out tests the fitted ones decide, and at `last` blocks of them that are left out in turn.
+        """
         study, prior = self.study, self.prior(after.chosen)
         grounds = HeldOutComparison(study, ~study.used, before.left, after.left, True)
         if study.used.all():

@@ -1,4 +1,4 @@
-"""Least squares with the decays' own unknowns eliminated: weights, equations, steps, and what a step would gain.
+"""Least squares with the decays' own unknowns eliminated: weights, normal equations, gains.
 
 -2 ln L = sum over motions and pools of bands of n ln m, n the pool's degrees of freedom and m the mean square over the floor's
 (Whittle 1953, Arkiv for Matematik 2, 423-434, with a spectrum that is known up to a factor by pool, which is estimated: see
@@ -24,24 +24,35 @@ ROUNDING = 1e-12  # of the largest eigenvalue of scaled equations: slopes that B
 
 
 def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
-    """n (m^p - 1) / p of every series and pool (s, b), n ln m for p = 0; n (m - 1) below the floor."""
+    """Deviance of every series and pool of bands (s, b).
+
+    n (m^p - 1) / p with p = `power`, n ln m for p = 0; n (m - 1) below the floor.
+    """
     mean_square = study.levels(residual)
     return study.pooled * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
 
 
 def cost_of(study: Study, look: Linearisation, residual: np.ndarray, place: Point, used: np.ndarray, prior: Prior) -> float:
-    """What is minimised, of the `used` series (s,) and the priors, with this residual at this place."""
+    """The cost that a fit minimises: deviances of the fitted series, and squares of the priors.
+
+    Args:
+        study: The study.
+        look: Linearisation whose directions are free.
+        residual: Residual in rows (n,).
+        place: The point that the residual is of.
+        used: Which series (s,) are fitted.
+        prior: Priors of the directions.
+    """
     value = float(deviances(study, residual, BOX_COX_POWER)[used].sum())
     value += float((prior_residuals(study, place, prior)[0][list(look.active)] ** 2).sum())
     return value + float(((place.own / study.own_width) ** 2).sum())
 
 
 def prior_residuals(study: Study, place: Point, prior: Prior) -> tuple[np.ndarray, np.ndarray]:
-    """What priors are the squares of (p,), and its slopes along the directions: z (1 + (z / FAR)^2), z how far from what is
-    expected in standard deviations.
+    """Residuals of the priors, and their slopes along the directions (each d,).
 
-    A Gaussian prior is no match for thousands of samples of what the model lacks: a mass that was weighed would be moved by
-    twenty of its deviations.
+    z (1 + (z / 3)^2) with z the distance from the mean in standard deviations (`STEEP_PRIOR_DEVIATIONS` is 3). A Gaussian prior
+    is too weak against thousands of samples of what the model lacks: a weighed mass would be moved by twenty deviations.
     """
     z = (study.steps(place.x) - prior.mean) / prior.width
     return z * (1 + (z / STEEP_PRIOR_DEVIATIONS) ** 2), (1 + 3 * (z / STEEP_PRIOR_DEVIATIONS) ** 2) / prior.width
@@ -53,13 +64,20 @@ def minus_two_log_likelihood(study: Study, residual: np.ndarray) -> np.ndarray:
 
 
 def row_weights(study: Study, residual: np.ndarray) -> np.ndarray:
-    """By which rows' squares count where `cost_of` is taken as quadratic."""
+    """Weights of rows (n,) in the quadratic approximation of `cost_of`."""
     each = study.pooled * np.maximum(study.levels(residual), 1.0) ** (BOX_COX_POWER - 1)
     return each.ravel()[study.pool] * study.share
 
 
 class DecayBlock(NamedTuple):
-    """Of one decay: Gauss-Newton matrix and gradient of its own unknowns, and the cross block; whether it is fitted."""
+    """Part of the normal equations that belongs to one decay.
+
+    Attributes:
+        own: Gauss-Newton matrix of its own unknowns (o, o).
+        cross: Cross block with the parameters (o, q).
+        slope: Gradient of its own unknowns (o,).
+        fitted: Whether the decay is fitted.
+    """
 
     own: np.ndarray
     cross: np.ndarray
@@ -68,15 +86,24 @@ class DecayBlock(NamedTuple):
 
 
 class NormalEquations(NamedTuple):
-    """Gauss-Newton matrix and gradient of the parameters, and every decay's block: an arrow."""
+    """Gauss-Newton equations of parameters and of every decay's own unknowns (arrow form).
+
+    Attributes:
+        matrix: Matrix of the parameters (q, q).
+        slope: Gradient of the parameters (q,).
+        blocks: One block for every decay.
+    """
 
     matrix: np.ndarray
     slope: np.ndarray
     blocks: list[DecayBlock]
 
     def reduced(self, damping: float = 0.0) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-        """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated, and what gives all of these
-        back."""
+        """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated.
+
+        Returns:
+            Matrix (q, q), gradient (q,), and by decay what recovers its own unknowns (o, q + 1).
+        """
         matrix, slope = self.matrix + damping * np.diag(np.diag(self.matrix)), self.slope
         back = []
         for block in self.blocks:
@@ -90,7 +117,15 @@ class NormalEquations(NamedTuple):
 
 
 def normal_equations(study: Study, look: Linearisation, weight: np.ndarray, used: np.ndarray, prior: Prior) -> NormalEquations:
-    """Of the `used` series (s,) for the parameters; of all decays for their own unknowns. `weight` (n,) by row."""
+    """Normal equations of a linearisation.
+
+    Args:
+        study: The study.
+        look: The linearisation.
+        weight: Weights of rows (n,).
+        used: Which series (s,) are fitted; every decay's own unknowns take part.
+        prior: Priors of the directions.
+    """
     active = list(look.active)
     far, steep = (one[active] for one in prior_residuals(study, look.place, prior))
     mine = weight * used[study.row_series]
@@ -111,19 +146,19 @@ def normal_equations(study: Study, look: Linearisation, weight: np.ndarray, used
 
 
 def decay_unknown_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarray) -> np.ndarray:
-    """What the decays' own unknowns do where the parameters take a step."""
+    """Steps of the decays' own unknowns (r, o) for a step of the parameters (q,)."""
     return np.array([-(one[:, -1] + one[:, :-1] @ step) for one in back]).reshape(study.own_width.shape)
 
 
 def symmetric_inverse(matrix: np.ndarray) -> np.ndarray:
-    """A symmetric matrix's inverse, or pseudo-inverse, of parameters of any size."""
+    """Inverse or pseudo-inverse of a symmetric matrix, whatever the parameters' scales."""
     return inverse(matrix, ROUNDING)
 
 
 def damped_step(
     study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A damped step of the parameters, and of every used decay's own unknowns."""
+    """Damped step of the parameters (q,), and of the fitted decays' own unknowns (r, o)."""
     found = normal_equations(study, look, row_weights(study, look.residual), used, prior)
     matrix, slope, back = found.reduced(damping)
     step = -symmetric_inverse(matrix) @ slope
@@ -132,7 +167,7 @@ def damped_step(
 
 
 def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Rows of the residual after a step, were the model linear."""
+    """Residual in rows (n,) after a step, by the linearisation."""
     residual = look.residual + look.slopes @ step
     for span, mine in zip(study.spans, own):
         residual[span] += look.own[span] @ mine
@@ -140,8 +175,19 @@ def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own: np
 
 
 def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of columns (n, k): their products (k,) with a look's residual, and their squares (k,), when what its directions and the
-    decays' unknowns can do instead, without limit, is projected out; weighed as a fit of the used tests does."""
+    """Products of columns with the residual, after projection.
+
+    What the directions of the linearisation and the decays' own unknowns can explain is projected out. Rows are weighed as in a
+    fit.
+
+    Args:
+        study: The study.
+        look: The linearisation.
+        columns: Columns in rows (n, k).
+
+    Returns:
+        Products with the residual (k,), and the columns' squares (k,).
+    """
     root = np.sqrt(row_weights(study, look.residual) * study.used[study.row_series])[:, None]
     base, columns, residual = (root * one for one in (look.slopes, columns, look.residual[:, None]))
     for span in study.spans:
@@ -155,7 +201,14 @@ def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -
 
 
 class FirstOrderGain(NamedTuple):
-    """Steps of the parameters, gains of -2 ln L by series (s,), which of these are of `used` tests, and the covariance."""
+    """First-order gain of a step.
+
+    Attributes:
+        step: Step of the parameters (q,).
+        gain: Decrease of -2 ln L by series (s,).
+        used: Which series are of fitted tests (s,).
+        covariance: Covariance of the parameters (q, q).
+    """
 
     step: np.ndarray
     gain: np.ndarray
@@ -164,22 +217,25 @@ class FirstOrderGain(NamedTuple):
 
     @property
     def fitted(self) -> float:
-        """The gain in the fitted tests."""
+        """Decrease of -2 ln L in the fitted tests."""
         return float(self.gain[self.used].sum())
 
     @property
     def held(self) -> float:
-        """The gain in the held-out tests."""
+        """Decrease of -2 ln L in the held-out tests."""
         return float(self.gain[~self.used].sum())
 
     @property
     def deviation(self) -> np.ndarray:
-        """Standard deviations."""
+        """Standard deviations of the parameters (q,)."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
 def predict_gain(study: Study, look: Linearisation, prior: Prior) -> FirstOrderGain:
-    """What a look's directions would gain were the model linear, releases and offsets moving with them, weights renewed."""
+    """Gain that the directions of a linearisation would bring if the model were linear.
+
+    The decays' own unknowns move too, and weights are updated.
+    """
     residual, step = look.residual, np.zeros(len(look.active))
     covariance = np.zeros((len(step), len(step)))
     for _ in range(REWEIGHTINGS):

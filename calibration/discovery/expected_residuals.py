@@ -1,4 +1,4 @@
-"""How large a residual is expected where a force acts that the model does not have: what records in waves are weighed by.
+"""Expected size of residuals in waves where an unknown force acts: the weights of wave tests.
 
 A force F that is missing leaves a residual H F, which is largest where the platform answers most. Weighed as if every
 frequency were alike, such a residual is best reduced by a model that answers less there: least squares damps slow motion away.
@@ -52,8 +52,13 @@ def _tangents(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "6 12"]:
 
 
 def impedance(record: SeaRecord, x: np.ndarray, frequency: np.ndarray) -> np.ndarray:
-    """Force over motion (f, c, c) of a model in its sea, per unit of mass, in the motions that were measured, at frequencies
-    (Hz)."""
+    """Impedance of a model in its sea: force per unit of mass over motion (f, c, c).
+
+    Args:
+        record: The run.
+        x: Parameter coordinates (p,).
+        frequency: Frequencies (Hz; f,).
+    """
     found = -np.asarray(_tangents(record, jnp.asarray(x)))
     dofs = np.ix_(record.dofs, record.dofs)
     omega = 2 * np.pi * frequency[:, None, None]
@@ -74,7 +79,7 @@ def force_spectrum(power: np.ndarray, noise: np.ndarray, pool: np.ndarray) -> np
 
 
 def expected_rows(study: Study, place: Point) -> np.ndarray:
-    """How large rows (n,) are expected beside their floor, of what is seen at a place."""
+    """Expected size of every row (n,) over its floor, from the residual at a point."""
     residual = study.residual(place, "all")
     found = [np.ones(2 * len(study.cuts[0].take))] if study.decays is not None else []
     begin = sum(len(one) for one in found)
@@ -95,7 +100,14 @@ def _of_sea(study: Study, record: SeaRecord, cut: FourierRows, place: Point, res
 
 
 def expected_over_floor(lines: np.ndarray, floor: np.ndarray, pool: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
-    """sqrt(P) over the floor (c, f), of a residual's Fourier lines (c, f), their pools (f,) and `impedance` (f, c, c)."""
+    """Expected residual over the floor, sqrt(P) / floor (c, f).
+
+    Args:
+        lines: Fourier lines of a residual (c, f).
+        floor: Floor of the lines (c, f).
+        pool: Pool of bands of every line (f,).
+        stiffness: Impedance (f, c, c).
+    """
     forces = np.abs(np.einsum("fji,if->jf", stiffness, lines)) ** 2 / 2
     noise = np.einsum("fji,if->jf", np.abs(stiffness) ** 2, floor**2)
     missing = np.stack([force_spectrum(one, of_floor, pool) for one, of_floor in zip(forces, noise)])

@@ -1,4 +1,4 @@
-"""From a campaign's records to a study: decays in arrays, seas prepared, every motion cut into bands."""
+"""Records of a campaign gathered into a study: decays, seas, bands."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -49,9 +49,19 @@ def study_of(
     options: Options,
     width: int,
 ) -> Study:
-    """The records of a campaign, against a model with every candidate at its null. Raises InputError.
+    """Gather a campaign's records into a study.
 
-    `width` directions are looked along at a time, or half as many where there is little that could be simulated beside them.
+    Args:
+        model: The model, every candidate at its neutral value.
+        space: All parameters.
+        names: Names of the directions.
+        directions: The directions (d, p).
+        campaign: The campaign.
+        options: How seas are reconstructed.
+        width: Number of directions that are differentiated at a time; halved where little can run in parallel.
+
+    Raises:
+        InputError: If records cannot be used.
     """
     records = [r for r in campaign.records if r.use in ("fit", "holdout")]
     decaying = tuple(r for r in records if r.kind == "decay")
@@ -112,7 +122,10 @@ def study_of(
 
 
 def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
-    """How seas may be instead, by `fits.Order`: a program, whose records are known by these, may have simplified."""
+    """Simplified second-order treatments to try, by name (see `effect_fits.SecondOrderTreatment`).
+
+    Programs simplify; whether one did is seen in the wave records.
+    """
     found: dict[str, Options] = {}
     if options.order == 2:
         found["first"] = replace(options, acting="nowhere")
@@ -125,7 +138,7 @@ def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
 
 
 def highest_frequency(model: Model) -> float:
-    """The highest frequency (Hz) that is looked at."""
+    """Highest frequency (Hz) of a model's motion that is compared."""
     periods = natural_modes(model).period
     return MAX_FREQUENCY_RATIO / float(periods.min()) if len(periods) else 1.0
 
@@ -133,8 +146,19 @@ def highest_frequency(model: Model) -> float:
 def gather_decays(
     records: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float, highest: float
 ) -> tuple[Problem, list[MotionSeries], np.ndarray, FourierRows]:
-    """Decays in arrays, simulated in steps of at most `step` (s); every motion's series, how far their own unknowns may go, and
-    their rows up to `highest` (Hz)."""
+    """Decays in arrays, with their series and rows.
+
+    Args:
+        records: The decays.
+        model: The model.
+        space: All parameters.
+        from_rest: Whether motions count from the static equilibrium.
+        step: Largest time step (s).
+        highest: Highest frequency (Hz).
+
+    Returns:
+        The problem, series, standard deviations of the decays' own unknowns (r, o), and rows.
+    """
     data = gather(records, model, step, exact=True)
     decays = Problem(model, data, space, from_rest, None if from_rest else equilibrium(model))
     found, own_width = _decay_series(records, data, highest)
@@ -142,8 +166,10 @@ def gather_decays(
 
 
 def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[MotionSeries], FourierRows]:
-    """Every motion of every test of a run, and their rows up to `highest` (Hz). What barely moves beside others of its unit has
-    no degrees of freedom: a model that sways too much in head waves would else be damped until it does not, and surge with it.
+    """Series and rows of all tests of a run in waves, up to `highest` (Hz).
+
+    A motion that is small beside others of its unit has no degrees of freedom. Otherwise a model that sways too much in head
+    waves would be damped until it does not, and surge with it.
     """
     measured, step = np.asarray(sea.measured), float(sea.times[1] - sea.times[0])
     n = measured.shape[-1]
@@ -175,7 +201,7 @@ def _series(
 
 
 def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[MotionSeries, Bands]], np.ndarray]:
-    """Every motion of every decay, and how far the decays' own unknowns may go."""
+    """Series of every decay, and standard deviations of the decays' own unknowns."""
     found = []
     width = np.full((len(records), 3, len(data.dofs)), np.inf)
     for i, record in enumerate(records):

@@ -1,4 +1,4 @@
-"""The loop: fit, score every candidate at its null, refit a shortlist, decide on what was not fitted; until none is left."""
+"""Greedy search: score all candidates, refit a shortlist, accept the best, repeat."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -47,7 +47,15 @@ MIN_RELATIVE_PROMISE = 0.3  # of what a refitted effect gains: what gains less a
 
 
 class Search(CandidateScoring):
-    """A diagnosis under way: the study, and what was seen of the candidates."""
+    """Greedy search for missing effects.
+
+    Attributes:
+        notes: Notes to report, in words.
+        earlier: Computing time of earlier, stopped runs (s).
+        alone: Residual of a calibration to decays alone, where there are seas too.
+        found: Evidence of the accepted effects by name.
+        declared_in_second_order: Fit of the declared model in second-order waves, where first order was chosen instead.
+    """
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
         super().__init__(campaign, setup, say)
@@ -58,7 +66,7 @@ class Search(CandidateScoring):
         self.declared_in_second_order: FitState | None = None  # where waves of first order were taken in place of theirs
 
     def fit_baseline(self) -> FitState:
-        """The declared model, fitted."""
+        """Fit the declared model, and choose the second-order treatment of the seas."""
         self.say("calibrating the declared model", 0.03)
         place = self.start
         self.anchor(place.x)
@@ -92,8 +100,13 @@ class Search(CandidateScoring):
         return self.refit(self.study.linearise(best.look.place, self.base), (), name, 0.14)
 
     def second_order_again(self, state: FitState, number: int) -> tuple[FitState, FitState] | None:
-        """The declared model and a state in waves with the second order of their records, where those of first order were taken
-        and follow the motions no better any more: what the model lacked then may have made the second order look wrong."""
+        """Return to second-order waves where first-order ones no longer follow the motions better.
+
+        What the model lacked before may have made second order look wrong.
+
+        Returns:
+            Fits of the declared model and of the state in second-order waves; None: first order stays.
+        """
         if (declared := self.declared_in_second_order) is None:
             return None
         name, done = f"round {number}: waves of second order again", 0.15 + 0.8 * (number - 1) / MAX_EFFECTS
@@ -107,8 +120,10 @@ class Search(CandidateScoring):
         return declared, self.refit(look, state.chosen, name, done)
 
     def fitted_in_seas(self, order: SecondOrderTreatment, state: FitState, name: str, fraction: float) -> FitState | None:
-        """A state fitted a little in the seas of an order, which are the search's from then on; None where they make it so much
-        worse, not fitted, that it is left at that."""
+        """A state after a few iterations in seas of another second-order treatment.
+
+        These are the search's seas from then on. None where they are much worse before any fit.
+        """
         self.take_seas(order)
         there = minus_two_log_likelihood(self.study, self.study.residual(state.look.place))
         if float((there - state.likelihood)[self.study.used].sum()) > MAX_UNFITTED_LOSS:
@@ -117,11 +132,15 @@ class Search(CandidateScoring):
         return self.state(state.chosen, self.fit(look, state.chosen, REFIT_ITERATIONS, 0, name, fraction))
 
     def likelihood_gain(self, before: FitState, after: FitState) -> float:
-        """By how much the fitted tests are followed better by another state (-2 ln L)."""
+        """Decrease of -2 ln L of the fitted tests from one state to another."""
         return float((before.likelihood - after.likelihood)[self.study.used].sum())
 
     def add_effect(self, state: FitState, number: int) -> tuple[FitState, FitState | None]:
-        """The state, fitted better where that was found on the way, and the best effect let in; None where none survives."""
+        """One round: score candidates, refit a shortlist, accept the best.
+
+        Returns:
+            The state, better fitted where that was found on the way, and the state with a new effect or None.
+        """
         done = 0.15 + 0.8 * (number - 1) / MAX_EFFECTS
         enough = 2 * math.log(self.count)
         ranked = [
@@ -140,7 +159,7 @@ class Search(CandidateScoring):
         return state, after
 
     def best_by_motion(self, rest: Sequence[ScoredCandidate], enough: float) -> list[ScoredCandidate]:
-        """What explains the most of one motion, among those that do not explain the most of all."""
+        """For every motion the candidate that explains most of it, among the rest."""
         found: dict[str, ScoredCandidate] = {}
         for channel in dict.fromkeys(one.channel for one in self.study.series) if rest else ():
             mine = self.study.used & np.array([one.channel == channel for one in self.study.series])
@@ -153,7 +172,7 @@ class Search(CandidateScoring):
     def best_of_shortlist(
         self, state: FitState, short: Sequence[ScoredCandidate], number: int, done: float
     ) -> tuple[FitState, FitState | None]:
-        """The same of a shortlist."""
+        """Refit a shortlist and accept its best candidate. See `add_effect`."""
         tried: list[RefittedCandidate] = []
         for item in short:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
@@ -192,15 +211,20 @@ class Search(CandidateScoring):
         return state, None
 
     def refitted_without(self, without: FitState, after: FitState, one: Candidate, fraction: float) -> FitState:
-        """A model without an effect; where that is better by far, fitted from where it is with it: any effect may help a fit
-        over what held it up, and is not to be believed for that."""
+        """The model without an effect, refitted from the fit with it where that is far better.
+
+        Any effect may help a fit over an obstacle, and is not to be accepted for that.
+        """
         place, name = self.with_starting_values(after.look.place, one.labels), f"without {one.name}"
         other = self.refit(self.study.linearise(place, without.look.active), without.chosen, name, fraction)
         return other if self.likelihood_gain(without, other) > MIN_LIKELIHOOD_GAIN else without
 
     def without_needless_effects(self, state: FitState) -> FitState:
-        """The model without what later effects have made needless: every effect but the last is tried to be taken out. What
-        gains more than any of these is not needless where it only hardly matters beside them: they share it."""
+        """The model without effects that later ones made needless.
+
+        Every effect but the last is removed on trial. One that gains more than the later effects stays, though it hardly
+        matters beside them: they share what they explain.
+        """
         spared: list[Candidate] = []
         for one in state.chosen[:-1]:
             rest = tuple(other for other in state.chosen if other is not one)
@@ -225,8 +249,10 @@ class Search(CandidateScoring):
         return state
 
     def with_mass_properties(self, state: FitState) -> FitState:
-        """The model with mass properties among the effects, where records put one further from what is declared than
-        laboratories are wrong by: they move with every fit, nearly known, so that no error tells that they are not known."""
+        """The model with mass properties as an effect, where they are further off than weighing usually is.
+
+        They are free within their priors in every fit, so that no error shows that they are wrong.
+        """
         one = next((one for one in self.setup.candidates if one.effect == "mass_properties"), None)
         if one is None or one in state.chosen:
             return state

@@ -1,4 +1,4 @@
-"""Tests cut into blocks of time that are left out in turn: for campaigns that hold no test out.
+"""Blocks of fitted tests left out in turn, for campaigns without held-out tests.
 
 A block of a decay begins with an initial state of its own, which is fitted to it; a block of a test in waves is simulated with
 the whole record and compared where it is.
@@ -25,14 +25,20 @@ BLOCK_ITERATIONS = 6
 
 
 class HeldOutBlocks:
-    """A study's fitted tests in blocks: `block` (s,) is the number of every series' own."""
+    """A study's fitted tests in blocks of time.
+
+    Attributes:
+        study: The study of the blocks.
+        block: Number of every series' block (s,).
+        summaries: Results so far, by names of effects.
+    """
 
     def __init__(self, study: Study, records: Sequence[Record]) -> None:
         self.study, self.block = study_in_blocks(study, records)
         self.summaries: dict[tuple[str, ...], ResidualSummary] = {}
 
     def residual_summary(self, state: FitState, prior: Prior) -> ResidualSummary:
-        """What is left of every block where the others are fitted, beginning at a state."""
+        """Residual of every block where the others are fitted, beginning at a state."""
         names = tuple(one.name for one in state.chosen)
         if names not in self.summaries:
             self.summaries[names] = self._residual_summary(state, prior)
@@ -66,8 +72,16 @@ class HeldOutBlocks:
 
 
 def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarray]:
-    """The fitted tests of a study, COUNT blocks of time of each; and the number of every series' block. Decays too short for it
-    are left out. Raises ValueError where nothing can be cut."""
+    """A study's fitted tests cut into blocks of time, `BLOCKS_PER_TEST` of each.
+
+    Decays that are too short are left out.
+
+    Returns:
+        The study of the blocks, and the number of every series' block (s,).
+
+    Raises:
+        ValueError: If nothing can be cut.
+    """
     by_id = {record.id: record for record in records}
     highest = highest_frequency(study.model)
     cut = [
@@ -120,7 +134,7 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
 
 
 def split_record(record: Record) -> list[Record]:
-    """A record in COUNT consecutive ones of as many samples."""
+    """A record cut into `BLOCKS_PER_TEST` consecutive blocks."""
     cuts = np.array_split(np.arange(len(record.time)), BLOCKS_PER_TEST)
     return [
         replace(

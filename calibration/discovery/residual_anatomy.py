@@ -1,4 +1,4 @@
-"""The residual taken apart: which motion, which test, which frequencies, how much above the noise."""
+"""Residuals by motion, test and frequency, relative to noise."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MIN_NOISE_RATIO = 1.3  # rms over noise below which nothing is said
 
 
 def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
-    """Of every motion that the tests are about, what is left."""
+    """Residual of every motion and test, in numbers and words."""
     study = search.study
     noise = np.array([[one.noise] for one in study.series])
     mean_square, dof = study.mean_squares(state.residual) * study.floor**2 / noise**2, study.dof
@@ -41,7 +41,7 @@ def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
 
 
 def _words(within: float, over: float, bands: Sequence[tuple[float, float, float]]) -> str:
-    """`within` the bands that are looked at, and `over` all: rms over noise."""
+    """A residual in words; rms over noise `within` the compared bands and `over` all."""
     if within < MIN_NOISE_RATIO:
         return "at the noise"
     worst = max(bands, key=lambda b: b[2])
@@ -50,8 +50,10 @@ def _words(within: float, over: float, bands: Sequence[tuple[float, float, float
 
 
 def signature(search: Search, before: FitState, after: FitState) -> tuple[float, str]:
-    """Share of the error's energy above the floor that is left in what the tests are about, every motion over its own, and what
-    is known of it."""
+    """Fraction of the error's energy that is left, and the remaining residual in words.
+
+    Every motion that a test is about counts, relative to its own size and above its floor.
+    """
     study = search.study
     told = study.main & np.array([one.channel in search.setup.motions for one in study.series])
     spread = np.array([one.spread for one in study.series])

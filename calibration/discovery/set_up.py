@@ -1,4 +1,4 @@
-"""From a campaign to a study: which motions, which candidates, which nuisances, every parameter with its scale."""
+"""Set-up of a study: motions, candidates, nuisance parameters, scales and priors."""
 
 import math
 from collections.abc import Sequence
@@ -35,7 +35,17 @@ COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH = 0.75, 0.5
 
 
 class StudySetup(NamedTuple):
-    """A study, its candidates, what is free in the declared model, what is only nearly known, and the priors of all."""
+    """A study with its candidates and priors.
+
+    Attributes:
+        study: The study.
+        candidates: Candidate effects.
+        declared: The declared model.
+        base: Labels of the declared model's free coefficients.
+        nuisances: Names of nearly known parameters, free within their priors.
+        prior: Priors of all directions.
+        motions: The motions that the tests are about.
+    """
 
     study: Study
     candidates: tuple[Candidate, ...]
@@ -47,7 +57,7 @@ class StudySetup(NamedTuple):
 
 
 def motions_of(campaign: Campaign) -> dict[str, float]:
-    """The motions that the tests are about, and their largest standard deviation in one test (m, rad)."""
+    """Motions that the tests are about, with their largest standard deviation in a test (m, rad)."""
     found: dict[str, float] = {}
     for record in campaign.records:
         if record.use == "ignore":
@@ -66,7 +76,18 @@ def motions_of(campaign: Campaign) -> dict[str, float]:
 def set_up_study(
     campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), width: int = DIRECTIONS_AT_ONCE
 ) -> StudySetup:
-    """Everything that a diagnosis needs. Raises InputError where a campaign has nothing to diagnose."""
+    """Set up everything that a diagnosis needs.
+
+    Args:
+        campaign: The campaign.
+        options: How seas are reconstructed.
+        extra: The user's own candidate effects.
+        width: Number of directions that are differentiated at a time.
+
+    Raises:
+        InputError: If the campaign has nothing to diagnose.
+        ValueError: If a user's own candidate is incomplete.
+    """
     source = str(campaign.folder / "campaign.yaml")
     motions = motions_of(campaign)
     used = [r for r in campaign.records if r.use == "fit" and (r.kind == "decay" or r.kind in IN_WAVES)]
@@ -163,7 +184,7 @@ def set_up_study(
 
 
 def prior_width_of(label: str, declared: Model, waves: bool) -> float:
-    """How well a coefficient is known before its records, one standard deviation of its logarithm."""
+    """Prior standard deviation of a coefficient's logarithm."""
     if not waves or float(declared.values[label]) == 0:
         return VAGUE
     return DAMPING_PRIOR_WIDTH if label.startswith("linear_damping.") else COEFFICIENT_PRIOR_WIDTH

@@ -1,4 +1,4 @@
-"""How a program takes strips, where a program made a campaign's records and its platform file does not say."""
+"""Trial of strip conventions, for records that another program made."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -20,8 +20,14 @@ SIMPLER_STRIPS_NOTE = (
 
 
 class StripTrial(NamedTuple):
-    """A campaign with strips as its decays have them, calibrated to these (None: nothing had to be found out), how they are
-    taken where that is not as its platform file says, and why."""
+    """Outcome of a trial of strip conventions.
+
+    Attributes:
+        campaign: The campaign, its model with the conventions that the decays prefer.
+        fit: Calibration to the decays with them; None: no trial was needed.
+        strips: The conventions, where not as the platform file says.
+        notes: The reason, in words.
+    """
 
     campaign: Campaign
     fit: Fit | None = None
@@ -30,8 +36,10 @@ class StripTrial(NamedTuple):
 
 
 def try_strip_conventions(campaign: Campaign, say: Callable[[str, float], None]) -> StripTrial:
-    """Strips as simpler programs take them where the decays, calibrated, are then followed better; as they are where the
-    platform file says how they are taken, or has other laws of drag than a constant coefficient."""
+    """Choose the strip conventions that the decays prefer.
+
+    The platform file's conventions stay where it states them, or has drag laws other than a constant coefficient.
+    """
     decays = [record for record in campaign.used("fit") if record.kind == "decay"]
     model = campaign.model
     said = bool(set(Strips.model_fields) & campaign.platform.model_fields_set) or Strips.of(model) != USUAL
@@ -49,7 +57,7 @@ def try_strip_conventions(campaign: Campaign, say: Callable[[str, float], None])
 
 
 def _unlikelihood(fit: Fit) -> float:
-    """-2 ln L of calibrated decays, of errors that are no smaller than stated noise."""
+    """-2 ln L of calibrated decays, errors no smaller than the stated noise."""
     data = fit.problem.data
     noise = np.array([[record.noise.get(DOFS[dof], 0.0) for dof in data.dofs] for record in fit.records])
     squares = np.maximum(fit.mean_squares(), noise**2)

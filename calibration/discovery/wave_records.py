@@ -1,4 +1,4 @@
-"""What the wave records themselves say before any model: whether they have the second order that waves ought to have."""
+"""Second-order content of wave records, seen before any model is fitted."""
 
 import math
 from dataclasses import replace
@@ -23,10 +23,13 @@ MIN_CUT_GAIN = (
 
 
 def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Options, tuple[str, ...]]:
-    """Sea options by which the wave records of a campaign are to be read, and why, in words.
+    """Choose how seas are reconstructed from the wave records of a campaign.
 
-    Theory's sums and differences of a record's first-order waves are compared with what the record has at those frequencies
-    where there are no first-order waves: a numerical tank's record may hold differences only, or be linear.
+    Second-order sums and differences by theory are compared with the record, at frequencies without first-order waves. The
+    record of a numerical tank may have differences only, or be linear.
+
+    Returns:
+        The options, and the reasons in words.
     """
     options = options_of(campaign) if options is None else options
     if not any(r.kind in IN_WAVES and r.use != "ignore" for r in campaign.records):
@@ -51,16 +54,16 @@ def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Opt
 
 
 def simulated_by_program(options: Options) -> bool:
-    """Whether the records are of a program rather than a basin: water that binds differences of frequencies binds sums, too."""
+    """Whether a program made the records: in real water, second-order differences come with sums."""
     return options.order == 2 and options.kinds == ("difference",)
 
 
 def highest_difference(recorded: Seas) -> float | None:
-    """The frequency (Hz) that differences may be cut off at, by the records; None: they seem to have all of them.
+    """Frequency (Hz) above which records have no second-order differences; None: they seem to have all.
 
-    Of Gaussian lines X, theory's part T, and a level s^2 that is taken from those around, -2 ln L is |X - T|^2 / s^2 where T is
-    there and |X|^2 / s^2 where not: the cut is where their sum is least. First-order waves hide what is not far below them, so
-    that a record may suggest one, and motions tell whether it is there.
+    With Fourier lines X, theory's part T and a level s^2 from the neighbouring lines, -2 ln L is |X - T|^2 / s^2 below the cut
+    and |X|^2 / s^2 above. The cut minimises their sum. First-order waves hide what is close to them, so that motions have to
+    confirm it.
     """
     found = [_gains(run, made.sea) for run, made in recorded]
     grid = np.unique(np.concatenate([frequency for frequency, _ in found]))
@@ -70,8 +73,7 @@ def highest_difference(recorded: Seas) -> float | None:
 
 
 def _gains(run: Run, made: IrregularSea) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (Hz) of a sea's first-order band, and how much better (-2 ln L) a record is followed with its differences
-    there than without."""
+    """Frequencies (Hz) of the first-order band, and gain (-2 ln L) by second-order differences there."""
     second = made.gauge(run.time, run.position, order=2)
     taper = np.hanning(len(second))
     frequency = np.fft.rfftfreq(len(second), run.step)
@@ -89,7 +91,11 @@ def _gains(run: Run, made: IrregularSea) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _shares(run: Run, environment: Environment, options: Options) -> tuple[float | None, float | None]:
-    """How much of theory's second-order elevation a record has above and below its first-order band; None: not to be seen."""
+    """Fraction of theory's second-order elevation that a record has.
+
+    Returns:
+        The fractions above and below the first-order band; None: not visible.
+    """
     made = sea_of(run, environment, options).sea
     first = made.gauge(run.time, run.position, order=1)
     second = made.gauge(run.time, run.position) - first

@@ -1,4 +1,4 @@
-"""The effects that are looked for: which load has them, which parameters, how large they may be expected, what would tell."""
+"""Catalogue of candidate effects: parameters, noticeable sizes, tests that would tell."""
 
 import math
 from collections.abc import Mapping
@@ -38,10 +38,19 @@ NOTICEABLE_SHARE = 0.1  # of computed radiation or drift that is noticeable
 def catalogue(
     model: Model, scales: Mapping[str, NoticeableScales], waves: bool, wave_variance: float, step: float = 0.0
 ) -> tuple[list[Candidate], dict[str, Free], dict[str, float]]:
-    """Candidates for the motions that `scales` has, their parameters, and what is noticeable of each of these.
+    """Candidate effects for a model and the motions that were tested.
 
-    `step` (s) is that of simulations in waves, which has to follow what is looked for. Coordinates are values less null, so
-    that programs compiled for one campaign serve all of a platform.
+    Coordinates are values less neutral values, so that programs compiled for one campaign serve all of a platform.
+
+    Args:
+        model: The model.
+        scales: Noticeable sizes by motion.
+        waves: Whether there are tests in waves.
+        wave_variance: Largest variance of the wave elevation (m²).
+        step: Time step of simulations in waves (s), which limits the periods of candidates.
+
+    Returns:
+        The candidates, their parameters by label, and noticeable sizes by label.
     """
     # by octaves' tenths: programs compiled for one campaign serve others
     builder = CatalogueBuilder(2.0 ** (round(10 * math.log2(displaced_length(model) / REFERENCE_LENGTH)) / 10))
@@ -59,7 +68,7 @@ def catalogue(
 
 
 def _of_tables(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
-    """Those that the platform file names."""
+    """Add effects that the platform file requests."""
     looked_for = requested_table_labels(model)
     tables = {k: one for k, one in TABLE_EFFECTS.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
     for effect, one in tables.items():
@@ -73,7 +82,7 @@ def _of_tables(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
 
 
 def _of_the_whole(builder: CatalogueBuilder, scales: Mapping[str, NoticeableScales]) -> None:
-    """Those of several motions at once."""
+    """Add effects that act in several motions."""
     if "surge" in scales:
         s = scales["surge"]
         stiff = s.force / s.amplitude
@@ -116,7 +125,7 @@ def _of_the_whole(builder: CatalogueBuilder, scales: Mapping[str, NoticeableScal
 
 
 def _of_mass(builder: CatalogueBuilder, model: Model, scales: Mapping[str, NoticeableScales]) -> None:
-    """What was weighed wrongly."""
+    """Add errors of weighed mass properties."""
     mass = float(model.body.mass)
     turning = np.asarray(model.body.inertia)
     labels = [builder.add_linear("mass_properties.mass", MASS * mass)]
@@ -131,7 +140,7 @@ def _of_mass(builder: CatalogueBuilder, model: Model, scales: Mapping[str, Notic
 
 
 def _of_strips(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
-    """Other drag than by one coefficient, other excitation than by added mass."""
+    """Add other laws of drag and of wave excitation."""
     groups = sorted({label.rsplit(".", 1)[0] for label in model.values if ".Cd_" in label})
     if groups and any(type(load) in (StripDrag, EndDrag, ChangingDrag) for load in model.loads):
         builder.add(
@@ -186,7 +195,7 @@ def _of_gauges(builder: CatalogueBuilder) -> None:
 
 
 def _of_the_basin(builder: CatalogueBuilder) -> None:
-    """What is in the water that was not sent: the gauge saw it, too, or did not."""
+    """Add reflected waves; the gauge may have measured them or not."""
     builder.add_linear(SEEN, 1.0)
     builder.add(
         "wave_reflection",

@@ -1,4 +1,4 @@
-"""The effects of one motion that are looked for."""
+"""Candidate effects that act in one motion."""
 
 import math
 from collections.abc import Mapping
@@ -37,7 +37,15 @@ YIELD_FACTORS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which
 def add_motion_effects(
     builder: CatalogueBuilder, dof: str, scales: Mapping[str, NoticeableScales], wave_variance: float | None, step: float
 ) -> None:
-    """One motion's own; `wave_variance` (m2) is None where there are no waves, `step` (s) that of simulations in waves."""
+    """Add the candidate effects of one motion to a catalogue.
+
+    Args:
+        builder: The catalogue.
+        dof: The motion.
+        scales: Noticeable sizes by motion.
+        wave_variance: Largest variance of the wave elevation (m²); None: no tests in waves.
+        step: Time step of simulations in waves (s).
+    """
     s, i, of = scales[dof], DOFS.index(dof) + 1, f".{dof}."
     builder.add(
         "coulomb_friction",

@@ -1,4 +1,4 @@
-"""Effects as people call them."""
+"""Names of effects in words."""
 
 EFFECT_NAMES = {
     "coulomb_friction": "Coulomb friction",
@@ -20,7 +20,10 @@ EFFECT_NAMES = {
 
 
 def effect_in_words(effect: str, motion: str | None = None) -> str:
-    """An effect as people say it: `coulomb_friction (surge)`, or its name and motion apart, is "Coulomb friction in surge"."""
+    """Name of an effect in words.
+
+    `coulomb_friction (surge)`, or effect and motion apart, becomes "Coulomb friction in surge".
+    """
     name, _, inside = effect.removesuffix(")").partition(" (")
     words = EFFECT_NAMES.get(name, name.replace("_", " "))
     motion = motion or inside
@@ -28,5 +31,5 @@ def effect_in_words(effect: str, motion: str | None = None) -> str:
 
 
 def capitalised(words: str) -> str:
-    """With a capital first letter."""
+    """Words with a capital first letter."""
     return f"{words[:1].upper()}{words[1:]}"

@@ -1,4 +1,4 @@
-"""What swings in a hull, from the two modes that it makes of one: where a search begins that no first order would lead to.
+"""Starting point for a hidden oscillator: the two modes into which it splits one.
 
 A mass on a spring whose period is close to a motion's own does not perturb that motion, it makes two of it. Undamped, with
 omega_h the hull's own frequency, omega_0 the mass's and mu its share of the hull's (Den Hartog 1956, Mechanical Vibrations,
@@ -42,7 +42,13 @@ PERIOD_ITERATIONS, DIFFERENCE_STEP, MAX_STEP_DEVIATIONS = (
 
 
 class Modes(NamedTuple):
-    """Of a decay: eigenvalues (k,; rad/s) above the real axis, complex amplitudes (k,), and the root mean square left."""
+    """Damped oscillations in a decay.
+
+    Attributes:
+        eigenvalue: Eigenvalues above the real axis (rad/s; k,).
+        amplitude: Complex amplitudes (k,).
+        residual_rms: Root mean square that they leave.
+    """
 
     eigenvalue: np.ndarray
     amplitude: np.ndarray
@@ -50,7 +56,14 @@ class Modes(NamedTuple):
 
 
 class OscillatorEstimate(NamedTuple):
-    """Natural period (s) of a hull without what swings in it; that mass's share of the hull's, its period and damping ratio."""
+    """An oscillator in a hull.
+
+    Attributes:
+        hull_period: Natural period of the hull without it (s).
+        mass_ratio: Its mass over the hull's.
+        period: Its own period (s).
+        damping_ratio: Its own damping ratio.
+    """
 
     hull_period: float
     mass_ratio: float
@@ -59,8 +72,16 @@ class OscillatorEstimate(NamedTuple):
 
 
 def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
-    """The `count` strongest singular vectors of a record's Hankel matrix as damped oscillations (Barkhuijsen, De Beer and Van
-    Ormondt 1987, Journal of Magnetic Resonance 73, 553-557, equations 2 to 8); `step` is that of its samples (s)."""
+    """Damped oscillations in a record, from the strongest singular vectors of its Hankel matrix.
+
+    Args:
+        values: The record (n,).
+        step: Time step (s).
+        count: Number of singular vectors.
+
+    References:
+        Barkhuijsen, De Beer and Van Ormondt 1987, Journal of Magnetic Resonance 73, 553-557, equations 2 to 8.
+    """
     hankel = np.lib.stride_tricks.sliding_window_view(values, len(values) // 2).T
     basis = np.linalg.svd(hankel, full_matrices=False)[0][:, :count]
     shift = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
@@ -73,9 +94,13 @@ def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
 
 
 def oscillator_from_modes(eigenvalue: np.ndarray, amplitude: np.ndarray) -> OscillatorEstimate | None:
-    """What makes two modes (2,) of a hull's one, released from rest; None where nothing does.
+    """The oscillator that splits a hull's mode into two, released from rest; None where none does.
 
     Damping is what each mode loses: 2 sigma_k (1 + mu r_k^2) = b + 2 zeta omega_0 mu (r_k - 1)^2, b the hull's.
+
+    Args:
+        eigenvalue: Eigenvalues of the two modes (rad/s; 2,).
+        amplitude: Their complex amplitudes (2,).
     """
     order = np.argsort(eigenvalue.imag)
     loss, square = -eigenvalue.real[order], np.abs(eigenvalue[order]) ** 2
@@ -97,9 +122,19 @@ def oscillator_from_modes(eigenvalue: np.ndarray, amplitude: np.ndarray) -> Osci
 def oscillator_in_decay(
     values: np.ndarray, step: float, period: float, others: Sequence[float], count: int
 ) -> tuple[OscillatorEstimate | None, float]:
-    """What a decay's two strongest modes near its natural `period` (s) say, and the share of the decay that all modes leave;
-    `others` are periods of other motions, `count` the modes there may be. Nothing, where a record is too short or too
-    coarse."""
+    """Estimate an oscillator from the two strongest modes of a decay near its natural period.
+
+    Args:
+        values: The decay (n,).
+        step: Time step (s).
+        period: Natural period (s).
+        others: Natural periods of other motions (s).
+        count: Number of modes that there may be.
+
+    Returns:
+        The oscillator, and the fraction of the decay that all modes leave. It is None without two modes, or where the
+        record is too short or too coarse.
+    """
     if len(values) < MIN_SAMPLES_PER_MODE * count or step > 2 * period / SAMPLES_PER_PERIOD:
         return None, 1.0
     found = modes_of(values - values.mean(), step, 2 * count + 1)
@@ -119,8 +154,7 @@ def oscillator_in_decay(
 
 
 def natural_mode(model: Model, dof: str) -> tuple[float, float]:
-    """Natural period (s) of a motion, what has a memory at rest, and the mass (kg, kg m2) of its mode, were all of it in that
-    motion."""
+    """Natural period (s) and modal mass (kg, kg m²) of a motion, loads with a memory at rest."""
     position = equilibrium(model)
     modes, mass = natural_modes(model, position), np.asarray(linearised(model, position)[0])
     i = modes.number(dof) or 0
@@ -131,9 +165,17 @@ def natural_mode(model: Model, dof: str) -> tuple[float, float]:
 def oscillator_starts(
     dof: str, study: "Study", place: "Point", base: Sequence[int], width: np.ndarray
 ) -> tuple[Mapping[str, float], ...]:
-    """Where a fit of `HiddenOscillator` in a motion may begin: as the two modes of a fitted decay say, with the coefficients
-    as near a place as can be, in standard deviations (d,) along directions, that give the hull its period without what swings
-    in it."""
+    """Starting values for `HiddenOscillator`, from the two modes of a fitted decay.
+
+    Coefficients are moved as little as possible to give the hull its period without the oscillator.
+
+    Args:
+        dof: The motion.
+        study: The study.
+        place: The point that coefficients are moved from.
+        base: Directions of the coefficients.
+        width: Prior standard deviations of the directions (d,).
+    """
     records = [one for one in study.decay_records if one.use == "fit" and one.degree_of_freedom == dof]
     modes = natural_modes(study.space.model(study.model, jnp.asarray(place.x)))
     if not records or not np.isfinite(period := modes.of(dof)):
@@ -159,8 +201,10 @@ def oscillator_starts(
 def coordinates_with_period(
     study: "Study", x: np.ndarray, base: Sequence[int], width: np.ndarray, dof: str, period: float
 ) -> np.ndarray:
-    """Coordinates where a motion has a natural `period` (s): the shortest way there along the `base` directions, in their
-    standard deviations."""
+    """Coordinates that give a motion a natural `period` (s).
+
+    The step along the `base` directions is the shortest in standard deviations.
+    """
 
     def off(x: np.ndarray) -> float:
         return math.log(natural_mode(study.space.model(study.model, jnp.asarray(x)), dof)[0] / period)

@@ -1,4 +1,4 @@
-"""What nobody declares as unknown and no laboratory knows exactly: by how much it may be off, one standard deviation."""
+"""Nearly known quantities: standard deviations of mass properties and moorings."""
 
 from jaxhydro.dynamics.model import Model
 
@@ -8,5 +8,5 @@ STIFFNESS, PRETENSION = 0.02, 0.02  # of a declared mooring
 
 
 def displaced_length(model: Model) -> float:
-    """A length (m) that goes with a platform: the cube root of the volume that its mass displaces."""
+    """Length of a platform (m): cube root of the volume that its mass displaces."""
     return (float(model.body.mass) / float(model.environment.density)) ** (1 / 3)

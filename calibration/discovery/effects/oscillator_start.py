@@ -1,4 +1,4 @@
-"""At which periods, and how damped, something may swing in a hull, from a residual and from what it would do at one period."""
+"""Starting point for a hidden oscillator: periods and damping ratios to try."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -21,18 +21,26 @@ TRIED_DAMPING_RATIOS = (NEUTRAL_DAMPING_RATIO, 0.2)  # that are tried
 
 
 def response(omega: np.ndarray, period: float, ratio: float) -> np.ndarray:
-    """Force (N) of a unit mass on a spring on what accelerates it by 1 m/s2 (Den Hartog 1956, chapter 3), less its sign."""
+    """Force of an oscillator of unit mass per acceleration of its support, with the sign reversed.
+
+    Args:
+        omega: Circular frequencies (rad/s).
+        period: Its own period (s).
+        ratio: Its damping ratio.
+
+    References:
+        Den Hartog 1956, Mechanical Vibrations, chapter 3.
+    """
     own = 2 * math.pi / period
     spring = own**2 + 2j * ratio * own * omega
     return spring / (spring - omega**2)
 
 
 def oscillator_period_finder(dof: str, shortest: float, longest: float) -> ShapeFinder:
-    """A search for the likeliest ones (s) of `HiddenOscillator` in a motion, from the `shortest` to the `longest`.
+    """A search for the likeliest periods of `HiddenOscillator` in a motion, between two periods (s).
 
-    What a mass that swings at T does to a record is, of a linear hull, what one at the shortest does, times the ratio of their
-    responses at every frequency: one look tells of all periods. Each is weighed by how much of the residual lies along it
-    beyond what the fitted directions can do; which is right a refit tells.
+    In a linear hull, slopes scale with the oscillator's response. So one linearisation at the shortest period gives the gain at
+    all periods. What the fitted directions can explain is projected out; a refit decides.
     """
 
     def found(study: "Study", look: "Linearisation", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:

@@ -1,4 +1,4 @@
-"""How far off a gauge or a clock is, where that is further than slopes tell: from a residual and what a little of it does.
+"""Starting point for a phase shift: gauge positions and clock lags too large for slopes.
 
 What turns first-order waves of every rate omega (rad/s) by a phase of c(omega) (rad) a unit, and does nothing else, makes
 X exp(i c d) of a linear platform's motion X, and i c X is its slope where there is none of it. So one look tells of every d:
@@ -29,15 +29,29 @@ MIN_PHASE_SHIFT = 0.5  # rad: what is no further is found by slopes
 
 
 class PhaseShiftStart(NamedTuple):
-    """Values by label where a refit begins, and what -2 ln L of the fitted tests would gain there, nothing else moved."""
+    """Starting point of a refit.
+
+    Attributes:
+        values: Values by label.
+        gain: Decrease of -2 ln L of the fitted tests there, nothing else moved.
+    """
 
     values: Mapping[str, float]
     gain: float
 
 
 def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: PhasePerUnit) -> PhaseShiftStart | None:
-    """The likeliest value of a parameter that turns waves by `turns` (rad a unit, of rates and the water), null where a look
-    is that has its direction's slopes; None where that is near the null, or promises nothing."""
+    """The likeliest value of a parameter that shifts the phase of waves.
+
+    Args:
+        study: The study.
+        look: Linearisation at the neutral value, with the slopes along the parameter.
+        label: Label of the parameter.
+        turns: Phase per unit (rad) by circular frequency and water.
+
+    Returns:
+        The starting point; None where it is near the neutral value, or gains nothing.
+    """
     (i,) = study.index([label])
     about = study.model.about(label)
     unit = study.value(label, look.place.x + study.directions[i]) - study.value(label, look.place.x)

@@ -1,4 +1,4 @@
-"""When waves come back to the platform, from a residual and from what they would do if they came back at once."""
+"""Starting point for reflected waves: delays to try."""
 
 from collections.abc import Mapping
 
@@ -17,10 +17,15 @@ ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple(
 
 
 def reflection_delays(study: Study, look: Linearisation, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
-    """The likeliest ones (s) for `WaveReflection`: where its `slopes` (n,) at no delay, so much later, correlate most with a
-    look's residual, weighed as a fit does, at frequencies of first-order waves.
+    """The likeliest delays (s) for `WaveReflection`.
 
-    Were the platform linear that is what it does in waves that come back; which of these delays it is a refit tells.
+    Slopes at no delay, shifted in time, are correlated with the residual at frequencies of first-order waves. In a linear
+    platform these are the slopes at that delay. A refit decides.
+
+    Args:
+        study: The study.
+        look: Linearisation with the residual.
+        slopes: Slopes at no delay, in rows (n,).
     """
     later = np.arange(0.0, LATEST, DELAY_SPACING)
     weight = row_weights(study, look.residual) * study.used[study.row_series]

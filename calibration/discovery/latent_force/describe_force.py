@@ -1,4 +1,4 @@
-"""A latent force described: how large, at which frequencies, with what it goes, how it grows; in numbers and in a sentence."""
+"""Description of a latent force: size, frequencies, coherence, growth, sentence."""
 
 from __future__ import annotations
 
@@ -39,12 +39,15 @@ def test_kind(one: RecoveredForce) -> str:
 
 
 def motion_frequency(one: RecoveredForce) -> float:
-    """Frequency (Hz) of a motion, from the ratio of its velocity's to its own standard deviation."""
+    """Frequency (Hz) of a motion: standard deviation of its velocity over that of its position, over 2 pi."""
     return float(np.std(one.velocity[one.inside]) / max(np.std(one.position[one.inside]), 1e-300)) / (2 * np.pi)
 
 
 def bands_in(one: RecoveredForce) -> dict[str, tuple[float, float]]:
-    """Bands (Hz) that a force is told apart in: in waves those of the package, in a decay about the motion's own frequency."""
+    """Frequency bands (Hz) of a force, by name.
+
+    In a decay around the motion's own frequency, in waves around that of the waves.
+    """
     if one.test.wave is None:
         own = motion_frequency(one)
         return {"slower": (0.0, 0.5 * own), "own": (0.5 * own, 1.5 * own), "higher": (1.5 * own, np.inf)}
@@ -53,7 +56,7 @@ def bands_in(one: RecoveredForce) -> dict[str, tuple[float, float]]:
 
 
 def in_bands(one: RecoveredForce) -> dict[str, float]:
-    """Mean square of a force (N2, (N m)2) in its mean and in bands."""
+    """Mean square of a force (N², (N m)²) in its mean and in bands."""
     force = one.force[one.inside]
     frequency, power = signal.periodogram(force, 1 / one.test.step, "hann", detrend="constant")
     power = power * float(np.var(force)) / max(float(power.sum()), 1e-300)
@@ -63,7 +66,7 @@ def in_bands(one: RecoveredForce) -> dict[str, float]:
 
 
 def shares_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
-    """Shares of the mean square over some tests, every sample counting alike."""
+    """Fractions of the mean square in the mean and in bands, over some tests."""
     each = [(len(one.force), in_bands(one)) for one in forces]
     sums = {name: sum(n * row[name] for n, row in each) for name in each[0][1]}
     total = sum(sums.values())
@@ -73,8 +76,19 @@ def shares_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
 def force_coherence(
     forces: Sequence[RecoveredForce], values: QuantityOfForce, limits: Callable[[RecoveredForce], tuple[float, float]]
 ) -> ForceCoherence | None:
-    """How a force goes with something else between two frequencies (Hz), by cross-spectra (Bendat and Piersol 2010, Random
-    Data, section 6.1); None where there are too few segments to tell."""
+    """Relation of a force to another quantity in a frequency band, by cross-spectra.
+
+    Args:
+        forces: The force by test.
+        values: The other quantity, as a function of the force.
+        limits: Lower and upper frequency (Hz), as a function of the force.
+
+    Returns:
+        Coherence, phase and correlation; None where there are too few segments.
+
+    References:
+        Bendat and Piersol 2010, Random Data, section 6.1.
+    """
     cross, own, other, explained, segments = 0j, 0.0, 0.0, 0.0, 0
     for one in forces:
         count = len(one.force[one.inside])
@@ -100,7 +114,7 @@ def force_coherence(
 
 
 def coherences(forces: Sequence[RecoveredForce]) -> dict[str, ForceCoherence]:
-    """How the force goes with the motion, and in waves with the elevation and, slowly, with its squared envelope."""
+    """Relation of a force to the motion, and in waves to the elevation and its squared envelope."""
     found = {name: force_coherence(forces, values, lambda _: (0.0, np.inf)) for name, values in MOTION.items()}
     if (wavy := [one for one in forces if one.test.wave is not None]) and len(wavy) == len(forces):
         half = {one.test.id: 0.5 * peak_frequency(one.test.wave, one.test.step) for one in wavy if one.test.wave is not None}
@@ -113,7 +127,7 @@ def coherences(forces: Sequence[RecoveredForce]) -> dict[str, ForceCoherence]:
 
 
 def _power(pairs: Sequence[tuple[float, float]], ratio: float) -> float | None:
-    """p in force ~ size^p; None where sizes are too alike."""
+    """Exponent p of force ~ size^p; None where sizes are too similar."""
     if len(pairs) < 2:
         return None
     size, force = np.log(np.array(pairs)).T
@@ -121,7 +135,10 @@ def _power(pairs: Sequence[tuple[float, float]], ratio: float) -> float | None:
 
 
 def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
-    """Powers: of the motion's amplitude, cycle by cycle of decays; of significant wave height, in every band, over tests."""
+    """Exponents of a force's growth.
+
+    With the motion's amplitude over cycles of decays; with significant wave height over tests, in every band.
+    """
     cycles, found = [], {}
     for one in forces:
         n = max(round(1 / max(motion_frequency(one), 1e-9) / one.test.step), 4)
@@ -145,8 +162,7 @@ def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
 
 
 def described(motion: str, forces: Sequence[RecoveredForce], law: Law) -> LatentForce:
-    """A motion's latent force over all tests, in numbers and words; the test that is shown is a fitted one where it is
-    largest."""
+    """Latent force of a motion over all tests; the largest one of a fitted test is plotted."""
     kinds = {name: [one for one in forces if test_kind(one) == name] for name in ("decay", "waves")}
     there = {name: rows for name, rows in kinds.items() if any(one.visible for one in rows)}
     rms = {
@@ -192,7 +208,7 @@ WAVE_WORDS = {"elevation": "the wave elevation", "squared_envelope": "the square
 
 
 def sentence(one: LatentForce) -> str:
-    """What is known of a latent force, for people."""
+    """A latent force in a sentence."""
     said, where = [], {"decay": "in decays", "waves": "in waves"}
     for name, rms in one.rms.items():
         band, share = max(one.shares[name].items(), key=lambda item: item[1])
@@ -219,7 +235,7 @@ def _size(name: str) -> str:
 
 
 def law_in_words(law: Law, unit: str) -> str:
-    """The law of a force of this unit and what it explains, or that there is none."""
+    """A force law and what it explains, in words."""
     if not law.terms:
         return f"no law of up to three terms explains it (the best {percent(law.share)} of it in {law.checked or 'the tests'})"
     sizes = [(one, f"{number(one.coefficient, 3)} {readable_unit(one.unit)}") for one in law.terms]
@@ -230,7 +246,7 @@ def law_in_words(law: Law, unit: str) -> str:
 
 
 def _term(one: LawTerm, law: Law) -> str:
-    """Its name; that of lagged velocity by the time constant."""
+    """Name of a term; for lagged velocity with its time constant."""
     if one.kind not in LAGGED_TERMS:
         return one.name
     return f"v lagged by a time constant of {number(LAG_RATIOS[one.kind - LAGGED_TERMS.start] / law.pace, 2)} s"

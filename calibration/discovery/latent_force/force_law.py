@@ -1,4 +1,4 @@
-"""A law of few terms for a latent force: which terms, and whether tests that were not fitted follow it too.
+"""Law of few terms for a latent force, by sparse regression checked on other data.
 
 Small sparse regression over a library of terms, as Brunton, Proctor and Kutz 2016, PNAS 113, 3932-3937, eq. 3, but of at
 most three terms; which ones is tried out over all such sets, that orthogonal matching pursuit looks through one by one. The
@@ -34,7 +34,14 @@ BLOCK_COUNT = 4
 
 
 class LibraryTerm(NamedTuple):
-    """A term of the library: its name, and the powers of the motion (m, rad), the time (s) and the wave (m) in it."""
+    """A term of the library.
+
+    Attributes:
+        name: Its name.
+        motion: Power of the motion (m, rad).
+        time: Power of the time (s).
+        wave: Power of the wave elevation (m).
+    """
 
     name: str
     motion: int = 0
@@ -42,7 +49,7 @@ class LibraryTerm(NamedTuple):
     wave: int = 0
 
     def unit(self, motion: str) -> str:
-        """Unit of its coefficient: SI, rad."""
+        """Unit of its coefficient (SI, rad)."""
         turning = DOFS.index(motion) > 2
         above = ["N", *(["m"] if turning else []), *_powers("s", -self.time)]
         below = [*_powers("rad" if turning else "m", self.motion), *_powers("m", self.wave)]
@@ -77,7 +84,7 @@ WAVE_TERMS = (
 
 
 def squared_envelope(wave: np.ndarray, step: float) -> np.ndarray:
-    """Squared envelope (m2) of a wave (m): twice the low-passed square, to half the frequency of its highest peak."""
+    """Squared envelope (m²) of a wave (m): twice the low-passed square."""
     lines, frequency = np.abs(np.fft.rfft(wave - wave.mean())), np.fft.rfftfreq(len(wave), step)
     square = np.fft.rfft(2 * (wave - wave.mean()) ** 2)
     fade = 0.5 + 0.5 * np.cos(np.pi * np.clip(2 * frequency / frequency[max(int(lines.argmax()), 1)] - 0.5, 0.0, 1.0))
@@ -85,19 +92,27 @@ def squared_envelope(wave: np.ndarray, step: float) -> np.ndarray:
 
 
 def quarter_period_later(values: np.ndarray) -> np.ndarray:
-    """A series with every frequency a quarter of its period later (Hilbert transform)."""
+    """A series with every frequency shifted by a quarter of its period (Hilbert transform)."""
     return np.imag(hilbert(values - values.mean()))
 
 
 def lagged(velocity: np.ndarray, step: float, constant: float) -> np.ndarray:
-    """A velocity u through a first-order filter (s): constant du/dt = v - u."""
+    """A velocity through a first-order filter: constant (s) du/dt = v - u."""
     omega = 2 * np.pi * np.fft.rfftfreq(len(velocity), step)
     return np.fft.irfft(np.fft.rfft(velocity) / (1 + 1j * omega * constant), len(velocity))
 
 
 def columns_of(one: RecoveredForce, slow: float, pace: float, without: bool = False) -> np.ndarray:
-    """Terms (n, k) of one test inside it, as seen; zeros of what only waves have. `slow` (m/s, rad/s) is friction's v0, `pace`
-    (rad/s) the motion's. `without`: along the motion that was simulated."""
+    """Terms of the library in one test (n, k), through the force's filter.
+
+    Terms of the wave are zero in still water.
+
+    Args:
+        one: The force of the test.
+        slow: Velocity scale of friction (m/s, rad/s).
+        pace: Circular frequency of the motion (rad/s).
+        without: Whether terms follow the simulated motion (instruments) rather than the measured one.
+    """
     (x, v), step = one.simulated if without else (one.position, one.velocity), one.test.step
     rows = [np.ones_like(x), x, v, np.abs(v) * v, x**3, np.tanh(v / slow), x * np.abs(x), x**2, v**3]
     rows += [lagged(v, step, lag / pace) for lag in LAG_RATIOS]
@@ -110,7 +125,14 @@ def columns_of(one: RecoveredForce, slow: float, pace: float, without: bool = Fa
 
 
 class RegressionBlock(NamedTuple):
-    """Force (n,), terms and instruments (n, k) of a test or a block, every one counting alike unless it is mostly noise."""
+    """Data of a test, or of a block of it, for the regression.
+
+    Attributes:
+        force: Force (n,).
+        terms: Terms along the measured motion (n, k).
+        instruments: Terms along the simulated motion (n, k).
+        weight: Weight; the same for all tests except those that are mostly noise.
+    """
 
     force: np.ndarray
     terms: np.ndarray
@@ -118,18 +140,27 @@ class RegressionBlock(NamedTuple):
     weight: float
 
     def products(self) -> np.ndarray:
-        """[X F]^T [X F], weighed."""
+        """Weighted [X F]^T [X F]."""
         both = np.column_stack([self.terms, self.force])
         return self.weight * both.T @ both
 
     def across(self) -> np.ndarray:
-        """Z^T [X F], weighed, Z the instruments."""
+        """Weighted Z^T [X F], Z the instruments."""
         return self.weight * self.instruments.T @ np.column_stack([self.terms, self.force])
 
 
 def best_terms(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.ndarray]:
-    """The set of `size` terms that leaves least of the force, the simplest of those that leave as little, and its
-    coefficients."""
+    """The set of terms that leaves least of the force.
+
+    Of sets that leave nearly as little, the simplest is taken.
+
+    Args:
+        products: Weighted [X F]^T [X F] (k + 1, k + 1).
+        size: Number of terms.
+
+    Returns:
+        Numbers of the terms, and their coefficients.
+    """
     scale = np.sqrt(np.maximum(np.diag(products), 1e-300))
     unit = products / np.outer(scale, scale)
     there = [i for i in range(len(scale) - 1) if scale[i] > 1e-9 * scale[:-1].max()]
@@ -147,7 +178,7 @@ def best_terms(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.nda
 
 
 def explained_share(parts: Iterable[RegressionBlock], chosen: Sequence[int], coefficients: np.ndarray) -> float:
-    """Share of the force's mean square that a law explains, below 0 where it makes it larger."""
+    """Fraction of the force's mean square that a law explains; negative where it makes it larger."""
     left = total = 0.0
     for one in parts:
         left += one.weight * float(((one.force - one.terms[:, list(chosen)] @ coefficients) ** 2).sum())
@@ -156,8 +187,11 @@ def explained_share(parts: Iterable[RegressionBlock], chosen: Sequence[int], coe
 
 
 def law_of(motion: str, forces: Sequence[RecoveredForce]) -> Law:
-    """The law that fitted tests give, with as many terms as held-out tests gain by; where none is held out (or has a force that
-    can be seen), blocks of the fitted ones left out in turn."""
+    """A law of few terms for a latent force.
+
+    Fitted tests give the terms and coefficients, held-out tests the number of terms. Without held-out tests with a visible
+    force, blocks of the fitted ones are left out in turn.
+    """
     fitted = [one for one in forces if one.test.use == "fit" and one.visible]
     waves = any(one.test.wave is not None for one in fitted)
     kinds = [*STILL_WATER_TERMS, *(WAVE_TERMS if waves else ())]
@@ -195,14 +229,14 @@ def law_of(motion: str, forces: Sequence[RecoveredForce]) -> Law:
 
 
 def _solved(across: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
-    """Coefficients of some terms by their instruments."""
+    """Coefficients of some terms by instrumental variables."""
     gram, onto = across[np.ix_(chosen, chosen)], across[list(chosen), -1]
     scale = np.sqrt(np.maximum(np.abs(np.diag(gram)), 1e-300))
     return np.linalg.lstsq(gram / np.outer(scale, scale), onto / scale, rcond=1e-9)[0] / scale
 
 
 def _left_out(parts: Sequence[RegressionBlock]) -> Iterable[tuple[np.ndarray, list[RegressionBlock]]]:
-    """Products across all blocks but every fourth of the tests, and those."""
+    """Products over all blocks but one of every test, and the blocks left out."""
     for k in range(BLOCK_COUNT):
         blocks = [
             [

@@ -1,4 +1,4 @@
-"""The latent force: what would have to act on the model, beside all that it has, for it to follow every record.
+"""Recovery of the latent force from the residual, by the model's equation of motion.
 
 The residual r, measured less simulated, tapered at its ends, is taken through the model's own equation of motion: where that is
 linear, r = H F, r is divided by H. Where it is not, its accelerations a along the path that the record took and along the
@@ -51,13 +51,16 @@ INSTANTS_AT_ONCE = 512  # instants at a time
 
 
 def peak_of(values: np.ndarray) -> int:
-    """Cycles of what a series has most of."""
+    """Number of cycles of a series at its highest spectral peak."""
     return max(int(np.abs(np.fft.rfft(values - values.mean())).argmax()), 1)
 
 
 def windows(residual: np.ndarray) -> tuple[np.ndarray, np.ndarray, slice]:
-    """Tapers (n,) of the residual and, where that one is 1, of the force, both over half a period of what the residual has most
-    of at each end; and what is well inside."""
+    """Tapers of residual and force, and the part of the record away from its ends.
+
+    Returns:
+        Taper of the residual (n,), taper of the force (n,), and the slice.
+    """
     n = len(residual)
     ends = int(min(MAX_TAPERED_SHARE * n, max(0.5 * n / peak_of(residual), LINES_AVERAGED)))
     ramp = 0.5 - 0.5 * np.cos(np.pi * (np.arange(ends) + 0.5) / ends)
@@ -68,15 +71,20 @@ def windows(residual: np.ndarray) -> tuple[np.ndarray, np.ndarray, slice]:
 
 
 def noise_level(residual: np.ndarray, noise: float) -> float:
-    """Standard deviation of the noise: the sensor's, or what a residual has at its highest frequencies, the larger."""
+    """Standard deviation of noise: the sensor's, or that at the highest frequencies if larger."""
     window = np.hanning(len(residual))
     power = np.abs(np.fft.rfft(residual * window)) ** 2 / (window**2).sum()
     return max(noise, float(np.median(power[3 * len(power) // 4 :]) / np.log(2)) ** 0.5)  # lines of noise are exponential
 
 
 def filter_gain(force: np.ndarray, taper: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
-    """The optimal filter's gain by Fourier line, of a force and the variance by line of the noise in it (the largest nearby, as
-    the taper mixes neighbours), and by how much the highest peak is above the noise, in power."""
+    """Gain of the Wiener filter of a force, and its highest peak over the noise, in power.
+
+    Args:
+        force: The force (n,).
+        taper: Its taper (n,).
+        noise: Variance of its noise by Fourier line.
+    """
     level = maximum_filter1d(noise, LINES_AVERAGED, mode="nearest") * float((taper**2).sum())
     ratio = uniform_filter1d(np.abs(np.fft.rfft(force * taper)) ** 2 / level, LINES_AVERAGED, mode="nearest")
     return np.clip(1 - NOISE_FACTOR / np.maximum(ratio, 1e-300), 0.0, None), float(ratio.max())
@@ -97,7 +105,15 @@ def _accelerations(
 
 
 def accelerations(model: Model, sea: AbstractSea, time: np.ndarray, position: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Second derivatives (t, 6) of surge ... yaw that the model has at a path's positions and rates (t, 6)."""
+    """Accelerations (t, 6) of surge ... yaw that the model has along a path.
+
+    Args:
+        model: The model.
+        sea: The sea.
+        time: Times (s; t,).
+        position: Positions (m, rad; t, 6).
+        rate: Their rates (m/s, rad/s; t, 6).
+    """
     n = len(time)
     at = np.minimum(np.arange(-(-n // INSTANTS_AT_ONCE) * INSTANTS_AT_ONCE), n - 1).reshape(-1, INSTANTS_AT_ONCE)
     found = [_accelerations(model, sea, *(jnp.asarray(one[some]) for one in (time, position, rate))) for some in at]
@@ -105,7 +121,7 @@ def accelerations(model: Model, sea: AbstractSea, time: np.ndarray, position: np
 
 
 def forces_of(model: Model, test: ResampledTest, base: np.ndarray, highest: float) -> dict[str, RecoveredForce]:
-    """The latent force of every motion that a test measured; `base` (6,) is where its motions count from."""
+    """Latent force of every measured motion of a test; `base` (6,) is where motions count from."""
     n, names = len(test.time), [dof for dof in DOFS if dof in test.measured]
     frequency = np.fft.rfftfreq(n, test.step)
     omega = 2 * np.pi * frequency
@@ -157,8 +173,14 @@ def forces_of(model: Model, test: ResampledTest, base: np.ndarray, highest: floa
 def latent_forces(
     model: Model, tests: Sequence[ResampledTest], motions: Sequence[str], from_rest: bool
 ) -> tuple[LatentForce, ...]:
-    """The latent force by motion, described, with the law of few terms that tests which were not fitted follow, too. Motions
-    count from the static equilibrium (`from_rest`) or from the reference position."""
+    """Latent force by motion, with its description and a law of few terms.
+
+    Args:
+        model: The model.
+        tests: The tests on even clocks.
+        motions: The motions.
+        from_rest: Whether motions count from the static equilibrium, or from the reference position.
+    """
     base, highest = np.asarray(equilibrium(model)) * from_rest, highest_frequency(model)
     every = [forces_of(model, test, base, highest) for test in tests]
     found = []
@@ -170,13 +192,13 @@ def latent_forces(
 
 
 def latent_of(search: Search, fitted: Calibration) -> tuple[LatentForce, ...]:
-    """Of a diagnosis's last model. See `latent_forces`."""
+    """Latent forces of a diagnosis's final model. See `latent_forces`."""
     from_rest = search.campaign.manifest.zero is not None
     return latent_forces(fitted.model, list(_moved(search, fitted)), search.setup.motions, from_rest)
 
 
 def _moved(search: Search, fitted: Calibration) -> Iterator[ResampledTest]:
-    """Tests on even clocks: in waves on that which their sea was prepared for."""
+    """Tests on even clocks; in waves on the clock of their sea."""
     seas = {name: sea for sea in search.study.seas for name in sea.tests}
     records = {record.id: record for record in search.campaign.records}
     for test in fitted.tests:
