@@ -13,22 +13,20 @@ from calibration.discovery.study import Study
 from calibration.formatting import percent
 from calibration.identifiability.information import inverse
 
-# thresholds, set by what they do on campaigns with nothing missing
-MIN_BIC_GAIN = 6.0  # strong, by Kass and Raftery 1995
-MIN_LIKELIHOOD_GAIN = 30.0  # with what -2 ln L of what was not fitted falls by; BIC alone where there is nothing of that kind
-MIN_HELD_OUT_SHARE = 0.15  # share of the held-out error above the floor, squared
-MIN_HELD_OUT_GAIN = 10.0  # by which -2 ln L of what was not fitted falls: very strong, by Kass and Raftery 1995
+# thresholds, chosen so that nothing is found in campaigns with nothing missing
+MIN_BIC_GAIN = 6.0  # strong evidence (Kass and Raftery 1995)
+MIN_LIKELIHOOD_GAIN = 30.0  # BIC and held-out -2 ln L together; BIC alone without such data
+MIN_HELD_OUT_SHARE = 0.15  # fraction of the squared held-out error above the floor
+MIN_HELD_OUT_GAIN = 10.0  # decrease of held-out -2 ln L: very strong evidence (Kass and Raftery 1995)
 MIN_SIGNIFICANCE = 3.0  # standard deviations
-MIN_MOTION_SHARE = 0.015  # of a motion: what takes less away from its error ...
-MIN_FLOOR_MULTIPLE = 3.0  # ... and less than that many times the floor, is no business of engineers, nor sure of its name
+MIN_MOTION_SHARE = 0.015  # of a motion: smallest decrease of its error that matters ...
+MIN_FLOOR_MULTIPLE = 3.0  # ... or this many times the floor, if less
 NEGLIGIBLE = (
     f"no error falls by {100 * MIN_MOTION_SHARE:.1f} % of the motion, nor by {MIN_FLOOR_MULTIPLE:.0f} times what can be seen"
 )
 FITTED, HELD_OUT, BLOCKS = "fitted tests", "held-out tests", "blocks left out in turn"
-MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO = (
-    0.1,
-    3.0,
-)  # of a decay's motion, and of what is left alone: what a joint fit may leave of it
+MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
+MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
 
 
 class ResidualSummary(NamedTuple):

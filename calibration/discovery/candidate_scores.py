@@ -16,7 +16,7 @@ from calibration.discovery.eliminated_least_squares import FirstOrderGain, predi
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.set_up import StudySetup
 
-REFIT_ITERATIONS = 8  # of a refit
+REFIT_ITERATIONS = 8  # iterations of a candidate's refit
 
 
 class CandidateScoring(EffectFits):

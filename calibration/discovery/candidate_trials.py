@@ -9,8 +9,8 @@ from calibration.discovery.effects.phase_shift_start import PhaseShiftStart
 from calibration.discovery.eliminated_least_squares import FirstOrderGain
 from calibration.discovery.linearisations import Linearisation
 
-INDISTINGUISHABLE_SHARE = 0.1  # of the best one's gain: what comes as near cannot be told from it
-SENSOR_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position")
+INDISTINGUISHABLE_SHARE = 0.1  # of the best gain: a smaller difference does not tell candidates apart
+SENSOR_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position")  # effects of sensors, tried first
 
 
 class ScoredCandidate(NamedTuple):

@@ -24,10 +24,8 @@ from calibration.result import Estimate
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
 
-MAX_REVERSED_CORRELATION = (
-    -0.6
-)  # correlation of what is measured with the model, in every fitted test, below which it is turned round
-MIN_NOISE_RATIO = 5.0  # times the noise, that a motion has to be to say anything
+MAX_REVERSED_CORRELATION = -0.6  # of measurement and model, in every fitted test of a reversed channel
+MIN_MOTION_OVER_NOISE = 5.0  # of a motion that is compared
 
 
 class SignComparison(NamedTuple):
@@ -101,7 +99,7 @@ def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
             there, model = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (series.measured, series.simulated))
             own, its = (float((np.abs(x) ** 2).sum()) for x in (there, model))
             noise = series.noise**2 * float((taper**2).sum()) * inside.sum()
-            if series.scored and min(own, its) > MIN_NOISE_RATIO**2 * noise:
+            if series.scored and min(own, its) > MIN_MOTION_OVER_NOISE**2 * noise:
                 both = float((np.conj(model) * there).sum().real)
                 error, other = own + its - 2 * both, own + its + 2 * both
                 found.append(SignComparison(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))

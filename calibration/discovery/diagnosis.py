@@ -9,9 +9,9 @@ from calibration.discovery.acceptance import Verdict
 from calibration.residuals.measured_seas import Options
 from calibration.result import Calibration, Estimate
 
-# what an effect is in doubt for beside others that explain more
-SECOND_ORDER = "second_order"  # where the waves' own second order was left out
-HELD_OUT_ERROR = "held_out_error"  # where all that was found makes the held-out error larger, or its motion's part of it
+# reasons for doubt in an effect, beside a rejected effect that explains more
+SECOND_ORDER = "second_order"  # second-order waves were left out
+HELD_OUT_ERROR = "held_out_error"  # the effects increase the held-out error, in all or in the effect's motion
 
 
 @dataclass(frozen=True, eq=False)

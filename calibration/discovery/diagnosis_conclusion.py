@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
     from calibration.discovery.linearisations import Point
 
-# of a motion: what is left beyond it, and twice the noise, is not for noise, nor for a model's last digits. Fitted seas of the
-# tank's campaigns with nothing missing leave up to 0.04
+# of a motion: a larger residual, above twice the noise, is unexplained. Fitted seas of synthetic campaigns with nothing missing
+# leave up to 0.04
 MAX_RESIDUAL_SHARE = {"decay": 0.03, "waves": 0.05}
 
 

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from calibration.discovery.acceptance import FitState, Verdict
     from calibration.discovery.greedy_search import Search
 
-MAX_RELEASE_SPEED = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
+MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency
 MEMORY_EFFECTS = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
-DRIFT_EFFECTS = ("wave_drift", "wave_drift_damping")  # of waves' squares, as what they bind is
-# times the held-out error of the declared model: what is rightly found makes it 1.01 times as large at most in the campaigns of
-# docs/validation.md, as scores are of likelihoods and of bands
+DRIFT_EFFECTS = ("wave_drift", "wave_drift_damping")  # proportional to the square of the wave
+# of the held-out error to that of the declared model. True effects increase it to 1.01 times at most in the campaigns of
+# docs/validation.md, since likelihoods are not errors
 MAX_HELD_OUT_RATIO = 1.05
-MAX_COEFFICIENT_RATIO = 3.0  # times what is declared, or a third of it
+MAX_COEFFICIENT_RATIO = 3.0  # of a coefficient to its declared value, or the inverse
 
 
 def doubts_of(search: Search, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:

@@ -15,11 +15,9 @@ from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.study import OVERFLOW, Study
 from jaxhydro.interrupts import stop_if_asked
 
-MAX_LOG_STEP = 0.7  # largest step of a coordinate that is a logarithm
-MIN_RELATIVE_GAIN = (
-    1e-4  # of what is minimised where a step begins: one that gains less is one too many, however many samples there are
-)
-MIN_PREDICTED_SHARE = 0.25  # of what was predicted: slopes that give no more are stale
+MAX_LOG_STEP = 0.7  # largest step of a logarithmic coordinate
+MIN_RELATIVE_GAIN = 1e-4  # of the cost: a step that gains less ends the fit, whatever the number of samples
+MIN_PREDICTED_SHARE = 0.25  # of the predicted gain: slopes that give less are outdated
 
 
 class FitOutcome(NamedTuple):

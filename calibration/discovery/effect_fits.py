@@ -24,9 +24,9 @@ from calibration.residuals.decays import first_guess
 SecondOrderTreatment = Literal["second", "first", "cut", "origin", "cut, origin"]
 """Seas with the second order that their records have, without, with its differences cut off, with it at the origin, or both."""
 
-MAX_ITERATIONS = 50  # iterations of what is let in
-MAX_RELINEARISATIONS = 8  # slopes taken anew in that
-MIN_FIT_GAIN = 1.0  # of -2 ln L: what another fit has to gain to be gone on with
+MAX_ITERATIONS = 50  # iterations of a full refit
+MAX_RELINEARISATIONS = 8  # new slopes in a full refit
+MIN_FIT_GAIN = 1.0  # decrease of -2 ln L that another fit needs to be continued
 
 
 class EffectFits:

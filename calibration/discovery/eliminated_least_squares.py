@@ -17,10 +17,10 @@ from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.study import Study
 from calibration.identifiability.information import inverse
 
-BOX_COX_POWER = 0.2  # p: 0 is the logarithm
-STEEP_PRIOR_DEVIATIONS = 3.0  # standard deviations of a prior: beyond them it is steep
-REWEIGHTINGS = 6  # of weights
-ROUNDING = 1e-12  # of the largest eigenvalue of scaled equations: slopes that Broyden's update mended are no better
+BOX_COX_POWER = 0.2  # p; 0 is the logarithm
+STEEP_PRIOR_DEVIATIONS = 3.0  # standard deviations beyond which a prior is steep
+REWEIGHTINGS = 6  # updates of the weights
+EIGENVALUE_ROUNDING = 1e-12  # of the largest eigenvalue of scaled equations: the accuracy of updated slopes
 
 
 def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
@@ -152,7 +152,7 @@ def decay_unknown_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarr
 
 def symmetric_inverse(matrix: np.ndarray) -> np.ndarray:
     """Inverse or pseudo-inverse of a symmetric matrix, whatever the parameters' scales."""
-    return inverse(matrix, ROUNDING)
+    return inverse(matrix, EIGENVALUE_ROUNDING)
 
 
 def damped_step(

@@ -26,8 +26,8 @@ from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
 from jaxhydro.dynamics.model import State
 
-MAX_INSTANTS = 256  # at which a model's forces are looked at
-SPECTRUM_ITERATIONS = 6  # of the force's spectrum
+MAX_INSTANTS = 256  # instants at which forces are linearised
+SPECTRUM_ITERATIONS = 6  # iterations of the force's spectrum
 
 
 @eqx.filter_jit

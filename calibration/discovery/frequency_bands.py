@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal.windows import tukey
 
-BAND_GROWTH = 1.4  # of the edge of one band to the next
-MIN_LINES_PER_BAND = 4  # Fourier lines in a band at least
+BAND_GROWTH = 1.4  # ratio of a band's edge to the one before
+MIN_LINES_PER_BAND = 4  # Fourier lines
 
 
 def step_of(time: np.ndarray) -> float:

@@ -28,16 +28,14 @@ from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import IrregularSea
 
-BAND_COUNT = 14
-EXCURSION_FACTOR = 1.5  # of `excursion_of` the model: how far a sea is prepared for
-MIN_EXCURSION = 1.7  # lengths of the sea's shortest wave: a sea is prepared at least this far
-MAX_OFFSET_SHARE = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
-TAPERED_SHARE = 0.1  # of a test in waves, at its two ends together
-MIN_FIRST_ORDER_SHARE = (
-    0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
-)
-DOMINANT_SHARE = 0.7  # of all steps, in one sea or the decays: its directions are looked along side by side
-MAX_FREQUENCY_RATIO = 6.0  # times the highest natural frequency: what is looked at
+BAND_COUNT = 14  # frequency bands of a record
+EXCURSION_FACTOR = 1.5  # times the model's excursion, over which a sea is prepared
+MIN_EXCURSION = 1.7  # lengths of the shortest wave, over which a sea is prepared at least
+MAX_OFFSET_SHARE = 0.02  # of a decay's standard deviation: offset of a sensor's zero, beside noise
+TAPERED_SHARE = 0.1  # of a test in waves, both ends together
+MIN_FIRST_ORDER_SHARE = 0.01  # of a sea's variance: slower components are not first order
+DOMINANT_SHARE = 0.7  # of all steps in one run or the decays: then directions are differentiated in parallel
+MAX_FREQUENCY_RATIO = 6.0  # times the highest natural frequency, up to which motions are compared
 
 
 def study_of(

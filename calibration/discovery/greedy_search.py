@@ -24,8 +24,8 @@ from calibration.discovery.eliminated_least_squares import minus_two_log_likelih
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
 
-MAX_EFFECTS = 10  # effects at most
-SHORTLIST = 5
+MAX_EFFECTS = 10  # effects in a model
+SHORTLIST = 5  # candidates refitted in a round
 FIRST_ORDER_NOTE = (
     "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions are "
     "followed worse"
@@ -35,15 +35,11 @@ SIMPLER_SEA_NOTES = {
     "origin": "waves act at second order by their horizontal flow at the origin, on all of the platform, as in some programs",
 }
 SHARED_NOTE = "{first} hardly matters beside {later}, yet explains more: they share what they explain, and may be one other law"
-TREATMENTS_TRIED: tuple[SecondOrderTreatment, ...] = (
-    "cut, origin",
-    "origin",
-    "cut",
-    "first",
-)  # a program's as it may be, then what it may be in part
-MAX_UNFITTED_LOSS = 300.0  # of -2 ln L, by which waves of another order may be worse, not fitted, and yet be fitted
-MASS_DEVIATIONS_ALLOWED = 2.0  # standard deviations of what is nearly known: a mass property beyond them was weighed wrongly
-MIN_RELATIVE_PROMISE = 0.3  # of what a refitted effect gains: what gains less at first order is not refitted beside it
+# all simplifications of a program, then parts of them
+TREATMENTS_TRIED: tuple[SecondOrderTreatment, ...] = ("cut, origin", "origin", "cut", "first")
+MAX_UNFITTED_LOSS = 300.0  # increase of -2 ln L by another treatment, before it is fitted
+MASS_DEVIATIONS_ALLOWED = 2.0  # standard deviations by which weighed mass properties may be off
+MIN_RELATIVE_PROMISE = 0.3  # of the best refit's gain: candidates that promise less are not refitted
 
 
 class Search(CandidateScoring):

@@ -19,9 +19,9 @@ from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.study import Study
 from calibration.residuals.decays import dominant_period, first_guess
 
-BLOCKS_PER_TEST = 3  # blocks of a test
-MIN_CYCLES_PER_BLOCK = 1.5  # of a decay in one of its blocks, at least
-BLOCK_ITERATIONS = 6
+BLOCKS_PER_TEST = 3  # blocks
+MIN_CYCLES_PER_BLOCK = 1.5  # cycles of a decay
+BLOCK_ITERATIONS = 6  # iterations of a fit to blocks
 
 
 class HeldOutBlocks:

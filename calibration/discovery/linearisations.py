@@ -9,6 +9,7 @@ import numpy as np
 SeaSelection = Literal["all", "fit"]
 # of the motion that a test is about, in every band: what strips with constant coefficients, and a measured wave, are not asked
 # to follow, however quiet the sensors are
+# smallest error over the motion that a model of strips can reach, by kind of test
 RELATIVE_FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from calibration.discovery.acceptance import FitState
     from calibration.discovery.greedy_search import Search
 
-MIN_NOISE_RATIO = 1.3  # rms over noise below which nothing is said
+MIN_RESIDUAL_OVER_NOISE = 1.3  # rms; a smaller residual is at the noise
 
 
 def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
@@ -42,7 +42,7 @@ def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
 
 def _words(within: float, over: float, bands: Sequence[tuple[float, float, float]]) -> str:
     """A residual in words; rms over noise `within` the compared bands and `over` all."""
-    if within < MIN_NOISE_RATIO:
+    if within < MIN_RESIDUAL_OVER_NOISE:
         return "at the noise"
     worst = max(bands, key=lambda b: b[2])
     where = "in the mean" if worst[0] == 0 else f"from {worst[0]:.3g} to {worst[1]:.3g} Hz"
@@ -59,7 +59,9 @@ def signature(search: Search, before: FitState, after: FitState) -> tuple[float,
     spread = np.array([one.spread for one in study.series])
     total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = left / total if total > 0 else 0.0
-    if not (after.left.squares.sum(axis=1) > (MIN_NOISE_RATIO**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
+    if not (after.left.squares.sum(axis=1) > (MIN_RESIDUAL_OVER_NOISE**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[
+        told
+    ].any():
         fitted = [record for record in search.campaign.records if record.use == "fit"]
         declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
         return share, f"white at the {'declared noise level' if declared else 'level of the noise, which was estimated'}"

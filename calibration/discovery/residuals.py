@@ -19,7 +19,7 @@ from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.waves.support_sea import SupportSea
 
-ROUNDING = 1e-6  # of a step
+STEP_ROUNDING = 1e-6  # fraction of a time step
 
 
 class Frame(NamedTuple):
@@ -110,7 +110,7 @@ class SeaRecord(eqx.Module):
         motion = observe(model, grid, self.times, rest if self.from_rest else None, in_waves=True)
         n = self.measured.shape[-1]
         found = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
-        ended = self.times[np.array(self.begins) + n - 1] <= self.times[0] + (count + ROUNDING) * self.step
+        ended = self.times[np.array(self.begins) + n - 1] <= self.times[0] + (count + STEP_ROUNDING) * self.step
         return jnp.where(ended[:, None, None], found, 0.0)
 
 

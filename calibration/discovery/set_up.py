@@ -24,13 +24,13 @@ from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 
-DIRECTIONS_AT_ONCE = 32  # directions at a time
-CANDIDATE_PRIOR_WIDTH = 30.0  # what a candidate's coordinate may be, in noticeable units
-MASS_PRIOR_WIDTH = 1.0  # by which mass properties may be off, in noticeable units: those of `nearly_known`
-TRIM_PRIOR_WIDTH = 3.0  # ... draught and trim, in noticeable units
-COVERED_ENDS_PRIOR_WIDTH = 0.7
-# by which seas may move a coefficient from where decays, or the platform file, have it, in its logarithm: a standard deviation
-# of a prior that is steep beyond three. Drag changes with a sea; linear damping does not, and stands for nothing else
+DIRECTIONS_AT_ONCE = 32  # directions differentiated at a time
+CANDIDATE_PRIOR_WIDTH = 30.0  # of a candidate's amplitudes, in noticeable sizes
+MASS_PRIOR_WIDTH = 1.0  # of mass properties, in the deviations of `nearly_known`
+TRIM_PRIOR_WIDTH = 3.0  # of draught and trim, in noticeable sizes
+COVERED_ENDS_PRIOR_WIDTH = 0.7  # of the share of covered ends
+# of a coefficient's logarithm in waves, around its value from decays or the platform file: one standard deviation of a prior
+# that is steep beyond three. Drag changes with the sea; linear damping does not
 COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH = 0.75, 0.5
 
 

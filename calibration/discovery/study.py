@@ -22,7 +22,7 @@ from calibration.residuals.measured_seas import Options, moving
 from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
 
-OVERFLOW = 1e100  # motions and slopes that are as large are of a simulation that overflows: nothing is known there
+OVERFLOW = 1e100  # motions and slopes from here on are those of a diverging simulation
 
 
 @dataclass(frozen=True)

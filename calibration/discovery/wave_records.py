@@ -13,13 +13,11 @@ from calibration.residuals.measured_seas import Options, Seas, options_of, sea_o
 from jaxhydro.environment import Environment
 from jaxhydro.waves.irregular_sea import IrregularSea
 
-MIN_SECOND_ORDER_SHARE = 0.4  # of what theory has: a record with less has none
-NEIGHBOURING_LINES = 9  # lines that tell how loud what theory does not bind is
-MIN_NOISE_RATIO = 3.0  # times the noise in the band, that theory's part has to be, to say anything
-MAX_CUTOFF_RATIO = 1.35  # of the cutoff: how far above it sums of frequencies are looked for
-MIN_CUT_GAIN = (
-    5.0  # of -2 ln L, by which differences up to a frequency follow records better than all of them where that is tried
-)
+MIN_SECOND_ORDER_SHARE = 0.4  # of theory: a record with less has no second order
+NEIGHBOURING_LINES = 9  # Fourier lines over which the level is averaged
+MIN_THEORY_OVER_NOISE = 3.0  # of theory's part in a band that is compared
+MAX_CUTOFF_RATIO = 1.35  # times the cutoff: up to there sums are compared
+MIN_CUT_GAIN = 5.0  # decrease of -2 ln L that a cut of differences needs to be tried
 
 
 def options_for(campaign: Campaign, options: Options | None = None) -> tuple[Options, tuple[str, ...]]:
@@ -110,5 +108,5 @@ def _shares(run: Run, environment: Environment, options: Options) -> tuple[float
         power = float((np.abs(theory[inside]) ** 2).sum())
         level = noise**2 * float((taper**2).sum()) * inside.sum()
         share = float((np.conj(theory[inside]) * measured[inside]).sum().real) / max(power, 1e-300)
-        found.append(share if power > MIN_NOISE_RATIO**2 * level and inside.sum() > 8 else None)
+        found.append(share if power > MIN_THEORY_OVER_NOISE**2 * level and inside.sum() > 8 else None)
     return found[0], found[1]

@@ -167,7 +167,7 @@ def test_a_fit_is_converged_to_the_tolerance_of_where_it_ends(study, far):
         iterations=200,
         relinearisations=20,
         tolerance=1e-6,
-        say=lambda _, cost: costs.append(cost),
+        report=lambda _, cost: costs.append(cost),
     )
     near = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     expected = best(study, near)

@@ -31,8 +31,8 @@ from jaxhydro.loads.wave_reflection import COEFFICIENT, DELAY, LATER, LATEST, SE
 from jaxhydro.waves.dispersion import wavenumber
 
 REFERENCE_LENGTH = 27.0  # m, of a platform of 20 000 t
-SLOW_MOTION_CUTOFFS = (0.03, 0.015, 0.06)  # Hz: below which motion is slow, tried in turn
-NOTICEABLE_SHARE = 0.1  # of computed radiation or drift that is noticeable
+SLOW_MOTION_CUTOFFS = (0.03, 0.015, 0.06)  # Hz: motion is slow below; tried in turn
+NOTICEABLE_SHARE = 0.1  # noticeable fraction of computed radiation or drift
 
 
 def catalogue(

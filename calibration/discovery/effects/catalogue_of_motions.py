@@ -22,16 +22,14 @@ from jaxhydro.loads import (
     WaveDriftDamping,
 )
 
-MIN_NATURAL_PERIOD_RATIO, MAX_NATURAL_PERIOD_RATIO = (
-    0.4,
-    1.5,
-)  # of the shortest and the longest natural period: between them hidden oscillators are sought
-MIN_OSCILLATOR_PERIOD, MAX_OSCILLATOR_PERIOD = 0.7, 250.0  # s: ... 0.8 times and twice of which they can have
-MIN_STEPS_PER_PERIOD = 20  # in a period at least: Adams-Bashforth's fourth order is unstable below 15
-MEMORY_RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s: of radiation memory
+# of the shortest and the longest natural period: hidden oscillators have periods in between
+MIN_NATURAL_PERIOD_RATIO, MAX_NATURAL_PERIOD_RATIO = 0.4, 1.5
+MIN_OSCILLATOR_PERIOD, MAX_OSCILLATOR_PERIOD = 0.7, 250.0  # s, of periods that are tried; fits go from 0.8 times to twice them
+MIN_STEPS_PER_PERIOD = 20  # fourth-order Adams-Bashforth is unstable below 15
+MEMORY_RATES = (0.25, 0.4, 0.6, 0.9)  # rad/s, of radiation memory
 HORIZONTAL_MOTIONS = ("surge", "sway")
-FRICTION_SPEED_SHARE = 0.1  # of the rate's amplitude: where dry friction is resolved as a damper
-YIELD_FACTORS = (0.2, 0.5, 1.5, 4.0)  # of their default: displacements at which hysteresis yields
+FRICTION_SPEED_SHARE = 0.1  # of the velocity's amplitude: below this speed friction acts as a damper
+YIELD_FACTORS = (0.2, 0.5, 1.5, 4.0)  # times the default yield displacement of hysteresis
 
 
 def add_motion_effects(

@@ -29,16 +29,14 @@ if TYPE_CHECKING:
 
 StartingValuesFinder = Callable[["Study", "Point", Sequence[int], np.ndarray], tuple[Mapping[str, float], ...]]
 
-SAMPLES_PER_PERIOD = 16  # in a natural period: those of a decay that are looked at
-MIN_SAMPLES_PER_MODE = 16  # samples for every mode
-MAX_PERIOD_RATIO = 2.0  # times longer or shorter than the natural period: where its two modes are looked for
-MIN_PERIOD_SEPARATION = 0.03  # of their periods: modes that are closer are one
-DAMPING_RATIO_LIMITS = (0.002, 0.5)  # damping ratios of a mass that may be
-PERIOD_ITERATIONS, DIFFERENCE_STEP, MAX_STEP_DEVIATIONS = (
-    4,
-    1e-3,
-    3.0,
-)  # of the hull's own period; of a direction; standard deviations
+SAMPLES_PER_PERIOD = 16  # samples of a decay in a natural period
+MIN_SAMPLES_PER_MODE = 16  # samples of a decay for every mode
+MAX_PERIOD_RATIO = 2.0  # of the two modes' periods to the natural period
+MIN_PERIOD_SEPARATION = 0.03  # relative: modes that are closer are one
+DAMPING_RATIO_LIMITS = (0.002, 0.5)  # of the oscillator
+PERIOD_ITERATIONS = 4  # iterations to the hull's own period
+DIFFERENCE_STEP = 1e-3  # of a direction, for slopes of the period
+MAX_STEP_DEVIATIONS = 3.0  # standard deviations of the coefficients
 
 
 class Modes(NamedTuple):

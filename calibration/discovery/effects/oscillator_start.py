@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 ShapeFinder = Callable[["Study", "Linearisation", np.ndarray], tuple[Mapping[str, float], ...]]
 
-PERIOD_SPACING = 1.03  # of one period to the next: half a resonance's width
-NEUTRAL_DAMPING_RATIO = 0.03  # damping ratio at null
-TRIED_DAMPING_RATIOS = (NEUTRAL_DAMPING_RATIO, 0.2)  # that are tried
+PERIOD_SPACING = 1.03  # ratio of one period to the next: half a resonance's width
+NEUTRAL_DAMPING_RATIO = 0.03  # damping ratio at the neutral value
+TRIED_DAMPING_RATIOS = (NEUTRAL_DAMPING_RATIO, 0.2)  # damping ratios that are tried
 
 
 def response(omega: np.ndarray, period: float, ratio: float) -> np.ndarray:

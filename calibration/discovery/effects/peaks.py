@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.signal import find_peaks
 
-MAX_PEAKS = 2  # values
-MIN_PEAK_GAIN = 10.0  # of -2 ln L: a value that promises less is not tried
+MAX_PEAKS = 2  # number of values that are tried
+MIN_PEAK_GAIN = 10.0  # decrease of -2 ln L; values that gain less are not tried
 
 
 def highest_peaks(gain: np.ndarray) -> np.ndarray:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 PhasePerUnit = Callable[[np.ndarray, Environment], np.ndarray]
 
-PHASE_SPACING = 0.2  # rad: phase from one value that is looked at to the next
-MIN_PHASE_SHIFT = 0.5  # rad: what is no further is found by slopes
+PHASE_SPACING = 0.2  # rad, between the phase shifts that are compared
+MIN_PHASE_SHIFT = 0.5  # rad: smaller shifts are found by slopes
 
 
 class PhaseShiftStart(NamedTuple):

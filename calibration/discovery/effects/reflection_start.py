@@ -10,10 +10,9 @@ from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.study import Study
 from jaxhydro.loads.wave_reflection import DELAY, LATEST, SEEN
 
-DELAY_SPACING = 0.05  # s between those that are looked at
-ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple(
-    {DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0)
-)  # the gauge did not, or did
+DELAY_SPACING = 0.05  # s, between the delays that are compared
+# waves that the gauge did not measure, or did
+ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0))
 
 
 def reflection_delays(study: Study, look: Linearisation, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:

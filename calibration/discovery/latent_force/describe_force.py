@@ -16,14 +16,11 @@ from calibration.formatting import listed, number, percent, quantity, readable_u
 from calibration.residuals.sea_errors import bands_of
 from jaxhydro.environment import DOFS
 
-CYCLES_PER_SEGMENT = 4.0  # of a decay's own period in a segment
-MIN_SEGMENTS = 4  # segments, and cycles
-MIN_NOISE_RATIO = 3.0  # times what noise leaves: forces that are asked how they grow
-MIN_SIZE_RATIO = {
-    "decay": 1.5,
-    "waves": 1.15,
-}  # ratio of the largest to the smallest motion or wave, below which that cannot be told
-MIN_COHERENCE = 0.5  # share of the force that a coherence has to explain to be told
+CYCLES_PER_SEGMENT = 4.0  # periods of a decay in a spectral segment
+MIN_SEGMENTS = 4  # segments of a spectrum, and cycles of a decay
+MIN_FORCE_OVER_NOISE = 3.0  # of a cycle's force, to count for its growth
+MIN_SIZE_RATIO = {"decay": 1.5, "waves": 1.15}  # of the largest motion or wave to the smallest, to find an exponent
+MIN_COHERENCE = 0.5  # fraction of the force, to be mentioned
 
 QuantityOfForce = Callable[["RecoveredForce"], np.ndarray]
 MOTION: dict[str, QuantityOfForce] = {
@@ -146,7 +143,7 @@ def growth_of(forces: Sequence[RecoveredForce]) -> dict[str, float]:
             continue
         motion, force = one.position[one.inside], one.force[one.inside]
         rows = [(float(np.std(motion[i : i + n])), float(np.std(force[i : i + n]))) for i in range(0, len(force) - n + 1, n)]
-        cycles += [row for row in rows if row[1] > MIN_NOISE_RATIO * one.noise and row[0] > 0]
+        cycles += [row for row in rows if row[1] > MIN_FORCE_OVER_NOISE * one.noise and row[0] > 0]
     if len(cycles) >= MIN_SEGMENTS and (power := _power(cycles, MIN_SIZE_RATIO["decay"])) is not None:
         found["amplitude"] = power
     seas = [

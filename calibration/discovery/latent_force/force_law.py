@@ -23,14 +23,14 @@ from calibration.discovery.diagnosis import Law, LawTerm
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
 from jaxhydro.environment import DOFS
 
-MAX_TERMS = 3  # terms
-MIN_SHARE_GAIN = 0.03  # by which the held-out share has to rise for another term
-MIN_EXPLAINED_SHARE = 0.2  # of the held-out force, below which there is no law
-SIMPLER_LAW_MARGIN = 0.02  # of what the best set leaves: what leaves as little is as good, and the simplest is taken
-MAX_TERM_RATIO = 5.0  # times the force, that a term may be: what all but cancels follows anything
-FRICTION_SPEED_SHARE = 0.05  # of the rms velocity, at which dry friction turns
-LAG_RATIOS = (0.3, 1.0, 3.0)  # time constants of lagged velocity over the inverse circular frequency of the motion
-BLOCK_COUNT = 4
+MAX_TERMS = 3  # terms of a law
+MIN_SHARE_GAIN = 0.03  # increase of the held-out fraction that another term needs
+MIN_EXPLAINED_SHARE = 0.2  # of the held-out force: with less there is no law
+SIMPLER_LAW_MARGIN = 0.02  # of the smallest remainder: a simpler law may leave so much more
+MAX_TERM_RATIO = 5.0  # of a term to the force: larger terms cancel each other
+FRICTION_SPEED_OVER_RMS = 0.05  # v0 of friction over the rms velocity
+LAG_RATIOS = (0.3, 1.0, 3.0)  # time constants of lagged velocity, times the circular frequency of the motion
+BLOCK_COUNT = 4  # blocks of a test
 
 
 class LibraryTerm(NamedTuple):
@@ -197,7 +197,7 @@ def law_of(motion: str, forces: Sequence[RecoveredForce]) -> Law:
     kinds = [*STILL_WATER_TERMS, *(WAVE_TERMS if waves else ())]
     if not fitted:
         return Law((), 0.0, 0.0, "")
-    slow = FRICTION_SPEED_SHARE * float(np.median([np.std(one.velocity[one.inside]) for one in fitted]))
+    slow = FRICTION_SPEED_OVER_RMS * float(np.median([np.std(one.velocity[one.inside]) for one in fitted]))
     moved, moving = (
         sum(float(np.var(values(one)[one.inside])) for one in fitted)
         for values in (lambda one: one.position, lambda one: one.velocity)

@@ -42,12 +42,12 @@ from jaxhydro.waves.sea import AbstractSea, StillWater
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
 
-LINES_AVERAGED = 5  # of the periodogram that are averaged
-MAX_HARMONIC = 6.0  # times a decay's own frequency: what is faster moves the body little, and is not looked at
-NOISE_FACTOR = 3.0  # times the noise, that is taken off it
-DAMPING_RATIO = 0.03  # of critical
-MAX_TAPERED_SHARE = 0.1  # of the record at each end, at most
-INSTANTS_AT_ONCE = 512  # instants at a time
+LINES_AVERAGED = 5  # Fourier lines over which the periodogram is averaged
+MAX_HARMONIC = 6.0  # times a decay's own frequency: faster forces are not reconstructed
+NOISE_FACTOR = 3.0  # times the noise, which the filter takes off
+DAMPING_RATIO = 0.03  # of the impedance by which noise becomes force
+MAX_TAPERED_SHARE = 0.1  # of the record, at each end
+INSTANTS_AT_ONCE = 512  # instants in one call
 
 
 def peak_of(values: np.ndarray) -> int:

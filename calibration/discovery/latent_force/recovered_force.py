@@ -7,7 +7,7 @@ import numpy as np
 
 from jaxhydro.waves.sea import AbstractSea
 
-MIN_PEAK_OVER_NOISE = 20.0  # times the noise, in power, that the highest peak of a force has: without it there is none
+MIN_PEAK_OVER_NOISE = 20.0  # in power, of the highest spectral peak: with less there is no force
 
 
 class ResampledTest(NamedTuple):
