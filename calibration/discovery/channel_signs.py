@@ -1,7 +1,7 @@
 """Channels recorded with the wrong sign, found from motions in waves.
 
-Looked at before anything is fitted to the waves, at their own frequencies, where motions follow from the waves by first-order
-theory: a phase of half a turn in every test is no physics.
+Measured motions are compared with the declared model at wave frequencies, before anything is fitted in waves. There motions
+follow from the waves by first-order theory. A phase of 180 degrees in every test has no physical cause.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """Checkpoint of a diagnosis, written after every round so that a stopped run can resume.
 
-The file is plain data: a JSON document and arrays in a .npz. What reads it decides what is made of it, so that a file from
-somebody else can be wrong but not do anything.
+The file is a .npz of arrays and one JSON document. It is data only: a file from someone else may be wrong but cannot run code.
 """
 
 import io

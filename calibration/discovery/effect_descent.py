@@ -1,7 +1,10 @@
 """Levenberg-Marquardt fit of a few parameters with Broyden updates of the Jacobian.
 
-A simulation costs some twentieth of what all slopes cost. Broyden's update (1965, Mathematics of Computation 19, 577-593) makes
-slopes agree with the last step; they are taken anew where they have ceased to predict.
+A simulation costs about a twentieth of all slopes. Broyden's update makes slopes agree with the last step. Slopes are computed
+anew where they no longer predict the gain.
+
+References:
+    Broyden 1965, Mathematics of Computation 19, 577-593.
 """
 
 from collections.abc import Callable

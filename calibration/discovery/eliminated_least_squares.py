@@ -1,10 +1,15 @@
 """Least squares with the decays' own unknowns eliminated: weights, normal equations, gains.
 
--2 ln L = sum over motions and pools of bands of n ln m, n the pool's degrees of freedom and m the mean square over the floor's
-(Whittle 1953, Arkiv for Matematik 2, 423-434, with a spectrum that is known up to a factor by pool, which is estimated: see
-`expected_residuals`), and the priors' squares. The spectrum is the floor's at least: where m < 1 the term is
-n (m - 1). A fit minimises n (m^p - 1) / p in place of n ln m (Box and Cox 1964, Journal of the Royal Statistical Society B 26,
-211-252): near the floor the same, but a record that is not followed is not given up for others.
+-2 ln L is the sum over motions and pools of bands of n ln m, and the squares of the priors. n is the number of degrees of
+freedom of the pool, m its mean square over the floor's. The spectrum is known up to a factor by pool, which is estimated (see
+`expected_residuals`). It is at least the floor's: where m < 1 the term is n (m - 1).
+
+A fit minimises n (m^p - 1) / p in place of n ln m (Box-Cox transformation). Near the floor both agree, but no record is given
+up for the others.
+
+References:
+    Whittle 1953, Arkiv for Matematik 2, 423-434.
+    Box and Cox 1964, Journal of the Royal Statistical Society B 26, 211-252.
 """
 
 from collections.abc import Sequence

@@ -1,17 +1,17 @@
 """Expected size of residuals in waves where an unknown force acts: the weights of wave tests.
 
-A force F that is missing leaves a residual H F, which is largest where the platform answers most. Weighed as if every
-frequency were alike, such a residual is best reduced by a model that answers less there: least squares damps slow motion away.
-Weighed by what an unknown force leaves, a resonance counts as the few frequencies that it is: the prediction error of a model
-that a force disturbs (Ljung 1999, System Identification, 2nd ed., section 3.2: errors filtered by the inverse of the
-disturbance's model; Whittle's likelihood of them is the sum over frequencies of |r|^2 / P + ln P).
+A missing force F leaves a residual H F, which is largest at resonance. With equal weights, least squares reduces it by damping
+slow motion away. Weighed by what an unknown force leaves, a resonance counts as the few frequencies that it is.
 
     P_i = sum over j of |H_ij|^2 S_j + floor_i^2,    H = (-omega^2 M + i omega C + K)^-1
 
-with M, C and K the mean tangents of the model's own forces along its motion in that sea, and S_j the spectrum of the missing
-force: the same over all frequencies slower than the waves, and over every band among them; H does not change from band to band
-as fast as it does over slow ones. S_j is that of F = H^-1 r, less what the floor has in it, lines with much of that in them
-counting less. Motions that were not measured, and loads' memories, stay at rest.
+M, C and K are mean tangents of the model's forces along its motion in that sea. S_j is the spectrum of the missing force,
+constant below the wave frequencies, and in every band among them. It is estimated from F = H^-1 r, less the floor's part; lines
+that are mostly floor count less. Motions that were not measured, and loads' memories, stay at rest.
+
+References:
+    Ljung 1999, System Identification, 2nd ed., section 3.2: prediction errors filtered by the inverse disturbance model.
+    Whittle 1953: their likelihood is the sum over frequencies of |r|^2 / P + ln P.
 """
 
 import equinox as eqx

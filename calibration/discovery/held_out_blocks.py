@@ -1,7 +1,7 @@
 """Blocks of fitted tests left out in turn, for campaigns without held-out tests.
 
-A block of a decay begins with an initial state of its own, which is fitted to it; a block of a test in waves is simulated with
-the whole record and compared where it is.
+A block of a decay has an initial state of its own, which is fitted to it. A block of a test in waves is simulated with the
+whole record and compared within the block.
 """
 
 from collections.abc import Sequence

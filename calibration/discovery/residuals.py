@@ -1,6 +1,6 @@
 """Residuals of decays and seas, and their slopes along any few directions.
 
-Which directions is data, so that one compiled program scores every candidate effect and refits any few of them.
+Directions are data, so that one compiled program scores every candidate effect and refits any few of them.
 """
 
 from typing import Any, NamedTuple

@@ -16,7 +16,7 @@ from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.commands.calibrate_command import simulate_campaign
-from calibration.discovery import strip_trials as conventions
+from calibration.discovery import strip_trials
 from calibration.discovery.channel_signs import with_signs_reversed
 from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
@@ -189,10 +189,10 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
     for shift in (far, near):
         (folder := tmp_path / f"{shift}").mkdir()
         campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
-        posed = set_up_study(campaign, options_for(campaign)[0])
-        (one,) = (one for one in posed.candidates if label in one.amplitudes)
-        look = posed.study.linearise(Point(np.asarray(posed.study.space.start), np.zeros((0, 0))), posed.study.index([label]))
-        found.append(phase_shift_start(posed.study, look, label, one.phase_per_unit))
+        setup = set_up_study(campaign, options_for(campaign)[0])
+        (one,) = (one for one in setup.candidates if label in one.amplitudes)
+        look = setup.study.linearise(Point(np.asarray(setup.study.space.start), np.zeros((0, 0))), setup.study.index([label]))
+        found.append(phase_shift_start(setup.study, look, label, one.phase_per_unit))
     there, nothing = found
     assert there.values[label] == pytest.approx(far, abs=PHASE_SPACING / abs(turns(0.65))) and there.gain > 500
     assert nothing is None
@@ -251,8 +251,8 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     assert highest_difference(seas_of(campaign, model.environment, options)) == pytest.approx(HIGHEST, abs=0.002)
     cut = dataclasses.replace(options, highest_difference=HIGHEST)
     assert highest_difference(seas_of(campaign, model.environment, cut)) is None
-    posed = set_up_study(campaign, options)
-    search = Search(campaign, posed, lambda *_: None)
+    setup = set_up_study(campaign, options)
+    search = Search(campaign, setup, lambda *_: None)
     state = search.fit_baseline()
     assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
     taken = search.study.options[search.order]
@@ -260,7 +260,7 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     told = [said.format(highest=taken.highest_difference) for said in SIMPLER_SEA_NOTES.values()]
     assert [note for note in search.notes if all(said in note for said in told)]
     save_checkpoint(tmp_path / "kept", search, [state], 1.0)
-    again = Search(campaign, posed, lambda *_: None)
+    again = Search(campaign, setup, lambda *_: None)
     assert len(load_checkpoint(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
     assert set(set_up_study(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
     found = conclude(campaign, search, state, state, (), 1.0)
@@ -372,17 +372,17 @@ def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatc
     """Where calibrated decays are followed better so, and no word of the platform file says how strips are taken."""
     campaign = load_campaign(resources.files("jaxhydro") / "campaigns" / "volturnus-s-decays")
     asked: list[Campaign] = []
-    monkeypatch.setattr(conventions, "prepare", lambda one: asked.append(one) or one)
-    monkeypatch.setattr(conventions, "run", lambda one, near: None)
-    monkeypatch.setattr(conventions, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
-    found = conventions.try_strip_conventions(campaign, lambda *_: None)
+    monkeypatch.setattr(strip_trials, "prepare", lambda one: asked.append(one) or one)
+    monkeypatch.setattr(strip_trials, "run", lambda one, near: None)
+    monkeypatch.setattr(strip_trials, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
+    found = strip_trials.try_strip_conventions(campaign, lambda *_: None)
     model = found.campaign.model
     assert [one.model.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
     assert (model.directions, model.centripetal) == (("earth", False) if simpler else ("body", True))
     assert [load.coupled for load in model.loads if isinstance(load, StripDrag)] == [not simpler]
-    assert bool(found.notes) is simpler and found.strips == (conventions.SIMPLER_STRIPS if simpler else None)
+    assert bool(found.notes) is simpler and found.strips == (strip_trials.SIMPLER_STRIPS if simpler else None)
     said = dataclasses.replace(campaign, platform=campaign.platform.model_copy(update={"drag_speed": "vector"}))
-    assert conventions.try_strip_conventions(said, lambda *_: None) == conventions.StripTrial(said)
+    assert strip_trials.try_strip_conventions(said, lambda *_: None) == strip_trials.StripTrial(said)
     assert len(asked) == 2
 
 
@@ -395,7 +395,7 @@ def test_errors_below_the_noise_tell_nothing() -> None:
         records = [SimpleNamespace(noise=one) for one in noise]
         problem = SimpleNamespace(data=data)
         fit = SimpleNamespace(problem=problem, records=records, ends=[100.0, 100.0], mean_squares=lambda: np.array(squares))
-        return conventions._unlikelihood(fit)  # type: ignore[arg-type]
+        return strip_trials._unlikelihood(fit)  # type: ignore[arg-type]
 
     least = of([0.01, 1e-6], [0.01, 1e-6])
     assert of([0.001, 1e-9], [0.01, 1e-8]) == pytest.approx(least)

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 import jaxhydro as jh
 from calibration import calibrate
 from calibration.campaign.load_campaign import load_campaign
-from calibration.discovery import checkpoint as kept
+from calibration.discovery import checkpoint
 from calibration.discovery import greedy_search as search
 from calibration.discovery.acceptance import NEGLIGIBLE, ResidualSummary, Verdict, abandoned_decays
 from calibration.discovery.candidate_trials import AcceptedEffect, ScoredCandidate
@@ -194,11 +194,11 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
     assert any("ended with the effect number 1" in note for note in again.notes)
     assert not any("ended with" in note for note in found.notes)
     search = SimpleNamespace()
-    monkeypatch.setattr(kept, "fingerprint", lambda search: "of another campaign")
-    assert kept.load_checkpoint(path, search) == []
+    monkeypatch.setattr(checkpoint, "fingerprint", lambda search: "of another campaign")
+    assert checkpoint.load_checkpoint(path, search) == []
     path.write_bytes(path.read_bytes()[:1000])
-    assert kept.load_checkpoint(path, search) == []
-    assert kept.load_checkpoint(tmp_path / "none", search) == []
+    assert checkpoint.load_checkpoint(path, search) == []
+    assert checkpoint.load_checkpoint(tmp_path / "none", search) == []
 
 
 class Sine(AbstractLoad):

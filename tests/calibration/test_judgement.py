@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from calibration.campaign.records import Record
-from calibration.discovery import acceptance as judgement
+from calibration.discovery import acceptance as acceptance
 from calibration.discovery.acceptance import (
     BLOCKS,
     FITTED,
@@ -254,7 +254,7 @@ def test_gain_is_of_what_is_asked():
 @pytest.mark.parametrize(("refused", "said"), [("", "worse"), (NEGLIGIBLE, "worse"), ("grows", "grows")])
 def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against_it(refused, said, monkeypatch):
     for name, value in {"reason_to_reject": refused, "worsened_motion": "worse", "significance": 9.0}.items():
-        monkeypatch.setattr(judgement, name, lambda *_, value=value: value)
+        monkeypatch.setattr(acceptance, name, lambda *_, value=value: value)
     study = SimpleNamespace(used=np.array([True]))
     state = SimpleNamespace(likelihood=np.zeros(1), left=None, look=SimpleNamespace(place=SimpleNamespace(x=None)))
     grounds = SimpleNamespace(
@@ -372,9 +372,9 @@ def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatc
     for variances in ((1.0, 1.0), (1.0, 1e-12), (1.0, 1e-20), (1e-20, 1.0)):
         covariance, steps = np.diag(variances), 5 * np.sqrt(variances)
         study = SimpleNamespace(index=lambda names: [0, 1], steps=lambda x, steps=steps: steps)
-        monkeypatch.setattr(judgement, "predict_gain", lambda *_, c=covariance: SimpleNamespace(covariance=c))
+        monkeypatch.setattr(acceptance, "predict_gain", lambda *_, c=covariance: SimpleNamespace(covariance=c))
         state = SimpleNamespace(look=SimpleNamespace(active=(0, 1), place=SimpleNamespace(x=None)))
-        assert judgement.significance(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
+        assert acceptance.significance(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
 
 
 def test_there_is_one_pseudo_inverse() -> None:

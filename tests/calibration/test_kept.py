@@ -14,7 +14,7 @@ import pytest
 from test_discovery import campaign_of
 
 from calibration.campaign.load_campaign import load_campaign
-from calibration.discovery import checkpoint as kept
+from calibration.discovery import checkpoint
 from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.greedy_search import Search
@@ -375,7 +375,7 @@ WORDS = (
 def test_the_packages_read_and_write_no_pickles():
     """Neither in their own words nor by NumPy's: `allow_pickle` is False wherever it is."""
     for package in ("jaxhydro", "calibration"):
-        root = kept.Path(__import__(package).__file__).parent
+        root = checkpoint.Path(__import__(package).__file__).parent
         for file in root.rglob("*.py"):
             text = file.read_text(encoding="utf-8")
             for word in WORDS:

@@ -186,10 +186,10 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     """For every kind of effect: errors in diagnosis.json, by the diagnosis's own path, and in comparison.json of
     `simulate --calibration`, which reads the effect back from the file."""
     campaign = load_campaign(folder)
-    posed = set_up_study(campaign, OPTIONS)
-    study, started = posed.study, np.asarray(posed.study.space.start)
-    search = SimpleNamespace(study=study, setup=posed)
-    kinds = {one.effect: one for one in reversed(posed.candidates)}
+    setup = set_up_study(campaign, OPTIONS)
+    study, started = setup.study, np.asarray(setup.study.space.start)
+    search = SimpleNamespace(study=study, setup=setup)
+    kinds = {one.effect: one for one in reversed(setup.candidates)}
     assert {
         "sensor_reference",
         "sensor_lag",
@@ -211,7 +211,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
 
     null = Point(started, np.zeros((0, 0)))
     damping = ("linear_damping.B33",)
-    before = calibration(null, posed.declared, damping)
+    before = calibration(null, setup.declared, damping)
     changed = {}
     for effect, one in kinds.items():
         amplitude, shape = (
@@ -223,7 +223,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         places = (Point(started + size * amplitude + far * shape, null.own) for size, far in moves)
         place = next(at for at in places if all(np.isfinite(row).all() for row in study.motions(at)))
         values = {label: study.value(label, place.x) for label in (*one.labels, *one.choices)}
-        model = with_effects(posed.declared, values).with_values(values)
+        model = with_effects(setup.declared, values).with_values(values)
         after = calibration(place, model, (*damping, *values))
         found = fake_diagnosis(baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name)
         write_diagnosis(found, tmp_path / effect, figures=False)

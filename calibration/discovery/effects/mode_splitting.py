@@ -1,15 +1,17 @@
 """Starting point for a hidden oscillator: the two modes into which it splits one.
 
-A mass on a spring whose period is close to a motion's own does not perturb that motion, it makes two of it. Undamped, with
-omega_h the hull's own frequency, omega_0 the mass's and mu its share of the hull's (Den Hartog 1956, Mechanical Vibrations,
-section 3.2, the equation for the natural frequencies):
+An oscillator with a period close to that of a motion splits its mode into two. First-order slopes do not lead there. Undamped,
+with omega_h the hull's own frequency, omega_0 the oscillator's and mu its mass over the hull's:
 
     omega_1^2 + omega_2^2 = omega_h^2 + (1 + mu) omega_0^2,    omega_1^2 omega_2^2 = omega_h^2 omega_0^2
 
-In mode k the mass moves r_k = omega_0^2 / (omega_0^2 - omega_k^2) as far as the hull. Released from rest together with it,
-A_1 + A_2 = A_1 r_1 + A_2 r_2, which gives the third equation,
+In mode k the oscillator moves r_k = omega_0^2 / (omega_0^2 - omega_k^2) times as far as the hull. Released from rest together,
+A_1 + A_2 = A_1 r_1 + A_2 r_2, which gives the third equation:
 
     (omega_0^2 - omega_1^2) / (omega_2^2 - omega_0^2) = (A_1 / A_2) omega_1^2 / omega_2^2
+
+References:
+    Den Hartog 1956, Mechanical Vibrations, section 3.2, the equation for the natural frequencies.
 """
 
 import math

@@ -1,11 +1,11 @@
 """Starting point for a phase shift: gauge positions and clock lags too large for slopes.
 
-What turns first-order waves of every rate omega (rad/s) by a phase of c(omega) (rad) a unit, and does nothing else, makes
-X exp(i c d) of a linear platform's motion X, and i c X is its slope where there is none of it. So one look tells of every d:
+A shift d turns first-order waves of circular frequency omega (rad/s) by a phase c(omega) d (rad). A motion X of a linear
+platform becomes X exp(i c d), and its slope at no shift is i c X. So one linearisation gives the change for every d:
 
     motion changes by (exp(i c d) - 1) / (i c) times its slope
 
-A fit that follows slopes does not cross a phase of half a wave: it ends on the wrong side of it, and bends what else is free.
+A fit by slopes does not cross a phase of half a wave. It ends on the wrong side, and other parameters compensate.
 """
 
 import math

@@ -1,12 +1,15 @@
 """Law of few terms for a latent force, by sparse regression checked on other data.
 
-Small sparse regression over a library of terms, as Brunton, Proctor and Kutz 2016, PNAS 113, 3932-3937, eq. 3, but of at
-most three terms; which ones is tried out over all such sets, that orthogonal matching pursuit looks through one by one. The
-terms go through the filter that the force was seen through, so that like is compared with like.
+The library and the regression follow Brunton, Proctor and Kutz, with at most three terms. All sets of terms are tried, which
+orthogonal matching pursuit would look through one by one. Terms pass the filter that the force passed.
 
-A force moves the body: whatever it is, terms of the measured motion follow what it did, though it need not follow them. So
-coefficients are those of instrumental variables, the terms along the motion that was simulated without it (Soderstrom and
-Stoica 1989, System Identification, chapter 8): of a force from elsewhere nothing is left then.
+A force moves the body, so that terms of the measured motion correlate with it whatever its law. Coefficients are therefore
+found by instrumental variables: the terms along the motion simulated without the force. Nothing is left then of a force that
+does not depend on the motion.
+
+References:
+    Brunton, Proctor and Kutz 2016, PNAS 113, 3932-3937, eq. 3.
+    Soderstrom and Stoica 1989, System Identification, chapter 8.
 """
 
 from __future__ import annotations

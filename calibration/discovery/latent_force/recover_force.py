@@ -1,18 +1,20 @@
 """Recovery of the latent force from the residual, by the model's equation of motion.
 
-The residual r, measured less simulated, tapered at its ends, is taken through the model's own equation of motion: where that is
-linear, r = H F, r is divided by H. Where it is not, its accelerations a along the path that the record took and along the
-simulated one y are subtracted from each other, which is what an H about a mean motion would approximate:
+The latent force is what would have to act on the model for it to follow every record. The residual r, measured minus simulated
+and tapered at its ends, is put into the model's equation of motion. If that is linear, r = H F, and r is divided by H. If not,
+accelerations a along the recorded path and along the simulated path y are subtracted:
 
     F = M (d2r/dt2 - a(y + r) + a(y)),  M with the added mass at rest.
 
-What noise makes of it grows with the square of the frequency and is filtered out by the gain g = max(0, 1 - 3 N / P), P the
-periodogram of F over neighbouring lines and N that of |1 / H| times the noise: the Wiener deconvolution of Press et al. 1992,
-Numerical Recipes in C, section 13.3, eqs. 13.3.3 and 13.3.6, g = |S|^2 / (|S|^2 + |N|^2), with more than N taken off, as the
-periodogram of noise alone scatters. A gain found from r, not from F, would let through what the tapering of r does.
+Noise in F grows with the square of the frequency and is filtered by the gain g = max(0, 1 - 3 N / P). P is the periodogram of F
+over neighbouring lines, N that of |1 / H| times the noise. This is a Wiener filter, g = |S|^2 / (|S|^2 + |N|^2), with more than
+N taken off, since the periodogram of noise scatters. A gain found from r would let through the effect of tapering r.
 
-What is below the noise, or faster than `highest`, is not reconstructed; the ends are left out. Loads' memories stay at rest,
-motions that were not measured too, and sensors are taken to read the motion.
+A force below the noise, or faster than `highest`, is not recovered; the ends are left out. Loads' memories, and motions that
+were not measured, stay at rest. Sensors are assumed to read the motion.
+
+References:
+    Press et al. 1992, Numerical Recipes in C, section 13.3, eqs. 13.3.3 and 13.3.6.
 """
 
 from __future__ import annotations
