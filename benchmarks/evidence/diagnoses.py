@@ -198,9 +198,9 @@ def doubts(result: dict[str, Any]) -> list[str | None]:
     where a result is from before diagnoses told."""
     from calibration.discovery.acceptance import Verdict
     from calibration.discovery.diagnosis import HELD_OUT_ERROR
-    from calibration.discovery.doubts import outdone, risen
+    from calibration.discovery.doubts import held_out_error_rose, outdone_effects
 
-    if risen(*result["error"]):
+    if held_out_error_rose(*result["error"]):
         return [HELD_OUT_ERROR] * len(result["effects"])
     if "in_doubt" in result:
         return list(result["in_doubt"])
@@ -212,7 +212,7 @@ def doubts(result: dict[str, Any]) -> list[str | None]:
     let_in = {name: one for some in tried.values() for name, one in some.items() if name in names and not one.refused}
     worth = {name: one.bic + one.net for name, one in let_in.items()}
     taken_out = {name: Verdict(**one) for name, one in result.get("taken_out", {}).items()}
-    found = outdone(worth, tried.get(max(tried, default=0), {}) | taken_out)
+    found = outdone_effects(worth, tried.get(max(tried, default=0), {}) | taken_out)
     return [found.get(name) for name in names]
 
 
@@ -433,11 +433,11 @@ def thresholds(nulls: dict[Case, dict[str, Any]]) -> str:
     from calibration.discovery import acceptance as by
 
     rules = {
-        "bic": ("fall of BIC in the fitted tests", by.LEAST_BIC),
-        "together": ("that fall and the one of -2 ln L in the held-out tests together", by.LEAST_TOGETHER),
-        "held": ("share of the held-out squared error that goes", by.LEAST_GAIN),
-        "net": ("fall of -2 ln L in the held-out tests", by.LEAST_NET),
-        "clear": ("standard deviations from none", by.LEAST_CLEAR),
+        "bic": ("fall of BIC in the fitted tests", by.MIN_BIC_GAIN),
+        "together": ("that fall and the one of -2 ln L in the held-out tests together", by.MIN_LIKELIHOOD_GAIN),
+        "held": ("share of the held-out squared error that goes", by.MIN_HELD_OUT_SHARE),
+        "net": ("fall of -2 ln L in the held-out tests", by.MIN_HELD_OUT_GAIN),
+        "clear": ("standard deviations from none", by.MIN_SIGNIFICANCE),
         "matters": ("fall of an error, over what matters", 1.0),
     }
     tried = {

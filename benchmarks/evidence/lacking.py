@@ -57,7 +57,7 @@ def written_to(name: str) -> Path:
 def work(name: str) -> dict[str, Any]:
     """A campaign diagnosed, as the command line does it, and what its files say."""
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.discovery.checkpoint import FILE
+    from calibration.discovery.checkpoint import CHECKPOINT_FILE
     from calibration.discovery.diagnose import diagnose
     from calibration.results.result_folder import DIAGNOSIS_FILE
     from calibration.results.write_diagnosis import write_diagnosis
@@ -66,8 +66,8 @@ def work(name: str) -> dict[str, Any]:
     folder.mkdir(parents=True, exist_ok=True)
     if not (folder / DIAGNOSIS_FILE).exists():
         campaign = load_campaign(campaign_of(name))
-        write_diagnosis(diagnose(campaign.model, campaign, kept=folder / FILE), folder, figures=False)
-        (folder / FILE).unlink(missing_ok=True)
+        write_diagnosis(diagnose(campaign.model, campaign, kept=folder / CHECKPOINT_FILE), folder, figures=False)
+        (folder / CHECKPOINT_FILE).unlink(missing_ok=True)
     return numbers(folder, name)
 
 

@@ -6,8 +6,8 @@ from typing import Any
 from benchmarks.evidence.common import TRUE, table
 from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT, setup
 from benchmarks.evidence.numerical_tank_truth import REACH
-from calibration.discovery.acceptance import LOST, TIMES
-from calibration.discovery.effects.effect_names import called
+from calibration.discovery.acceptance import MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO
+from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.formatting import listed, number, percent, quantity
 from calibration.report.diagnosis_words import plain_name
 
@@ -74,7 +74,7 @@ def effects_table(found: dict[str, Any]) -> str:
 
 def named(one: dict[str, Any]) -> str:
     """An effect that was found, and whether it is in doubt."""
-    return called(one["effect"], one["motion"]) + ("" if one["in_doubt"] is None else " (in doubt)")
+    return effect_in_words(one["effect"], one["motion"]) + ("" if one["in_doubt"] is None else " (in doubt)")
 
 
 def said_of(found: dict[str, Any], effect: str, motion: str | None) -> str:
@@ -94,7 +94,7 @@ def missing_table(results: dict[str, Any], known: dict[str, Any]) -> str:
     for effect, motion in MISSING:
         alone = "–" if effect in IN_WAVES else said_of(results["decays"], effect, motion)
         said = said_of(results["all"], effect, motion)
-        rows.append((called(effect, motion), size_of(effect, motion, known), said, alone))
+        rows.append((effect_in_words(effect, motion), size_of(effect, motion, known), said, alone))
     return table(("In the tank", "Its size", "Decays and sea", "Decays alone"), rows)
 
 
@@ -244,7 +244,7 @@ def verdict_of(found: dict[str, Any]) -> str:
 def not_there(found: dict[str, Any], there: list[tuple[str, str | None]]) -> list[str]:
     """Names of what was found and is not in the tank."""
     pairs = [(one["effect"], one["motion"]) for one in found["effects"]]
-    return [called(*pair) for pair in pairs if pair not in there]
+    return [effect_in_words(*pair) for pair in pairs if pair not in there]
 
 
 def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
@@ -261,13 +261,13 @@ def shortcomings(results: dict[str, Any]) -> tuple[str, ...]:
     short = []
     if left:
         short.append(f"numerical tank: with what was found, the held-out sea is off by {', '.join(left)}")
-    if decay[1] > max(LOST, TIMES * decay[0]):
+    if decay[1] > max(MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO * decay[0]):
         short.append(
             f"numerical tank: fitted with a sea, the surge decay is given up: {percent(decay[1])} of it is left with "
             f"what was found, {percent(decay[0])} where the decays are fitted alone"
         )
     if lost:
-        short.append(f"numerical tank: there and not found: {listed([called(*pair) for pair in lost])}")
+        short.append(f"numerical tank: there and not found: {listed([effect_in_words(*pair) for pair in lost])}")
     if wrong := not_there(results["all"], MISSING):
         short.append(f"numerical tank: found and not there: {listed(wrong)}")
     if wrong := not_there(results["tables"], OF_TABLES):

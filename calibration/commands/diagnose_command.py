@@ -6,7 +6,7 @@ from pathlib import Path
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.manifest import IN_WAVES
 from calibration.commands.calibrate_command import load
-from calibration.discovery.checkpoint import FILE
+from calibration.discovery.checkpoint import CHECKPOINT_FILE
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
@@ -32,14 +32,14 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
     campaign = load(path, out, lambda c: calibrations.count_tests(c, ("decay", *IN_WAVES)))
     try:
         with progress() as show:
-            result = diagnose(campaign.model, campaign, progress=show, kept=out / FILE)
+            result = diagnose(campaign.model, campaign, progress=show, kept=out / CHECKPOINT_FILE)
     except Diverged as error:
         complain(f"{error}; nothing was written")
         return False
     except KeyboardInterrupt as stop:
         partial, stopped = getattr(stop, "partial", None), True
         if not isinstance(partial, Diagnosis):
-            if (out / FILE).exists():
+            if (out / CHECKPOINT_FILE).exists():
                 raise KeyboardInterrupt(f"stopped; the same command goes on from what was reached, which is in {out}") from None
             raise
         result = mark_unfinished(partial)
@@ -49,7 +49,7 @@ def diagnose_campaign(path: Path, out: Path, figures: bool = True) -> bool:
         complain(f"not converged: {error}; nothing was written")
         return False
     if not stopped:
-        (out / FILE).unlink(missing_ok=True)
+        (out / CHECKPOINT_FILE).unlink(missing_ok=True)
     saved = read_diagnosis(out / DIAGNOSIS_FILE)
     warned = {str(finding) for finding in group_findings(campaign.findings)}
     show_diagnosis(saved, [note for note in saved.notes if note not in warned])
@@ -89,7 +89,7 @@ def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
         say(f"Note: {note}")
     say(f"\n{words.verdict_sentence(saved)}", "bold")
     for one in saved.missing.effects:
-        name = words.capital(words.called(one.effect, one.degree_of_freedom))
+        name = words.capitalised(words.effect_in_words(one.effect, one.degree_of_freedom))
         say(f"{name}: {' '.join(words.describe_certainty(saved, one))} {words.describe_alternatives(one)}")
     say(words.describe_unexplained(saved))
     for force in saved.missing.unexplained.forces:

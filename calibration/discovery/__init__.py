@@ -1,1 +1,1 @@
-"""What a model lacks: the residual taken apart, candidate effects scored, refitted, judged on what was not fitted."""
+"""Model discovery: which effects a model lacks, tested on data that were not fitted."""

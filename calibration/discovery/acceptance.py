@@ -1,4 +1,4 @@
-"""Whether an effect is believed: what it gains in the fitted tests, and in what was not fitted."""
+"""Acceptance of an effect: BIC, held-out error, significance and relevance."""
 
 import math
 from dataclasses import dataclass
@@ -7,79 +7,109 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.eliminated_least_squares import likelihoods, predict
-from calibration.discovery.linearisations import FLOOR, Look, Prior
+from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, predict_gain
+from calibration.discovery.linearisations import RELATIVE_FLOOR, Linearisation, Prior
 from calibration.discovery.study import Study
 from calibration.formatting import percent
 from calibration.identifiability.information import pseudo_inverse
 
-# thresholds, set by what they do on campaigns with nothing missing
-LEAST_BIC = 6.0  # strong, by Kass and Raftery 1995
-LEAST_TOGETHER = 30.0  # with what -2 ln L of what was not fitted falls by; BIC alone where there is nothing of that kind
-LEAST_GAIN = 0.15  # share of the held-out error above the floor, squared
-LEAST_NET = 10.0  # by which -2 ln L of what was not fitted falls: very strong, by Kass and Raftery 1995
-LEAST_CLEAR = 3.0  # standard deviations
-LEAST_MATTER = 0.015  # of a motion: what takes less away from its error ...
-LEAST_SEEN = 3.0  # ... and less than that many times the floor, is no business of engineers, nor sure of its name
-SLIGHT = f"no error falls by {100 * LEAST_MATTER:.1f} % of the motion, nor by {LEAST_SEEN:.0f} times what can be seen"
+# thresholds, chosen so that nothing is found in campaigns with nothing missing
+MIN_BIC_GAIN = 6.0  # strong evidence (Kass and Raftery 1995)
+MIN_LIKELIHOOD_GAIN = 30.0  # BIC and held-out -2 ln L together; BIC alone without such data
+MIN_HELD_OUT_SHARE = 0.15  # fraction of the squared held-out error above the floor
+MIN_HELD_OUT_GAIN = 10.0  # decrease of held-out -2 ln L: very strong evidence (Kass and Raftery 1995)
+MIN_SIGNIFICANCE = 3.0  # standard deviations
+MIN_MOTION_SHARE = 0.015  # of a motion: smallest decrease of its error that matters ...
+MIN_FLOOR_MULTIPLE = 3.0  # ... or this many times the floor, if less
+NEGLIGIBLE = (
+    f"no error falls by {100 * MIN_MOTION_SHARE:.1f} % of the motion, nor by {MIN_FLOOR_MULTIPLE:.0f} times what can be seen"
+)
 FITTED, HELD_OUT, BLOCKS = "fitted tests", "held-out tests", "blocks left out in turn"
-LOST, TIMES = 0.1, 3.0  # of a decay's motion, and of what is left alone: what a joint fit may leave of it
+MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
+MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
 
 
-class Left(NamedTuple):
-    """What is above the floor, by series and region (s, 3; see `Study.by_region`): sums over degrees of freedom of squares over
-    the floor's, and root mean squares (m, rad); -2 ln L by series (s,)."""
+class ResidualSummary(NamedTuple):
+    """Residual above the noise floor, by motion and frequency region.
+
+    Attributes:
+        squares: Sum over degrees of freedom of (residual / floor)^2 less 1, by series and region (s, 3).
+        parts: Root mean square above the floor (m, rad), by series and region (s, 3). Regions: see `Study.by_region`.
+        likelihood: -2 ln L by series (s,).
+    """
 
     squares: np.ndarray
     parts: np.ndarray
     likelihood: np.ndarray
 
     @classmethod
-    def of(cls, study: Study, residual: np.ndarray) -> "Left":
-        """From rows of a residual."""
+    def of(cls, study: Study, residual: np.ndarray) -> "ResidualSummary":
+        """The summary of a residual given in rows (n,)."""
         above = study.dof * np.maximum(study.mean_squares(residual) - 1, 0.0)
         samples = np.array([one.samples for one in study.series])
         squares = study.by_region(study.pooled * np.maximum(study.levels(residual) - 1, 0.0))
         parts = np.sqrt(study.by_region(above * study.floor**2) / samples[:, None])
-        return cls(squares, parts, likelihoods(study, residual))
+        return cls(squares, parts, minus_two_log_likelihood(study, residual))
 
     @property
     def error(self) -> np.ndarray:
-        """Root mean squares by series (s,; m, rad)."""
+        """Root mean square above the floor by series (s,; m, rad)."""
         return np.sqrt((self.parts**2).sum(axis=1))
 
 
 @dataclass(frozen=True)
-class State:
-    """Effects in the model and the fit with them: its look, the residual of all tests, and by series (s,) -2 ln L and what is
-    left."""
+class FitState:
+    """A fit with some effects in the model.
+
+    Attributes:
+        chosen: The effects in the model.
+        look: Linearisation at the fitted point.
+        residual: Residual of all tests, in rows (n,).
+        settled: Whether the fit converged.
+        iterations: Iterations taken.
+        likelihood: -2 ln L by series (s,).
+        left: Residual above the noise floor.
+    """
 
     chosen: tuple[Candidate, ...]
-    look: Look
+    look: Linearisation
     residual: np.ndarray
     settled: bool
     iterations: int
     likelihood: np.ndarray
-    left: Left
+    left: ResidualSummary
 
 
-class Grounds(NamedTuple):
-    """What an effect is judged by: what is left of the `asked` series (s,) of a study without it and with it; whether the fits
-    had not seen them."""
+class HeldOutComparison(NamedTuple):
+    """Residuals without and with an effect, in the series that decide on it.
+
+    Attributes:
+        study: The study whose series are compared.
+        compared: Which of its series (s,) count.
+        before: Residual without the effect.
+        after: Residual with the effect.
+        unseen: Whether the compared series were not fitted.
+    """
 
     study: Study
-    asked: np.ndarray
-    before: Left
-    after: Left
+    compared: np.ndarray
+    before: ResidualSummary
+    after: ResidualSummary
     unseen: bool
 
-    def gain(self) -> tuple[float, bool]:
-        """Share of the squared error above the floor that is gone in the motion and region where it is most (a geometric mean
-        over tests), and whether there is anything to tell. An effect acts in a motion and in some frequencies: what goes on as
-        before elsewhere does not speak against it, and what becomes worse is in `net`."""
+    def error_reduction(self) -> tuple[float, bool]:
+        """Fraction of the squared error above the floor that the effect removes, where it removes most.
+
+        Motions and frequency regions are compared one by one; tests are averaged geometrically. An effect acts in one motion
+        and some frequencies: an unchanged error elsewhere does not count against it, and a larger one counts in
+        `likelihood_gain`.
+
+        Returns:
+            The fraction (1: all of it), and whether there was an error to reduce.
+        """
         dof = self.study.by_region(self.study.pooled)
         before, after = self.before.squares, self.after.squares
-        some = self.asked[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
+        some = self.compared[:, None] & (np.maximum(before, after) > 0.2 * dof) & (dof > 0)
         if not some.any():
             return 0.0, self.unseen
         ratio = np.log(np.where(some, after + 0.1 * dof, 1.0) / np.where(some, before + 0.1 * dof, 1.0))
@@ -91,30 +121,41 @@ class Grounds(NamedTuple):
         return 1 - math.exp(min(found)), True
 
     @property
-    def net(self) -> float:
-        """By how much -2 ln L of all that is asked falls."""
-        return float((self.before.likelihood - self.after.likelihood)[self.asked].sum())
+    def likelihood_gain(self) -> float:
+        """Decrease of -2 ln L summed over the compared series."""
+        return float((self.before.likelihood - self.after.likelihood)[self.compared].sum())
 
-    def matters(self) -> float:
-        """By how much the error of a motion in a region falls at most, over what matters. Of what a decay is not about, the
-        floor alone is a measure."""
+    def relevance(self) -> float:
+        """Largest decrease of a motion's error in a region, divided by the smallest decrease that matters.
+
+        In motions other than a decay's own, only the noise floor sets what matters.
+        """
         study = self.study
         samples = np.array([[one.samples] for one in study.series])
         squares = study.by_region(study.dof * study.floor**2) / samples
         noise = study.by_region(study.dof) * np.array([[one.noise**2] for one in study.series]) / samples
-        of_floor = np.array([[FLOOR[one.kind]] for one in study.series])
+        of_floor = np.array([[RELATIVE_FLOOR[one.kind]] for one in study.series])
         decay = np.array([[one.kind == "decay"] for one in study.series])
-        spread, seen = np.array([[(one.spread, one.least)] for one in study.series]).transpose(2, 0, 1)
+        spread, seen = np.array([[(one.spread, one.floor_rms)] for one in study.series]).transpose(2, 0, 1)
         motion = np.where(decay, spread, np.sqrt(np.maximum(squares - noise, 0.0)) / of_floor)
-        asked = np.where(study.main[:, None], LEAST_MATTER * motion, math.inf)
-        least = np.minimum(asked, LEAST_SEEN * np.where(decay, seen, np.sqrt(squares)))
-        fallen = (self.before.parts - self.after.parts)[self.asked]
-        return float((fallen / np.maximum(least[self.asked], 1e-300)).max(initial=0.0))
+        asked = np.where(study.main[:, None], MIN_MOTION_SHARE * motion, math.inf)
+        least = np.minimum(asked, MIN_FLOOR_MULTIPLE * np.where(decay, seen, np.sqrt(squares)))
+        fallen = (self.before.parts - self.after.parts)[self.compared]
+        return float((fallen / np.maximum(least[self.compared], 1e-300)).max(initial=0.0))
 
 
 class Verdict(NamedTuple):
-    """What a refit says of an effect: BIC, share of the squared error that goes, whether that is of what was not fitted, by how
-    much -2 ln L of all that falls, how clear the effect is, how much it matters, and why it is refused ("" where it is not)."""
+    """Outcome of the tests that an effect has to pass.
+
+    Attributes:
+        bic: Decrease of BIC in the fitted tests.
+        held: Fraction of the squared error that the effect removes.
+        unseen: Whether `held` is of data that were not fitted.
+        net: Decrease of -2 ln L of these data.
+        clear: Parameters over their standard deviations.
+        matters: Largest decrease of an error over the smallest that matters.
+        refused: Why the effect is rejected; "" where it is accepted.
+    """
 
     bic: float
     held: float
@@ -126,65 +167,104 @@ class Verdict(NamedTuple):
 
     @property
     def worth(self) -> float:
-        """What it gains in fitted and held-out tests together."""
+        """Gain in fitted and held-out tests together."""
         return self.bic + self.net
 
 
-def judge(study: Study, before: State, after: State, one: Candidate, prior: Prior, count: float, grounds: Grounds) -> Verdict:
-    """Whether an effect is believed; `count` are independent observations, for BIC."""
+def assess_effect(
+    study: Study, before: FitState, after: FitState, one: Candidate, prior: Prior, count: float, grounds: HeldOutComparison
+) -> Verdict:
+    """Whether an effect is accepted.
+
+    Args:
+        study: The study.
+        before: Fit without the effect.
+        after: Fit with the effect.
+        one: The effect.
+        prior: Priors of the fit with the effect.
+        count: Number of independent observations, for BIC.
+        grounds: Residuals without and with the effect, in the series that decide.
+
+    Returns:
+        The verdict, with the reason where the effect is rejected.
+    """
     bic = float((before.likelihood - after.likelihood)[study.used].sum()) - len(one.labels) * math.log(count)
-    held, told = grounds.gain()
-    net, clear, matters = grounds.net, clearness(study, one, after, prior), grounds.matters()
+    held, told = grounds.error_reduction()
+    net, clear, matters = grounds.likelihood_gain, significance(study, one, after, prior), grounds.relevance()
     values = {label: study.value(label, after.look.place.x) for label in one.positive}
-    wrong = [label for label, value in values.items() if value < 0 and clearly(study, label, one, after, prior)]
+    wrong = [label for label, value in values.items() if value < 0 and is_significant(study, label, one, after, prior)]
     refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow" if wrong else ""
     where = FITTED if not grounds.unseen else HELD_OUT if grounds.study is study else BLOCKS
-    refused = refused or refusal(bic, held if told else None, net, clear, matters, where)
-    if refused in ("", SLIGHT):  # which is said where nothing else speaks against it
-        refused = worse(study, one.dof, before.left, after.left) or refused
+    refused = refused or reason_to_reject(bic, held if told else None, net, clear, matters, where)
+    if refused in ("", NEGLIGIBLE):  # which is said where nothing else speaks against it
+        refused = worsened_motion(study, one.dof, before.left, after.left) or refused
     return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
 
 
-def refusal(bic: float, held: float | None, net: float, clear: float, matters: float, where: str) -> str:
-    """Why numbers are not enough to believe an effect, `held` and `net` of what is `where` (None: nothing to tell); else ""."""
+def reason_to_reject(bic: float, held: float | None, net: float, clear: float, matters: float, where: str) -> str:
+    """Reason why an effect is rejected, in words; "" where none applies.
+
+    Args:
+        bic: Decrease of BIC in the fitted tests.
+        held: Fraction of the squared error removed; None where there was no error to reduce.
+        net: Decrease of -2 ln L of the compared data.
+        clear: Parameters over their standard deviations.
+        matters: Largest decrease of an error over the smallest that matters.
+        where: Which data were compared: `FITTED`, `HELD_OUT` or `BLOCKS`.
+    """
     apart = held is not None and where == HELD_OUT
-    if bic < (least := LEAST_BIC if apart else LEAST_TOGETHER):
+    if bic < (least := MIN_BIC_GAIN if apart else MIN_LIKELIHOOD_GAIN):
         asked = f"{least:.0f} are asked" if apart else f"{least:.0f} are asked where nothing held out can tell"
         return f"it gains too little in the fitted tests (BIC {bic:+.0f}, {asked})"
-    if held is not None and held < LEAST_GAIN:
+    if held is not None and held < MIN_HELD_OUT_SHARE:
         change = f"falls by {100 * held:.0f} % only" if held >= 0 else f"grows by {-100 * held:.0f} %"
         return f"the squared error of the {where} {change}"
-    if held is not None and net < LEAST_NET:
+    if held is not None and net < MIN_HELD_OUT_GAIN:
         return f"all in all the {where} do not gain by it (-2 ln L {-net:+.0f})"
-    if apart and bic + net < LEAST_TOGETHER:
+    if apart and bic + net < MIN_LIKELIHOOD_GAIN:
         return f"it gains too little in fitted and held-out tests together (BIC {bic:+.0f}, -2 ln L {-net:+.0f})"
-    if clear < LEAST_CLEAR:
+    if clear < MIN_SIGNIFICANCE:
         return f"its parameters are no more than {clear:.1f} standard deviations from none"
     if matters < 1:
-        return SLIGHT
+        return NEGLIGIBLE
     return ""
 
 
-def worse(study: Study, dof: str | None, before: Left, after: Left) -> str:
-    """Why an effect is refused for J of the motion that it acts in (None: of all), in all tests or the held-out ones; "" where
-    it is not. Likelihoods weigh little what is slow, as unknown forces could do it (`Study.expected`); engineers ask for it."""
+def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, after: ResidualSummary) -> str:
+    """Reason to reject an effect with which its own motion is followed worse; "" where there is none.
+
+    The objective (sum of RMSE / standard deviation) is compared over all tests and over the held-out ones. Likelihoods give
+    slow motion little weight, since unknown forces could cause it (`Study.expected`); engineers ask for it.
+
+    Args:
+        study: The study.
+        dof: The motion that the effect acts in; None: all motions.
+        before: Residual without the effect.
+        after: Residual with the effect.
+    """
     mine = study.main & np.array([one.channel == (dof or one.channel) and one.spread > 0 for one in study.series])
     spread = np.array([one.spread if one.spread > 0 else 1.0 for one in study.series])
     for some, where in ((mine, "all tests"), (mine & ~study.used, f"the {HELD_OUT}")):
         was, now = (float((left.error / spread)[some].sum()) for left in (before, after))
-        if now > was + LEAST_MATTER:
+        if now > was + MIN_MOTION_SHARE:
             what, its = ("what moves is", "J") if dof is None else (f"{dof} is", "J of it")
             return f"{what} followed worse with it ({its} in {where}: {was:.3f} without it, {now:.3f} with it)"
     return ""
 
 
-def given_up(study: Study, alone: Left, now: Left) -> list[str]:
-    """In words, the decays that a fit to them `alone` follows and one to seas, too, does not."""
+def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary) -> list[str]:
+    """Decays that a fit to decays alone follows and a joint fit to decays and seas does not, in words.
+
+    Args:
+        study: The study.
+        alone: Residual of the fit to decays alone.
+        now: Residual of the joint fit.
+    """
     said = []
     for i, one in enumerate(study.series):
         if one.kind == "decay" and study.used[i] and study.main[i] and one.spread > 0:
             before, after = float(alone.error[i]) / one.spread, float(now.error[i]) / one.spread
-            if after > max(LOST, TIMES * before):
+            if after > max(MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO * before):
                 said.append(
                     f"fitted together with the seas, the decay {one.test} is given up: {percent(after)} of its motion is left, "
                     f"{percent(before)} where decays are fitted alone. The model cannot follow both, and what is said of "
@@ -193,18 +273,24 @@ def given_up(study: Study, alone: Left, now: Left) -> list[str]:
     return said
 
 
-def clearly(study: Study, label: str, one: Candidate, state: State, prior: Prior) -> bool:
-    """Whether a parameter is what it is beyond doubt: the only one of an effect always, of several by two deviations."""
+def is_significant(study: Study, label: str, one: Candidate, state: FitState, prior: Prior) -> bool:
+    """Whether a parameter differs from zero beyond doubt.
+
+    The only amplitude of an effect always does; one of several has to be two standard deviations away.
+    """
     i = study.names.index(label)
-    variance = predict(study, state.look, prior).covariance[state.look.active.index(i), state.look.active.index(i)]
+    variance = predict_gain(study, state.look, prior).covariance[state.look.active.index(i), state.look.active.index(i)]
     return len(one.amplitudes) == 1 or abs(float(study.steps(state.look.place.x)[i])) > 2 * math.sqrt(variance)
 
 
-def clearness(study: Study, one: Candidate, state: State, prior: Prior) -> float:
-    """The effect's parameters over their standard deviations: of several together, as one normal variable would be."""
+def significance(study: Study, one: Candidate, state: FitState, prior: Prior) -> float:
+    """An effect's amplitudes over their standard deviations.
+
+    Several amplitudes together are expressed as one normal variable (Wald statistic less the extra degrees of freedom).
+    """
     look = state.look
     columns = [look.active.index(i) for i in study.index(one.amplitudes)]
-    covariance = predict(study, look, prior).covariance[np.ix_(columns, columns)]
+    covariance = predict_gain(study, look, prior).covariance[np.ix_(columns, columns)]
     steps = study.steps(look.place.x)[study.index(one.amplitudes)]
     wald = float(steps @ pseudo_inverse(covariance) @ steps)
     return math.sqrt(max(wald - len(columns) + 1, 0.0))

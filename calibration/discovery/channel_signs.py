@@ -1,7 +1,7 @@
-"""Channels recorded with the other sign: what the declared model does in waves, turned round.
+"""Channels recorded with the wrong sign, found from motions in waves.
 
-Looked at before anything is fitted to the waves, at their own frequencies, where motions follow from the waves by first-order
-theory: a phase of half a turn in every test is no physics.
+Measured motions are compared with the declared model at wave frequencies, before anything is fitted in waves. There motions
+follow from the waves by first-order theory. A phase of 180 degrees in every test has no physical cause.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES, WAVE
 from calibration.campaign.signals import peak_frequency
 from calibration.discovery.diagnosis import Effect, Evidence
-from calibration.discovery.diagnosis_conclusion import tests_of
+from calibration.discovery.diagnosis_conclusion import test_fits_at
 from calibration.formatting import listed
 from calibration.residuals.sea_errors import bands_of
 from calibration.result import Estimate
@@ -24,37 +24,47 @@ from calibration.result import Estimate
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
 
-AGAINST = -0.6  # correlation of what is measured with the model, in every fitted test, below which it is turned round
-SEEN = 5.0  # times the noise, that a motion has to be to say anything
+MAX_REVERSED_CORRELATION = -0.6  # of measurement and model, in every fitted test of a reversed channel
+MIN_MOTION_OVER_NOISE = 5.0  # of a motion that is compared
 
 
-class Met(NamedTuple):
-    """A motion in the waves of a test, as the declared model has it: correlation, and squares of the error as it is recorded
-    and turned round."""
+class SignComparison(NamedTuple):
+    """Comparison of a measured motion with the declared model in one test, at wave frequencies.
+
+    Attributes:
+        channel: The motion.
+        use: Use of the test (fit, holdout).
+        correlation: Correlation of measurement and model (-1 to 1).
+        error: Squared error as recorded.
+        reversed_error: Squared error with the sign reversed.
+    """
 
     channel: str
     use: str
     correlation: float
     error: float
-    turned: float
+    reversed_error: float
 
 
 def reversed_channels(campaign: Campaign, search: Search) -> dict[str, Effect]:
-    """Effects by channel (motion, or `wave`): what has to be turned round. Of all motions alike it is the wave."""
+    """Channels whose sign is wrong, as effects by channel (a motion, or `wave`).
+
+    Where all motions are reversed, it is the wave.
+    """
     if not search.study.seas:
         return {}
     met = _met(campaign, search)
     fitted = [one for one in met if one.use == "fit"]
     told = list(dict.fromkeys(one.channel for one in fitted))
-    wrong = [name for name in told if all(one.correlation < AGAINST for one in fitted if one.channel == name)]
+    wrong = [name for name in told if all(one.correlation < MAX_REVERSED_CORRELATION for one in fitted if one.channel == name)]
     if wrong == told and len(told) > 1:
         return {WAVE: _effect(WAVE, met, ())}
     alike = (f"sensor_sign ({WAVE})",) if wrong == told else ()
     return {name: _effect(name, [one for one in met if one.channel == name], alike) for name in wrong}
 
 
-def turned(campaign: Campaign, channels: Sequence[str]) -> Campaign:
-    """The campaign with these channels' signs changed."""
+def with_signs_reversed(campaign: Campaign, channels: Sequence[str]) -> Campaign:
+    """The campaign with the signs of these channels changed."""
     manifest = campaign.manifest.turned(channels)
     tests = {test.id: test for test in manifest.tests}
     records = []
@@ -65,8 +75,8 @@ def turned(campaign: Campaign, channels: Sequence[str]) -> Campaign:
     return replace(campaign, manifest=manifest, records=tuple(records))
 
 
-def in_words(channels: Sequence[str]) -> str:
-    """What was turned, and how to mend it."""
+def reversal_note(channels: Sequence[str]) -> str:
+    """Note on reversed channels and how to correct the campaign file."""
     are, signs = ("is", "its sign") if len(channels) == 1 else ("are", "their signs")
     other = " It is as if the waves came from the other side." if {"surge", "pitch"} <= set(channels) else ""
     return (
@@ -75,9 +85,9 @@ def in_words(channels: Sequence[str]) -> str:
     )
 
 
-def _met(campaign: Campaign, search: Search) -> list[Met]:
+def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
     found = []
-    for test in tests_of(campaign, search, search.start):
+    for test in test_fits_at(campaign, search, search.start):
         wave = campaign.record(test.id).wave
         if test.kind not in IN_WAVES or wave is None:
             continue
@@ -89,17 +99,17 @@ def _met(campaign: Campaign, search: Search) -> list[Met]:
             there, model = (np.fft.rfft(taper * (x - x.mean()))[inside] for x in (series.measured, series.simulated))
             own, its = (float((np.abs(x) ** 2).sum()) for x in (there, model))
             noise = series.noise**2 * float((taper**2).sum()) * inside.sum()
-            if series.scored and min(own, its) > SEEN**2 * noise:
+            if series.scored and min(own, its) > MIN_MOTION_OVER_NOISE**2 * noise:
                 both = float((np.conj(model) * there).sum().real)
                 error, other = own + its - 2 * both, own + its + 2 * both
-                found.append(Met(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))
+                found.append(SignComparison(series.channel, test.use, both / float(np.sqrt(own * its)), error, other))
     return found
 
 
-def _effect(channel: str, met: Sequence[Met], alike: tuple[str, ...]) -> Effect:
+def _effect(channel: str, met: Sequence[SignComparison], alike: tuple[str, ...]) -> Effect:
     def gone(use: str) -> float:
         """Share of the squared error, motion by motion alike."""
-        shares = [1 - one.turned / one.error for one in met if one.use == use]
+        shares = [1 - one.reversed_error / one.error for one in met if one.use == use]
         return float(np.mean(shares)) if shares else float("nan")
 
     label, meaning = f"sensor_sign.{channel}", f"sign of the recorded {channel}, by that which is declared"

@@ -1,7 +1,6 @@
-"""What a diagnosis has reached, kept on disk from round to round, so that one that was killed goes on.
+"""Checkpoint of a diagnosis, written after every round so that a stopped run can resume.
 
-The file is plain data: a JSON document and arrays in a .npz. What reads it decides what is made of it, so that a file from
-somebody else can be wrong but not do anything.
+The file is a .npz of arrays and one JSON document. It is data only: a file from someone else may be wrong but cannot run code.
 """
 
 import io
@@ -15,8 +14,8 @@ from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hin
 import numpy as np
 
 from calibration.campaign.manifest import platform_source
-from calibration.discovery.acceptance import Left, State
-from calibration.discovery.candidate_trials import Found
+from calibration.discovery.acceptance import FitState, ResidualSummary
+from calibration.discovery.candidate_trials import AcceptedEffect
 from calibration.discovery.diagnosis import Rejected, Score
 from calibration.discovery.effects.candidates import Candidate
 from jaxhydro import fingerprint as fingerprints
@@ -25,29 +24,42 @@ from jaxhydro.files import staged
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
 
-FILE = ".diagnosis-under-way"
-ABOUT = "about"  # the JSON document in the file; arrays are numbered
+CHECKPOINT_FILE = ".diagnosis-under-way"
+DOCUMENT_KEY = "about"  # the JSON document in the file; arrays are numbered
 
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """What a search has reached. `states` are those after every round, `begun` the coordinates where it began, `seconds` what
-    it took (s); all others are the search's own."""
+    """State of a search after some rounds.
+
+    Attributes:
+        order: Second-order treatment of the seas.
+        declared_in_second_order: Fit of the declared model in second-order waves, where first order was chosen instead.
+        expected: Expected size of residual rows (n,), or None.
+        states: Fits after every round.
+        found: Evidence of accepted effects by name.
+        scores: Scores of candidates.
+        rejected: Rejected effects by name.
+        notes: Notes of the search.
+        alone: Residual of a fit to decays alone, or None.
+        begun: Parameter coordinates where the search began (p,).
+        seconds: Computing time (s).
+    """
 
     order: str
-    declared_in_second_order: State | None
+    declared_in_second_order: FitState | None
     expected: np.ndarray | None
-    states: tuple[State, ...]
-    found: dict[str, Found]
+    states: tuple[FitState, ...]
+    found: dict[str, AcceptedEffect]
     scores: tuple[Score, ...]
     rejected: dict[str, Rejected]
     notes: tuple[str, ...]
-    alone: Left | None
+    alone: ResidualSummary | None
     begun: np.ndarray
     seconds: float
 
-    def every_state(self) -> Iterator[State]:
-        """All states that are in it."""
+    def every_state(self) -> Iterator[FitState]:
+        """All fits in the checkpoint."""
         yield from self.states
         for one in self.found.values():
             yield from (one.before, one.after)
@@ -55,8 +67,18 @@ class Checkpoint:
             yield self.declared_in_second_order
 
 
-def keep(path: Path, search: "Search", states: list[State], seconds: float) -> None:
-    """Write what was reached, and what it took (s), whole or not at all. Raises InputError where it cannot be written."""
+def save_checkpoint(path: Path, search: "Search", states: list[FitState], seconds: float) -> None:
+    """Write a checkpoint file atomically.
+
+    Args:
+        path: The file.
+        search: The search.
+        states: Fits after every round.
+        seconds: Computing time so far (s).
+
+    Raises:
+        InputError: If the file cannot be written.
+    """
     reached = Checkpoint(
         search.order,
         search.declared_in_second_order,
@@ -78,24 +100,30 @@ def keep(path: Path, search: "Search", states: list[State], seconds: float) -> N
     }
     content = io.BytesIO()
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
-    np.savez(content, allow_pickle=False, **{ABOUT: text}, **{str(i): one for i, one in enumerate(arrays)})
+    np.savez(content, allow_pickle=False, **{DOCUMENT_KEY: text}, **{str(i): one for i, one in enumerate(arrays)})
     with staged(path.parent) as temporary:
         (temporary / path.name).write_bytes(content.getvalue())
 
 
-def resumed(path: Path, search: "Search", tell: Callable[[str], None] = lambda text: None) -> list[State]:
-    """The states that an earlier run of the same diagnosis reached, the search as it was then.
+def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = lambda text: None) -> list[FitState]:
+    """Restore a search from a checkpoint file of the same diagnosis.
 
-    Empty where there was none, or one that cannot be gone on from: `tell` is called with the reason in words.
+    Args:
+        path: The file.
+        search: The search; it is changed to what the checkpoint has.
+        tell: Called with the reason in words where a checkpoint cannot be used.
+
+    Returns:
+        Fits after every round; empty where there is no usable checkpoint.
     """
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
-            about = json.loads(file[ABOUT].tobytes())
+            about = json.loads(file[DOCUMENT_KEY].tobytes())
             if about["fingerprint"] != fingerprint(search):
                 tell(f"{path}: {_other(about['computed_with'])}; the diagnosis starts anew")
                 return []
-            arrays = {name: file[name] for name in file.files if name != ABOUT}
-        candidates = {one.name: one for one in search.posed.candidates}
+            arrays = {name: file[name] for name in file.files if name != DOCUMENT_KEY}
+        candidates = {one.name: one for one in search.setup.candidates}
         reached: Checkpoint = _rebuilt(Checkpoint, about["reached"], arrays, candidates)
         _check(reached, search)
     except FileNotFoundError:
@@ -114,18 +142,18 @@ def resumed(path: Path, search: "Search", tell: Callable[[str], None] = lambda t
 
 
 def fingerprint(search: "Search") -> str:
-    """Of all that a diagnosis depends on: what computes it, the campaign and its files, platform, candidates and options."""
-    posed, campaign = search.posed, search.campaign
+    """Hash of all inputs of a diagnosis: program, campaign and files, platform, candidates, options."""
+    setup, campaign = search.setup, search.campaign
     manifest, folder = campaign.manifest, campaign.folder
     files = [folder / test.file for test in manifest.tests]
     files += [Path(platform_source(manifest, folder)), *map(Path, campaign.platform.files().values())]
-    model = (campaign.platform, campaign.own, posed.declared)
-    study = (posed.study.names, posed.study.options, posed.motions, posed.candidates)
+    model = (campaign.platform, campaign.own, setup.declared)
+    study = (setup.study.names, setup.study.options, setup.motions, setup.candidates)
     return fingerprints.fingerprint(manifest, campaign.records, files, model, study)
 
 
 def _other(before: Any) -> str:
-    """In words, what is not as it was."""
+    """What differs between the checkpoint's program and this one, in words."""
     now = fingerprints.computed_with()
     before = before if isinstance(before, Mapping) else {}
     changed = [name for name, value in now.items() if before.get(name) != value]
@@ -134,7 +162,7 @@ def _other(before: Any) -> str:
 
 
 def _check(reached: Checkpoint, search: "Search") -> None:
-    """Raises ValueError where sizes are not those of the search."""
+    """Check array sizes against the search; raises ValueError."""
     study = search.study
     rows, series, free = len(study.row_series), len(study.series), len(study.start)
     if reached.order not in ("second", *study.other_seas) or not reached.states:
@@ -156,14 +184,14 @@ def _check(reached: Checkpoint, search: "Search") -> None:
 
 
 def _parts(kind: Any) -> tuple[str, ...] | None:
-    """Names of the fields of a dataclass or a named tuple; None of others."""
+    """Field names of a dataclass or named tuple; None for other types."""
     if is_dataclass(kind):
         return tuple(one.name for one in fields(kind))
     return getattr(kind, "_fields", None)
 
 
 def _packed(value: Any, arrays: list[np.ndarray]) -> Any:
-    """A value as JSON has it: arrays by their number, effects by their name (a load of one's own may not be written)."""
+    """A value as JSON: arrays by number, candidates by name (a user's own load may not be serialisable)."""
     if isinstance(value, Candidate):
         return value.name
     if isinstance(value, np.ndarray):
@@ -181,7 +209,7 @@ def _packed(value: Any, arrays: list[np.ndarray]) -> Any:
 
 
 def _rebuilt(kind: Any, value: Any, arrays: Mapping[str, np.ndarray], candidates: Mapping[str, Candidate]) -> Any:
-    """What `_packed` was given, of a kind. Raises ValueError, KeyError or TypeError where it is another."""
+    """Inverse of `_packed` for a given type; raises ValueError, KeyError or TypeError on a mismatch."""
 
     def inner(kind: Any, value: Any) -> Any:
         return _rebuilt(kind, value, arrays, candidates)

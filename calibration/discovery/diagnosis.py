@@ -1,4 +1,4 @@
-"""What a diagnosis returns, as values."""
+"""Result of a diagnosis: effects with evidence, scores, residuals, latent forces."""
 
 from dataclasses import dataclass
 
@@ -9,17 +9,21 @@ from calibration.discovery.acceptance import Verdict
 from calibration.residuals.measured_seas import Options
 from calibration.result import Calibration, Estimate
 
-# what an effect is in doubt for beside others that explain more
-SECOND_ORDER = "second_order"  # where the waves' own second order was left out
-HELD_OUT_ERROR = "held_out_error"  # where all that was found makes the held-out error larger, or its motion's part of it
+# reasons for doubt in an effect, beside a rejected effect that explains more
+SECOND_ORDER = "second_order"  # second-order waves were left out
+HELD_OUT_ERROR = "held_out_error"  # the effects increase the held-out error, in all or in the effect's motion
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Why an effect is believed: `score`, by how much -2 ln L of the fitted tests falls at first order when it is let in, what
-    the fitted parameters can do instead projected out; `delta_bic` after the refit (above 0 speaks for it); `holdout_gain`, the
-    share of the held-out tests' squared error that it takes away where it acts most (1: all of it); `clear`, the parameter over
-    its standard deviation."""
+    """Evidence for an effect.
+
+    Attributes:
+        score: First-order decrease of -2 ln L of the fitted tests, beyond what the fitted parameters can explain.
+        delta_bic: Decrease of BIC after the refit; positive values speak for the effect.
+        holdout_gain: Fraction of the held-out squared error removed, where the effect acts most (1: all of it).
+        clear: Parameters over their standard deviations.
+    """
 
     score: float
     delta_bic: float
@@ -29,10 +33,20 @@ class Evidence:
 
 @dataclass(frozen=True, eq=False)
 class Effect:
-    """An effect that was found: its name as in the contract, motion, parameters, evidence, the share of what was unexplained in
-    the fitted tests that it explains, the effects that the records cannot tell from it, and the test that would; `in_doubt` is
-    an effect that explains more beside it and is refused, so that this one may stand for what neither has; or
-    `SECOND_ORDER` or `HELD_OUT_ERROR`."""
+    """An effect that was found.
+
+    Attributes:
+        effect: Its name in the catalogue.
+        degree_of_freedom: The motion it acts in, or None.
+        meaning: What its amplitudes mean.
+        source: Reference of its law.
+        parameters: Estimates by label.
+        evidence: Why it is accepted.
+        share: Fraction of the unexplained error of the fitted tests that it explains.
+        indistinguishable: Effects that the records cannot tell from it.
+        telling_test: The test that would tell them apart, or None.
+        in_doubt: A rejected effect that explains more beside it, `SECOND_ORDER` or `HELD_OUT_ERROR`; None: no doubt.
+    """
 
     effect: str
     degree_of_freedom: str | None
@@ -48,7 +62,14 @@ class Effect:
 
 @dataclass(frozen=True, eq=False)
 class Rejected:
-    """An effect that was tried and is not in the model, and why; `taken_out`, the verdict that took it out of the model."""
+    """An effect that was tried and is not in the model.
+
+    Attributes:
+        effect: Its name in the catalogue.
+        degree_of_freedom: The motion it acts in, or None.
+        reason: Why it was rejected, in words.
+        taken_out: The verdict that removed it from the model, where it was in it.
+    """
 
     effect: str
     degree_of_freedom: str | None
@@ -58,9 +79,19 @@ class Rejected:
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """A candidate at its null, in one round: `gain` of -2 ln L at first order, degrees of freedom it takes, and what the
-    held-out tests would gain by the same step; `refitted` gains where it was tried (None: it was not), and by what it was
-    judged then."""
+    """Score of a candidate in one round.
+
+    Attributes:
+        round: Number of the round.
+        effect: Its name in the catalogue.
+        degree_of_freedom: The motion it acts in, or None.
+        gain: First-order decrease of -2 ln L of the fitted tests.
+        size: Number of amplitudes.
+        holdout: Decrease of -2 ln L of the held-out tests by the same step.
+        refitted: Decrease of -2 ln L after a refit; None: not refitted.
+        refitted_holdout: Fraction of the held-out squared error removed by the refit, or None.
+        verdict: Outcome of the acceptance tests, or None.
+    """
 
     round: int
     effect: str
@@ -75,8 +106,18 @@ class Score:
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """What is left of one motion of one test: `rms` (m, rad) of the residual, `noise` (m, rad), `relative` to the
-    motion's standard deviation, and the bands: (low, high in Hz, rms over noise)."""
+    """Residual of one motion of one test.
+
+    Attributes:
+        test: Name of the test.
+        use: Use of the test (fit, holdout).
+        channel: The motion.
+        rms: Root mean square of the residual (m, rad).
+        noise: Sensor noise (m, rad).
+        relative: Residual over the motion's standard deviation.
+        bands: Frequency bands: lower and upper edge (Hz), rms over noise.
+        words: The residual in words.
+    """
 
     test: str
     use: str
@@ -89,9 +130,14 @@ class Finding:
 
 
 @dataclass(frozen=True, eq=False)
-class Followed:
-    """How a latent force goes with something: `coherence`, the share of its mean square that follows it linearly; `phase` (rad)
-    by which the force is ahead of it; `correlation` at the same instant."""
+class ForceCoherence:
+    """Relation of a latent force to another quantity.
+
+    Attributes:
+        coherence: Fraction of the force's mean square that is a linear response to the quantity.
+        phase: Phase (rad) by which the force leads.
+        correlation: Correlation at the same instant.
+    """
 
     coherence: float
     phase: float
@@ -100,7 +146,14 @@ class Followed:
 
 @dataclass(frozen=True, eq=False)
 class LawTerm:
-    """A term of a law, in x (m, rad), v (m/s, rad/s) and eta (m), its coefficient (SI), and its number in the library."""
+    """A term of a force law in x (m, rad), v (m/s, rad/s) and eta (m).
+
+    Attributes:
+        name: The term.
+        coefficient: Its coefficient (SI).
+        unit: Unit of the coefficient.
+        kind: Its number in the library of terms.
+    """
 
     name: str
     coefficient: float
@@ -110,9 +163,16 @@ class LawTerm:
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """A law of few terms for a latent force; none where it does not explain enough of what was not fitted. `share`, of the
-    force's mean square in what `checked` names, `fitted` in the fitted tests; `v0` (m/s, rad/s) that of tanh(v/v0), `pace`
-    (rad/s) the omega of lagged velocity."""
+    """A law of few terms for a latent force.
+
+    Attributes:
+        terms: The terms; empty where no law explains enough of the data that were not fitted.
+        share: Fraction of the force's mean square explained in the data named by `checked`.
+        fitted: The same in the fitted tests.
+        checked: Which data `share` refers to, in words.
+        v0: Velocity scale of tanh(v / v0) (m/s, rad/s).
+        pace: Circular frequency omega of lagged velocity (rad/s).
+    """
 
     terms: tuple[LawTerm, ...]
     share: float
@@ -123,9 +183,17 @@ class Law:
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
-    """A stretch of a latent force (N, N m) at times of the record (s), its law (empty: none), and the velocity or wave `beside`
-    it."""
+class ForceExcerpt:
+    """Part of a latent force, to be plotted.
+
+    Attributes:
+        test: Name of the test.
+        time: Times of the record (s).
+        force: The force (N, N m).
+        law: The force by its law (N, N m); empty: no law.
+        beside: What is plotted beside it: `velocity` or `wave`.
+        values: Values of that quantity.
+    """
 
     test: str
     time: np.ndarray
@@ -137,32 +205,58 @@ class Shown:
 
 @dataclass(frozen=True, eq=False)
 class LatentForce:
-    """The force that the model lacks in one motion, by kind of test (decay, waves): rms (`unit`), shares of its mean square in
-    the mean and in bands, how it goes with other things, and how it grows (`growth`, powers by what it grows with). `relative`
-    is the residual over the motion's standard deviation in the test that is shown."""
+    """Force that the model lacks in one motion.
+
+    Dictionaries are by kind of test: `decay`, `waves`.
+
+    Attributes:
+        motion: The motion.
+        unit: N or N m.
+        rms: Root mean square.
+        shares: Fractions of the mean square in the mean and in frequency bands.
+        coherence: Relation to motions and waves.
+        growth: Exponents of its growth, by what it grows with.
+        law: A law of few terms.
+        words: Description in words.
+        shown: Part of it, to be plotted.
+        relative: Residual over the motion's standard deviation in the plotted test.
+    """
 
     motion: str
     unit: str
     rms: dict[str, float]
     shares: dict[str, dict[str, float]]
-    coherence: dict[str, dict[str, Followed]]
+    coherence: dict[str, dict[str, ForceCoherence]]
     growth: dict[str, float]
     law: Law
     words: str
-    shown: Shown
+    shown: ForceExcerpt
     relative: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """A campaign's model as declared and fitted (`baseline`), what it lacks, and the model with that (`augmented`).
+    """Result of a diagnosis: the declared model, the effects that it lacks, and the model with them.
 
-    `verdict` is "found", "nothing_missing" or "unexplained", which may have effects: all in doubt. `anatomy_before` and
-    `anatomy_after` are the residuals of both, motion by motion; `unexplained_share`, of the error's energy above the floor
-    that is left at the end, `signature` what is known of it in words; `next_test` what to measure next. `latent`, where the
-    verdict is "unexplained", are the forces that would make the model follow the records. `strips` is how strips are taken,
-    where the platform file does not say so, and `seas` how waves are made and act: both are part of what was found. `complete`
-    is False where the search was stopped before its end.
+    Attributes:
+        campaign: Name of the campaign.
+        verdict: "found", "nothing_missing" or "unexplained". The last may have effects, all in doubt.
+        baseline: Fit of the declared model.
+        augmented: Fit of the model with the effects found.
+        effects: The effects found.
+        rejected: Effects that were tried and rejected.
+        scores: Scores of all candidates in all rounds.
+        anatomy_before: Residuals of the baseline, by motion and test.
+        anatomy_after: Residuals of the augmented model, by motion and test.
+        unexplained_share: Fraction of the error's energy above the noise floor that is left.
+        signature: Description of the remaining residual, in words.
+        next_test: The test to do next, in words.
+        notes: Notes and doubts, in words.
+        seconds: Computing time (s).
+        latent: Missing forces by motion, where the verdict is "unexplained".
+        strips: How strips are taken, where the platform file does not say.
+        seas: How waves are reconstructed and act.
+        complete: False where the search was stopped before its end.
     """
 
     campaign: str

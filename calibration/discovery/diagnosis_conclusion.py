@@ -1,4 +1,4 @@
-"""What a diagnosis says in the end: models before and after, every test, effects with their evidence, and the verdict."""
+"""Conclusion of a search: fits before and after, effects with evidence, verdict."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding
-from calibration.discovery.doubts import doubts_of, in_doubt
+from calibration.discovery.doubts import doubted_effects, doubts_of
 from calibration.discovery.effects.candidates import Candidate, with_candidates, with_effects
-from calibration.discovery.effects.effect_names import called
-from calibration.discovery.eliminated_least_squares import predict
+from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.residual_anatomy import anatomy, signature
 from calibration.fitting.fit_conclusion import records_not_followed
@@ -26,35 +26,45 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import State
+    from calibration.discovery.acceptance import FitState
     from calibration.discovery.greedy_search import Search
-    from calibration.discovery.linearisations import Place
+    from calibration.discovery.linearisations import Point
 
-# of a motion: what is left beyond it, and twice the noise, is not for noise, nor for a model's last digits. Fitted seas of the
-# tank's campaigns with nothing missing leave up to 0.04
-LEFT = {"decay": 0.03, "waves": 0.05}
+# of a motion: a larger residual, above twice the noise, is unexplained. Fitted seas of synthetic campaigns with nothing missing
+# leave up to 0.04
+MAX_RESIDUAL_SHARE = {"decay": 0.03, "waves": 0.05}
 
 
 def conclude(
     campaign: Campaign,
     search: Search,
-    before: State,
-    after: State,
+    before: FitState,
+    after: FitState,
     notes: Sequence[str],
     seconds: float,
     first: Sequence[Effect] = (),
 ) -> Diagnosis:
-    """Everything that is reported, of the declared model's fit and the last one; `first`, effects found before both."""
+    """Assemble the diagnosis from a finished or stopped search.
+
+    Args:
+        campaign: The campaign.
+        search: The search.
+        before: Fit of the declared model.
+        after: Fit of the last model.
+        notes: Notes to report, in words.
+        seconds: Computing time (s).
+        first: Effects found before the search began.
+    """
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
-    doubted = in_doubt(search, after, baseline, augmented)
-    effects = (*first, *(effect_of(search, one, after, doubted.get(one.name)) for one in after.chosen))
+    doubted = doubted_effects(search, after, baseline, augmented)
+    effects = (*first, *(accepted_effect(search, one, after, doubted.get(one.name)) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
-    more = much(search, left)
+    more = unexplained_motions(search, left)
     sure = [one for one in effects if one.in_doubt is None]
     verdict = "found" if sure else ("unexplained" if effects or more else "nothing_missing")
-    lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], search.posed.declared)
+    lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], search.setup.declared)
     latent = latent_of(search, augmented) if verdict == "unexplained" else ()
     return Diagnosis(
         campaign.manifest.name,
@@ -77,42 +87,46 @@ def conclude(
     )
 
 
-def much(search: Search, left: Sequence[Finding]) -> list[Finding]:
-    """What is left of motions in the fitted tests, where that is more than noise and a model's last digits leave; the largest
-    share of a motion first."""
+def unexplained_motions(search: Search, left: Sequence[Finding]) -> list[Finding]:
+    """Residuals of fitted tests that exceed both noise and the usual error of a model, the largest first.
+
+    Only motions that a test is about count.
+    """
     kinds = {one.test: "decay" if one.kind == "decay" else "waves" for one in search.study.series}
     main = {(one.test, one.channel) for one, own in zip(search.study.series, search.study.main) if own}
     told = [one for one in left if one.use == "fit" and (one.test, one.channel) in main]
-    more = [one for one in told if one.rms > 2 * one.noise and one.relative > LEFT[kinds[one.test]]]
+    more = [one for one in told if one.rms > 2 * one.noise and one.relative > MAX_RESIDUAL_SHARE[kinds[one.test]]]
     return sorted(more, key=lambda one: -one.relative)
 
 
-def next_test(search: Search, after: State, verdict: str) -> str:
-    """The test that would tell what was found from others; where that is nothing, what comes nearest from the rest."""
+def next_test(search: Search, after: FitState, verdict: str) -> str:
+    """The test that would tell the effects found from others; without any, that of the best rejected one."""
     if verdict == "unexplained":
         tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
         best = max(tried, key=lambda one: one.verdict.bic if one.verdict else 0.0, default=None)
         name = None if best is None else (best.effect, best.degree_of_freedom)
-        mine = [one for one in search.posed.candidates if (one.effect, one.dof) == name]
-        return "; ".join(f"{one.telling} (of what was tried, {called(one.name)} came nearest)" for one in mine if one.telling)
+        mine = [one for one in search.setup.candidates if (one.effect, one.dof) == name]
+        return "; ".join(
+            f"{one.telling} (of what was tried, {effect_in_words(one.name)} came nearest)" for one in mine if one.telling
+        )
     return next((one.telling for one in after.chosen if one.telling), "")
 
 
-def augmented_model(search: Search, state: State) -> Model:
-    """The declared model with what was found, every parameter as fitted."""
+def augmented_model(search: Search, state: FitState) -> Model:
+    """The declared model with the effects found, all parameters as fitted."""
     active = search.active(state.chosen)
     moved = np.abs(search.study.directions[active]).sum(axis=0) > 0
     values = {label: search.study.value(label, state.look.place.x) for label, m in zip(search.study.labels, moved) if m}
     values |= {label: search.study.value(label, state.look.place.x) for one in state.chosen for label in one.choices}
     own = [one for one in state.chosen if one.load is not None]
-    return with_effects(with_candidates(search.posed.declared, own), values).at_values(values)
+    return with_effects(with_candidates(search.setup.declared, own), values).at_values(values)
 
 
-def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str, Estimate]:
-    """Parameters with standard deviations, of those directions that are one parameter each."""
+def estimates_of(search: Search, state: FitState, names: Sequence[str]) -> dict[str, Estimate]:
+    """Estimates with standard deviations of directions that are one parameter each."""
     look, study = state.look, search.study
     prior = search.prior(state.chosen)
-    deviations = predict(study, look, prior).deviation
+    deviations = predict_gain(study, look, prior).deviation
     values = {}
     for name in names:
         i = study.names.index(name)
@@ -131,15 +145,22 @@ def estimates_of(search: Search, state: State, names: Sequence[str]) -> dict[str
     return values
 
 
-def calibration_of(campaign: Campaign, search: Search, state: State, before: Calibration | None) -> Calibration:
-    """A fit in the form of a calibration: all tests, errors, bands. `before` gives the motions to compare with."""
+def calibration_of(campaign: Campaign, search: Search, state: FitState, before: Calibration | None) -> Calibration:
+    """A fit as a calibration result: parameters, tests, errors in bands.
+
+    Args:
+        campaign: The campaign.
+        search: The search.
+        state: The fit.
+        before: An earlier fit whose motions are compared with, or None.
+    """
     effects = [label for one in state.chosen for label in one.labels]
-    nuisances = [name for name in search.posed.nuisances if name in search.study.labels and name not in effects]
-    names = [*search.posed.base, *nuisances, *effects]
+    nuisances = [name for name in search.setup.nuisances if name in search.study.labels and name not in effects]
+    names = [*search.setup.base, *nuisances, *effects]
     lines = [one.label for one in search.study.space.free if one.label.startswith("mooring.")]
     choices = [label for one in state.chosen for label in one.choices]
     parameters = estimates_of(search, state, names) | _as_given(search, state, lines, False) | _as_given(search, state, choices)
-    tests = tests_of(campaign, search, state.look.place)
+    tests = test_fits_at(campaign, search, state.look.place)
     if before is not None:
         earlier = {test.id: test for test in before.tests}
         tests = [_with_start(test, earlier[test.id]) for test in tests]
@@ -158,8 +179,8 @@ def calibration_of(campaign: Campaign, search: Search, state: State, before: Cal
     )
 
 
-def _as_given(search: Search, state: State, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
-    """Values without deviations of their own: of what was chosen, and of mooring lines, nearly known, which move together."""
+def _as_given(search: Search, state: FitState, labels: Sequence[str], known: bool = True) -> dict[str, Estimate]:
+    """Values without standard deviations: of discrete choices, and of mooring lines that move together."""
     found = {}
     for label in labels:
         about, start = search.study.model.about(label), search.study.space.free[search.study.labels.index(label)].start
@@ -169,7 +190,7 @@ def _as_given(search: Search, state: State, labels: Sequence[str], known: bool =
 
 
 def _with_start(test: TestFit, before: TestFit) -> TestFit:
-    """A test with the motions and errors of an earlier fit as those before."""
+    """A test with the motions and errors of an earlier fit as its start."""
     start = {}
     for mine, other in zip(test.series, before.series):
         start[mine.channel] = other.simulated - other.offset + mine.offset if test.kind != "decay" else other.simulated
@@ -180,8 +201,8 @@ def _with_start(test: TestFit, before: TestFit) -> TestFit:
     return replace(test, start=start, bands=bands)
 
 
-def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
-    """Every test with the motions at a place."""
+def test_fits_at(campaign: Campaign, search: Search, place: Point) -> list[TestFit]:
+    """Measured and simulated motions of every test at a point."""
     study = search.study
     motions = study.motions(place)
     found = {}
@@ -210,7 +231,7 @@ def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
         for test, begin, values, residual in zip(sea.tests, sea.begins, np.asarray(sea.measured), every):
             record = by_id[test]
             series = tuple(
-                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in search.posed.motions)
+                Series(DOFS[dof], m, m + r, 0.0, record.noise[DOFS[dof]], DOFS[dof] in search.setup.motions)
                 for dof, m, r in zip(sea.dofs, values, residual)
             )
             time = np.asarray(sea.times[begin : begin + n])
@@ -220,7 +241,7 @@ def tests_of(campaign: Campaign, search: Search, place: Place) -> list[TestFit]:
 
 
 def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, dict[str, BandError]]:
-    """Relative errors of energies in bands, as the paper's, of a sea with this peak period (s)."""
+    """Relative errors of energy in frequency bands, for a sea of this peak period (s)."""
     found: dict[str, dict[str, BandError]] = {}
     for one in series:
         if not one.scored:
@@ -234,8 +255,15 @@ def _bands(series: Sequence[Series], step: float, period: float) -> dict[str, di
     return found
 
 
-def effect_of(search: Search, one: Candidate, after: State, doubt: str | None) -> Effect:
-    """An effect that is in the model at the end, with its evidence, and what it is in doubt for."""
+def accepted_effect(search: Search, one: Candidate, after: FitState, doubt: str | None) -> Effect:
+    """An effect of the final model, with its evidence.
+
+    Args:
+        search: The search.
+        one: The effect.
+        after: Fit of the final model.
+        doubt: Why it is in doubt (see `Effect.in_doubt`), or None.
+    """
     found, used = search.found[one.name], search.study.used
     left, now = float(found.before.left.squares[used].sum()), float(found.after.left.squares[used].sum())
     meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)

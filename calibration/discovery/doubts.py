@@ -1,4 +1,4 @@
-"""What is to be doubted of a diagnosis, in words."""
+"""Doubts about a diagnosis: effects that may stand for others."""
 
 from __future__ import annotations
 
@@ -9,37 +9,49 @@ import numpy as np
 
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Finding
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.effects.effect_names import called
+from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.formatting import listed, number, percent
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import State, Verdict
+    from calibration.discovery.acceptance import FitState, Verdict
     from calibration.discovery.greedy_search import Search
 
-MOVING = 0.2  # of the release, over the natural frequency: the speed at which a decay's first sample is not at rest
-MEMORY = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
-DRIFTS = ("wave_drift", "wave_drift_damping")  # of waves' squares, as what they bind is
-# times the held-out error of the declared model: what is rightly found makes it 1.01 times as large at most in the campaigns of
-# docs/validation.md, as scores are of likelihoods and of bands
-RISEN = 1.05
-FAR_OFF = 3.0  # times what is declared, or a third of it
+MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency
+MEMORY_EFFECTS = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
+DRIFT_EFFECTS = ("wave_drift", "wave_drift_damping")  # proportional to the square of the wave
+# of the held-out error to that of the declared model. True effects increase it to 1.01 times at most in the campaigns of
+# docs/validation.md, since likelihoods are not errors
+MAX_HELD_OUT_RATIO = 1.05
+MAX_COEFFICIENT_RATIO = 3.0  # of a coefficient to its declared value, or the inverse
 
 
-def doubts_of(search: Search, state: State, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
-    """Of the last fit; `more`, what is left of motions beyond noise."""
-    beside = [like(state.chosen, more)] if state.chosen and more else []
-    return [*in_motion(search, state), *beside, *far_off(search, fitted)]
+def doubts_of(search: Search, state: FitState, fitted: Calibration, more: Sequence[Finding]) -> list[str]:
+    """Notes on what is doubtful in the final fit.
+
+    Args:
+        search: The search.
+        state: The final fit.
+        fitted: The same as a calibration.
+        more: Residuals beyond noise that are left.
+    """
+    beside = [unexplained_note(state.chosen, more)] if state.chosen and more else []
+    return [*moving_release_notes(search, state), *beside, *far_coefficient_notes(search, fitted)]
 
 
-def outdone(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[str, str]:
-    """Effects that explain less than what was refused with all of them in the model, by name, and what that is: `tried` are the
-    verdicts of the last round, and of what was taken out after it, `worth` what an effect gained in fitted and held-out tests
-    together.
+def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[str, str]:
+    """Effects that explain less than a rejected effect does with all of them in the model.
 
-    Where the law that follows the fitted tests best by far is not the one that others follow, what acts has a law that no
-    candidate has, and one of a small gain is the next best likeness of it, not its name.
+    If the law that follows the fitted tests best does not hold in other tests, the true law is in no candidate. A small effect
+    may then be its nearest likeness only.
+
+    Args:
+        worth: Gain of every effect in fitted and held-out tests, by name.
+        tried: Verdicts of the last round and of removed effects, by name.
+
+    Returns:
+        The rejected effect by the name of the effect that it outdoes.
     """
     refused = {name: one.bic for name, one in tried.items() if one.refused}
     if not refused or any(name in worth for name in tried if name not in refused):  # the round let something in: there is more
@@ -48,12 +60,17 @@ def outdone(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[st
     return {name: best for name, gain in worth.items() if refused[best] > gain}
 
 
-def in_doubt(search: Search, state: State, before: Calibration, after: Calibration) -> dict[str, str]:
-    """What is `outdone` in a search that has come to its end; everything where the held-out error has `risen` from the declared
-    model's (`before`), and what acts in a motion of which it has; drift where the waves' own second order was left out as
-    motions follow worse with it: what acts in its place goes with the waves' square as well."""
+def doubted_effects(search: Search, state: FitState, before: Calibration, after: Calibration) -> dict[str, str]:
+    """Effects in doubt at the end of a search, with the reason.
+
+    Reasons, the later overriding the earlier:
+
+    - a rejected effect explains more (`outdone_effects`);
+    - the held-out error rose, in all or in the effect's motion;
+    - drift, where second-order waves were left out: both grow with the square of the wave.
+    """
     last = max((one.round for one in search.scores), default=0)
-    candidates = {(one.effect, one.dof): one.name for one in search.posed.candidates}
+    candidates = {(one.effect, one.dof): one.name for one in search.setup.candidates}
     tried = {
         candidates[one.effect, one.degree_of_freedom]: one.verdict
         for one in search.scores
@@ -61,38 +78,38 @@ def in_doubt(search: Search, state: State, before: Calibration, after: Calibrati
     }
     tried |= {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
     verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
-    found = outdone({name: one.worth for name, one in verdicts.items()}, tried)
-    every = risen(before.objective("holdout"), after.objective("holdout"))
-    worse = [dof for dof in DOFS if risen(before.objective("holdout", dof), after.objective("holdout", dof))]
+    found = outdone_effects({name: one.worth for name, one in verdicts.items()}, tried)
+    every = held_out_error_rose(before.objective("holdout"), after.objective("holdout"))
+    worse = [dof for dof in DOFS if held_out_error_rose(before.objective("holdout", dof), after.objective("holdout", dof))]
     found |= {one.name: HELD_OUT_ERROR for one in state.chosen if every or one.dof in worse}
     if search.declared_in_second_order is not None:
-        found |= {one.name: SECOND_ORDER for one in state.chosen if one.effect in DRIFTS}
+        found |= {one.name: SECOND_ORDER for one in state.chosen if one.effect in DRIFT_EFFECTS}
     return found
 
 
-def risen(before: float | None, after: float | None) -> bool:
-    """Whether the held-out error (J; None: of no test) is larger than that of the declared model, and not by a little."""
-    return before is not None and after is not None and after > RISEN * before
+def held_out_error_rose(before: float | None, after: float | None) -> bool:
+    """Whether the held-out objective clearly exceeds that of the declared model; None: no such test."""
+    return before is not None and after is not None and after > MAX_HELD_OUT_RATIO * before
 
 
-def like(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
-    """In words, that what was found does not make the model follow."""
-    names, worst = listed([called(one.effect, one.dof) for one in chosen]), more[0]
+def unexplained_note(chosen: Sequence[Candidate], more: Sequence[Finding]) -> str:
+    """Note that the effects found do not make the model follow the records."""
+    names, worst = listed([effect_in_words(one.effect, one.dof) for one in chosen]), more[0]
     return (
         f"with {names} in the model {percent(worst.relative)} of {worst.channel} is left in {worst.test}: what acts is not, or "
         "not only, what was found, and sizes are less sure than their deviations say"
     )
 
 
-def in_motion(search: Search, state: State) -> list[str]:
-    """In words, the decays that begin in motion, where that matters to what was found."""
-    names = [called(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY]
+def moving_release_notes(search: Search, state: FitState) -> list[str]:
+    """Note on decays that begin in motion, where an effect with memory was found."""
+    names = [effect_in_words(one.effect, one.dof) for one in state.chosen if one.effect in MEMORY_EFFECTS]
     study, said = search.study, []
     if study.decays is None or not names:
         return []
     for record, own in zip(study.decay_records, state.look.place.own.reshape(len(study.decay_records), 3, -1)):
         i = study.decays.data.dofs.index(DOFS.index(str(record.degree_of_freedom)))
-        if abs(own[1, i]) > MOVING * float(np.hypot(*own[:2, i])):
+        if abs(own[1, i]) > MAX_RELEASE_SPEED * float(np.hypot(*own[:2, i])):
             said.append(record.id)
     if not said:
         return []
@@ -102,10 +119,14 @@ def in_motion(search: Search, state: State) -> list[str]:
     ]
 
 
-def far_off(search: Search, fitted: Calibration) -> list[str]:
-    """In words, the coefficients that end far from what was declared."""
-    some = [fitted.parameters[label] for label in search.posed.base if label in fitted.parameters]
-    far = [one for one in some if one.identifiable and one.start > 0 and not 1 / FAR_OFF < one.value / one.start < FAR_OFF]
+def far_coefficient_notes(search: Search, fitted: Calibration) -> list[str]:
+    """Note on coefficients that end far from their declared values."""
+    some = [fitted.parameters[label] for label in search.setup.base if label in fitted.parameters]
+    far = [
+        one
+        for one in some
+        if one.identifiable and one.start > 0 and not 1 / MAX_COEFFICIENT_RATIO < one.value / one.start < MAX_COEFFICIENT_RATIO
+    ]
     if not far:
         return []
     named = ", ".join(f"{one.label} {number(one.value, 2)} ({number(one.start, 2)})" for one in far)

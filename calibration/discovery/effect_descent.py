@@ -1,7 +1,10 @@
-"""Fits along a few parameters: Levenberg-Marquardt with slopes kept from step to step, mended by what every step shows.
+"""Levenberg-Marquardt fit of a few parameters with Broyden updates of the Jacobian.
 
-A simulation costs some twentieth of what all slopes cost. Broyden's update (1965, Mathematics of Computation 19, 577-593) makes
-slopes agree with the last step; they are taken anew where they have ceased to predict.
+A simulation costs about a twentieth of all slopes. Broyden's update makes slopes agree with the last step. Slopes are computed
+anew where they no longer predict the gain.
+
+References:
+    Broyden 1965, Mathematics of Computation 19, 577-593.
 """
 
 from collections.abc import Callable
@@ -10,28 +13,48 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calibration.discovery.eliminated_least_squares import cost_of, linearly, solve, weights
-from calibration.discovery.linearisations import Look, Place, Prior
-from calibration.discovery.study import LOST, Study
+from calibration.discovery.eliminated_least_squares import cost_of, damped_step, linear_residual, row_weights
+from calibration.discovery.linearisations import Linearisation, Point, Prior
+from calibration.discovery.study import OVERFLOW, Study
 from jaxhydro.interrupts import stop_if_asked
 
-LONGEST = 0.7  # largest step of a coordinate that is a logarithm
-LEAST = 1e-4  # of what is minimised where a step begins: one that gains less is one too many, however many samples there are
-POOR = 0.25  # of what was predicted: slopes that give no more are stale
+MAX_LOG_STEP = 0.7  # largest step of a logarithmic coordinate
+MIN_RELATIVE_GAIN = 1e-4  # of the cost: a step that gains less ends the fit, whatever the number of samples
+MIN_PREDICTED_SHARE = 0.25  # of the predicted gain: slopes that give less are outdated
 
 
-class Reached(NamedTuple):
-    """Where a fit is: what was seen there, and whether it has settled."""
+class FitOutcome(NamedTuple):
+    """Result of a fit.
 
-    look: Look
+    Attributes:
+        look: Linearisation at the fitted point.
+        iterations: Iterations taken.
+        settled: Whether the fit converged.
+    """
+
+    look: Linearisation
     iterations: int
     settled: bool
 
 
-def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: np.ndarray, own: np.ndarray) -> Look:
-    """Slopes that agree with a step: Broyden's update, parameters measured by what they do to the residual."""
-    weight = weights(study, look.residual)
-    missed = residual - linearly(study, look, step, own)
+def broyden_update(
+    study: Study, look: Linearisation, place: Point, residual: np.ndarray, step: np.ndarray, own: np.ndarray
+) -> Linearisation:
+    """The linearisation after a step, its slopes corrected to agree with the step (Broyden's update).
+
+    Args:
+        study: The study.
+        look: Linearisation before the step.
+        place: The point after the step.
+        residual: Residual there, in rows (n,).
+        step: Step along the active directions (q,).
+        own: Step of the decays' own unknowns (r, o).
+
+    References:
+        Broyden 1965, Mathematics of Computation 19, 577-593.
+    """
+    weight = row_weights(study, look.residual)
+    missed = residual - linear_residual(study, look, step, own)
     slopes, mine = look.slopes.copy(), look.own.copy()
     size = (weight[:, None] * look.slopes**2).sum(axis=0) * step
     decays = study.spans[-1].stop if study.spans else 0
@@ -43,70 +66,90 @@ def mended(study: Study, look: Look, place: Place, residual: np.ndarray, step: n
         if total > 0:
             slopes[span] += np.outer(missed[span], size / total)
             mine[span] += np.outer(missed[span], inner / total)
-    return Look(place, look.active, residual, slopes, mine)
+    return Linearisation(place, look.active, residual, slopes, mine)
 
 
-def bounded(study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float) -> tuple[np.ndarray, np.ndarray]:
-    """A damped step that stays where parameters make sense: what would leave goes to the end, the others as is best then."""
-    step, own = solve(study, look, used, prior, damping)
+def bounded_step(
+    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """A damped step within the parameters' bounds.
+
+    Parameters that would leave go to the bound; the others are solved for again.
+
+    Returns:
+        Step along the active directions (q,), and of the decays' own unknowns (r, o).
+    """
+    step, own = damped_step(study, look, used, prior, damping)
     low, high = (study.limits[list(look.active)] - study.steps(look.place.x)[list(look.active), None]).T
     kept = np.clip(step, low, high)
     if (held := kept != step).any() and not held.all():
-        rest = look.along([i for i, out in zip(look.active, held) if not out])
+        rest = look.restricted_to([i for i, out in zip(look.active, held) if not out])
         rest = replace(rest, residual=look.residual + look.slopes[:, held] @ kept[held])
-        kept[~held], own = solve(study, rest, used, prior, damping)
+        kept[~held], own = damped_step(study, rest, used, prior, damping)
     return np.clip(kept, low, high), own
 
 
-def lost(residual: np.ndarray) -> bool:
-    """Whether a simulation diverges, of a test that is fitted or of one that is not: nothing is seen from there."""
-    return not bool((np.abs(residual) < LOST).all())
+def has_diverged(residual: np.ndarray) -> bool:
+    """Whether a simulation diverges, of a fitted or a held-out test."""
+    return not bool((np.abs(residual) < OVERFLOW).all())
 
 
 def fit(
     study: Study,
-    look: Look,
+    look: Linearisation,
     used: np.ndarray,
     prior: Prior,
     *,
     iterations: int,
-    looks: int = 0,
+    relinearisations: int = 0,
     tolerance: float = 0.5,
-    say: Callable[[int, float], None] = lambda *_: None,
-) -> Reached:
-    """Fit the directions of a look and the decays' own unknowns to the `used` series (s,), until a step gains less than
-    `tolerance`, or than `LEAST` of what is minimised there; slopes are taken anew at most `looks` times, and once more at the
-    end. It stays where a simulation diverges."""
+    report: Callable[[int, float], None] = lambda *_: None,
+) -> FitOutcome:
+    """Fit the directions of a linearisation, and the decays' own unknowns, to some series.
+
+    The fit ends where a step gains less than `tolerance`, or than `MIN_RELATIVE_GAIN` of the cost. A step that makes a
+    simulation diverge is rejected.
+
+    Args:
+        study: The study.
+        look: Linearisation where the fit begins.
+        used: Which series (s,) are fitted.
+        prior: Priors of the directions.
+        iterations: Maximum number of iterations.
+        relinearisations: How often slopes may be computed anew; if any, once more at the end.
+        tolerance: Smallest gain in cost that is worth a step.
+        report: Called with the iteration and the cost.
+    """
     logarithmic = study.logarithmic[list(look.active)]
     directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
-    if lost(look.residual):
-        return Reached(look, 0, False)
-    damping, settled, fresh, taken, left = 1e-3, False, True, 0, looks
+    if has_diverged(look.residual):
+        return FitOutcome(look, 0, False)
+    damping, settled, fresh, taken, left = 1e-3, False, True, 0, relinearisations
     while taken < iterations and not settled:
         stop_if_asked()
         taken += 1
-        step, own = bounded(study, look, used, prior, damping)
-        scale = min(1.0, LONGEST / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
+        step, own = bounded_step(study, look, used, prior, damping)
+        scale = min(1.0, MAX_LOG_STEP / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
         step, own = scale * step, scale * own
         there = look.place.moved(directions, step, own)
         residual = study.residual(there)
         cost = cost_of(study, look, residual, there, used, prior)
-        expected = now - cost_of(study, look, linearly(study, look, step, own), there, used, prior)
-        gain = -np.inf if lost(residual) else now - cost
-        least = max(tolerance, LEAST * abs(now))  # of what is minimised here, however large it was before
+        expected = now - cost_of(study, look, linear_residual(study, look, step, own), there, used, prior)
+        gain = -np.inf if has_diverged(residual) else now - cost
+        least = max(tolerance, MIN_RELATIVE_GAIN * abs(now))  # of what is minimised here, however large it was before
         known, little = fresh or not left, 0 <= gain < least or expected < least
         if gain > 0:
-            look, now, fresh = mended(study, look, there, residual, step, own), cost, False
+            look, now, fresh = broyden_update(study, look, there, residual, step, own), cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
-            say(taken, now)
-        if gain >= max(least, POOR * expected):
+            report(taken, now)
+        if gain >= max(least, MIN_PREDICTED_SHARE * expected):
             continue
         if known and little:
             settled = True
         elif not known:
-            look, fresh, left, damping = study.look(look.place, look.active), True, left - 1, 1e-3
+            look, fresh, left, damping = study.linearise(look.place, look.active), True, left - 1, 1e-3
         elif gain <= 0:
             damping = max(damping * 8, 1e-2)
             settled = damping > 1e6
-    return Reached(study.look(look.place, look.active) if looks and not fresh else look, taken, settled)
+    return FitOutcome(study.linearise(look.place, look.active) if relinearisations and not fresh else look, taken, settled)

@@ -1,4 +1,4 @@
-"""What a search fits: a campaign's study along the directions that some effects have, from the declared model's on."""
+"""Fits of a campaign's study with a given set of effects."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -10,35 +10,48 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.strip_conventions import StripConventions
-from calibration.discovery.acceptance import Grounds, Left, State, Verdict, judge
-from calibration.discovery.effect_descent import Reached, fit
+from calibration.discovery.acceptance import FitState, HeldOutComparison, ResidualSummary, Verdict, assess_effect
+from calibration.discovery.effect_descent import FitOutcome, fit
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.eliminated_least_squares import likelihoods
-from calibration.discovery.expected_residuals import expected
-from calibration.discovery.held_out_blocks import Blocks
-from calibration.discovery.linearisations import Look, Place, Prior
-from calibration.discovery.set_up import WIDE, Posed
+from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
+from calibration.discovery.expected_residuals import expected_rows
+from calibration.discovery.held_out_blocks import HeldOutBlocks
+from calibration.discovery.linearisations import Linearisation, Point, Prior
+from calibration.discovery.set_up import CANDIDATE_PRIOR_WIDTH, StudySetup
 from calibration.fitting.decay_fit import DecayFit, prepare_fit, run_fit
 from calibration.residuals.decays import first_guess
 
-Order = Literal["second", "first", "cut", "origin", "cut, origin"]
+SecondOrderTreatment = Literal["second", "first", "cut", "origin", "cut, origin"]
 """Seas with the second order that their records have, without, with its differences cut off, with it at the origin, or both."""
 
-LAST = 50  # iterations of what is let in
-LOOKS = 8  # slopes taken anew in that
-BETTER = 1.0  # of -2 ln L: what another fit has to gain to be gone on with
+MAX_ITERATIONS = 50  # iterations of a full refit
+MAX_RELINEARISATIONS = 8  # new slopes in a full refit
+MIN_FIT_GAIN = 1.0  # decrease of -2 ln L that another fit needs to be continued
 
 
-class Fits:
-    """Fits of a campaign with some effects in the model, and what they are worth."""
+class EffectFits:
+    """Fits of a campaign with some effects in the model, and their assessment.
 
-    def __init__(self, campaign: Campaign, posed: Posed, say: Callable[[str, float], None]) -> None:
-        self.campaign, self.posed, self.study, self.say = campaign, posed, posed.study, say
-        self.order: Order = "second"
-        self.plain: DecayFit | None = None  # an ordinary calibration to the decays, where one is at hand
+    Attributes:
+        campaign: The campaign.
+        setup: Study, candidates, priors.
+        study: The study, with the current seas and weights.
+        say: Called with the stage and its progress (0 to 1).
+        order: Current second-order treatment of the seas.
+        decay_calibration: Ordinary calibration to the decays, or None.
+        strips: How strips are taken, where not as the platform file says.
+        begun: Parameter coordinates where the search began (p,).
+        base: Directions that are free without any effect.
+        count: Number of independent observations, for BIC.
+    """
+
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+        self.campaign, self.setup, self.study, self.say = campaign, setup, setup.study, say
+        self.order: SecondOrderTreatment = "second"
+        self.decay_calibration: DecayFit | None = None  # an ordinary calibration to the decays, where one is at hand
         self.strips: StripConventions | None = None  # where they are not taken as the platform file says
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
-        self.base = self.study.index([*posed.base, *posed.nuisances])
+        self.base = self.study.index([*setup.base, *setup.nuisances])
         # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only
         self.count = max(2.0, float(self.study.dof[self.study.used].sum()) / 4)
 
@@ -47,22 +60,22 @@ class Fits:
         return list(dict.fromkeys([*self.base, *self.study.index([label for one in chosen for label in one.labels])]))
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
-        """What is nearly known, mass properties or draught, is not where it is what is looked for."""
-        width = self.posed.prior.width.copy()
+        """Priors with some effects in the model, whose amplitudes have wide ones."""
+        width = self.setup.prior.width.copy()
         for one in chosen:
-            width[self.study.index(one.amplitudes)] = WIDE
-        return Prior(self.posed.prior.mean, width)
+            width[self.study.index(one.amplitudes)] = CANDIDATE_PRIOR_WIDTH
+        return Prior(self.setup.prior.mean, width)
 
     @cached_property
-    def start(self) -> Place:
-        """Coefficients and releases of an ordinary calibration to the decays, which finds them from far away."""
+    def start(self) -> Point:
+        """Starting point: coefficients and releases of an ordinary calibration to the decays."""
         study = self.study
         x = np.asarray(study.space.start).copy()
         if study.decays is None:
-            return Place(x, np.zeros((0, 0)))
+            return Point(x, np.zeros((0, 0)))
         own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
-            if (plain := self.plain) is None:
+            if (plain := self.decay_calibration) is None:
                 run_fit(plain := prepare_fit(self.campaign), near=True)
             for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
@@ -71,94 +84,127 @@ class Fits:
             for k, (record, values) in enumerate(zip(plain.records, np.asarray(plain.unknowns.own))):
                 i = rows.index(record.id)
                 own[i] = (values.reshape(3, -1) * theirs[k] / mine[i]).ravel()
-        return Place(x, own)
+        return Point(x, own)
 
     def anchor(self, x: np.ndarray) -> None:
-        """The search begins at these coordinates; in waves coefficients are known from there: what the declared model lacks
-        would else move them to where they stand for it, linear damping for radiation, and slow motion is damped away."""
+        """Set where the search begins, and in waves centre the coefficients' priors there.
+
+        Otherwise coefficients would compensate for what the model lacks: linear damping for radiation, for instance.
+        """
         self.begun = x
         if not self.study.seas:
             return
         stated = {one.label for one in self.study.space.free if math.isfinite(one.prior_deviation)}
-        mine = self.study.index([name for name in self.posed.base if name not in stated])
-        mean = self.posed.prior.mean.copy()
+        mine = self.study.index([name for name in self.setup.base if name not in stated])
+        mean = self.setup.prior.mean.copy()
         mean[mine] = self.study.steps(x)[mine]
-        self.posed = self.posed._replace(prior=Prior(mean, self.posed.prior.width))
+        self.setup = self.setup._replace(prior=Prior(mean, self.setup.prior.width))
 
-    def expect(self, place: Place) -> None:
-        """What is seen in waves weighed from now on by what unknown forces leave of it, as they seem from a place."""
-        self.study = replace(self.study, expected=expected(self.study, place))
+    def weigh_by_expected(self, place: Point) -> None:
+        """Weigh tests in waves by the residuals that unknown forces would leave, estimated at a point."""
+        self.study = replace(self.study, expected=expected_rows(self.study, place))
 
-    def take_seas(self, order: Order) -> None:
-        """From now on the seas of this order."""
+    def take_seas(self, order: SecondOrderTreatment) -> None:
+        """Use the seas of this second-order treatment from now on."""
         self.order = order
-        self.study = replace(self.study, seas=self.posed.study.seas if order == "second" else self.study.other_seas[order])
+        self.study = replace(self.study, seas=self.setup.study.seas if order == "second" else self.study.other_seas[order])
         self.__dict__.pop("blocks", None)  # which were cut from others
 
-    def refit(self, look: Look, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
-        """All directions of a look, until nothing is gained."""
-        return self.state(chosen, self.fit(look, chosen, LAST, LOOKS, name, fraction))
+    def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
+        """Fit all directions of a linearisation until nothing is gained."""
+        return self.state(chosen, self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction))
 
-    def tried_from(self, place: Place, state: State, chosen: Sequence[Candidate], name: str, fraction: float) -> State:
-        """A state; where a fit of some effects from another place follows the fitted tests better, that one. It is looked for
-        with the state's slopes, and fitted anew only where it seems to be there."""
-        look = state.look.along(self.active(chosen))
+    def refitted_from(self, place: Point, state: FitState, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
+        """The better of a state and a fit from another point.
+
+        The state's slopes are used to test the other point; only if it seems better are slopes computed anew.
+        """
+        look = state.look.restricted_to(self.active(chosen))
         there = replace(look, place=place, residual=self.study.residual(place))
-        reached = self.fit(there, chosen, LAST, 0, name, fraction).look
-        gain = float((state.likelihood - likelihoods(self.study, reached.residual))[self.study.used].sum())
-        if gain < BETTER:
+        reached = self.fit(there, chosen, MAX_ITERATIONS, 0, name, fraction).look
+        gain = float((state.likelihood - minus_two_log_likelihood(self.study, reached.residual))[self.study.used].sum())
+        if gain < MIN_FIT_GAIN:
             return state
-        return self.likeliest(state, self.refit(self.study.look(reached.place, look.active), chosen, name, fraction))
+        return self.likeliest(state, self.refit(self.study.linearise(reached.place, look.active), chosen, name, fraction))
 
-    def fit(self, look: Look, chosen: Sequence[Candidate], iterations: int, looks: int, name: str, fraction: float) -> Reached:
+    def fit(
+        self,
+        look: Linearisation,
+        chosen: Sequence[Candidate],
+        iterations: int,
+        relinearisations: int,
+        name: str,
+        fraction: float,
+    ) -> FitOutcome:
+        """Fit all directions of a linearisation for some iterations, reporting progress."""
+
         def report(i: int, cost: float) -> None:
             self.say(f"{name}: iteration {i}, -2 ln L {cost:.0f}", fraction)
 
         prior = self.prior(chosen)
-        return fit(self.study, look, self.study.used, prior, iterations=iterations, looks=looks, tolerance=1.0, say=report)
+        return fit(
+            self.study,
+            look,
+            self.study.used,
+            prior,
+            iterations=iterations,
+            relinearisations=relinearisations,
+            tolerance=1.0,
+            report=report,
+        )
 
-    def state(self, chosen: Sequence[Candidate], reached: Reached) -> State:
-        """What a fit has reached; the held-out decays' own unknowns are fitted to them, the parameters as they are."""
+    def state(self, chosen: Sequence[Candidate], reached: FitOutcome) -> FitState:
+        """The state that a fit reached; held-out decays' own unknowns are fitted with the parameters fixed."""
         study, look = self.study, reached.look
         if study.decays is not None and not study.fitted_decays.all():
-            alone = fit(study, look.along(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
+            alone = fit(study, look.restricted_to(()), ~study.used, self.prior(chosen), iterations=4, tolerance=0.5).look
             look = replace(alone, active=look.active, slopes=look.slopes)
         residual, settled, taken = study.residual(look.place, "all"), reached.settled, reached.iterations
-        return State(tuple(chosen), look, residual, settled, taken, likelihoods(study, residual), Left.of(study, residual))
+        return FitState(
+            tuple(chosen),
+            look,
+            residual,
+            settled,
+            taken,
+            minus_two_log_likelihood(study, residual),
+            ResidualSummary.of(study, residual),
+        )
 
-    def shaped(self, place: Place, values: Mapping[str, float]) -> Place:
-        """A place with some parameters as given."""
+    def with_values(self, place: Point, values: Mapping[str, float]) -> Point:
+        """A point with some parameters (SI) as given."""
         x = place.x.copy()
         for label, value in values.items():
             i = self.study.labels.index(label)
             x[i] = self.study.space.free[i].transform.inverse(value)
-        return Place(x, place.own)
+        return Point(x, place.own)
 
-    def renewed(self, place: Place, names: Sequence[str]) -> Place:
-        """A place where some directions are as they were where the search began."""
+    def with_starting_values(self, place: Point, names: Sequence[str]) -> Point:
+        """A point with some directions set back to where the search began."""
         at = np.abs(self.study.directions[self.study.index(names)]).sum(axis=0) > 0
         return replace(place, x=np.where(at, self.begun, place.x))
 
-    def likeliest(self, *states: State) -> State:
-        """The one that follows the fitted tests best."""
+    def likeliest(self, *states: FitState) -> FitState:
+        """The state that follows the fitted tests best."""
         return min(states, key=lambda state: float(state.likelihood[self.study.used].sum()))
 
-    def judge(self, before: State, after: State, one: Candidate, last: bool = False) -> Verdict:
-        """Whether an effect is believed: by the tests held out; where there are none by the fitted ones, and at `last` by their
-        blocks left out in turn."""
+    def assess(self, before: FitState, after: FitState, one: Candidate, last: bool = False) -> Verdict:
+        """Whether an effect is accepted, by the held-out tests.
+
+        Without held-out tests the fitted ones decide, and at `last` blocks of them that are left out in turn.
+        """
         study, prior = self.study, self.prior(after.chosen)
-        grounds = Grounds(study, ~study.used, before.left, after.left, True)
+        grounds = HeldOutComparison(study, ~study.used, before.left, after.left, True)
         if study.used.all():
-            grounds = grounds._replace(asked=study.used, unseen=False)
+            grounds = grounds._replace(compared=study.used, unseen=False)
             if last and self.blocks is not None:
-                without, with_it = (self.blocks.left(state, self.prior(state.chosen)) for state in (before, after))
-                grounds = Grounds(self.blocks.study, np.ones(len(without.error), bool), without, with_it, True)
-        return judge(study, before, after, one, prior, self.count, grounds)
+                without, with_it = (self.blocks.residual_summary(state, self.prior(state.chosen)) for state in (before, after))
+                grounds = HeldOutComparison(self.blocks.study, np.ones(len(without.error), bool), without, with_it, True)
+        return assess_effect(study, before, after, one, prior, self.count, grounds)
 
     @cached_property
-    def blocks(self) -> Blocks | None:
+    def blocks(self) -> HeldOutBlocks | None:
         """The fitted tests in blocks; None where none can be cut."""
         try:
-            return Blocks(self.study, self.campaign.records)
+            return HeldOutBlocks(self.study, self.campaign.records)
         except ValueError:
             return None

@@ -1,10 +1,15 @@
-"""Least squares with the decays' own unknowns eliminated: weights, equations, steps, and what a step would gain.
+"""Least squares with the decays' own unknowns eliminated: weights, normal equations, gains.
 
--2 ln L = sum over motions and pools of bands of n ln m, n the pool's degrees of freedom and m the mean square over the floor's
-(Whittle 1953, Arkiv for Matematik 2, 423-434, with a spectrum that is known up to a factor by pool, which is estimated: see
-`expected_residuals`), and the priors' squares. The spectrum is the floor's at least: where m < 1 the term is
-n (m - 1). A fit minimises n (m^p - 1) / p in place of n ln m (Box and Cox 1964, Journal of the Royal Statistical Society B 26,
-211-252): near the floor the same, but a record that is not followed is not given up for others.
+-2 ln L is the sum over motions and pools of bands of n ln m, and the squares of the priors. n is the number of degrees of
+freedom of the pool, m its mean square over the floor's. The spectrum is known up to a factor by pool, which is estimated (see
+`expected_residuals`). It is at least the floor's: where m < 1 the term is n (m - 1).
+
+A fit minimises n (m^p - 1) / p in place of n ln m (Box-Cox transformation). Near the floor both agree, but no record is given
+up for the others.
+
+References:
+    Whittle 1953, Arkiv for Matematik 2, 423-434.
+    Box and Cox 1964, Journal of the Royal Statistical Society B 26, 211-252.
 """
 
 from collections.abc import Sequence
@@ -13,53 +18,71 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import boxcox
 
-from calibration.discovery.linearisations import Look, Place, Prior
+from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.study import Study
 from calibration.identifiability.information import pseudo_inverse
 
-POWER = 0.2  # p: 0 is the logarithm
-FAR = 3.0  # standard deviations of a prior: beyond them it is steep
-ROUNDS = 6  # of weights
-ROUNDING = 1e-12  # of the largest eigenvalue of scaled equations: slopes that Broyden's update mended are no better
+BOX_COX_POWER = 0.2  # p; 0 is the logarithm
+STEEP_PRIOR_DEVIATIONS = 3.0  # standard deviations beyond which a prior is steep
+REWEIGHTINGS = 6  # updates of the weights
+EIGENVALUE_ROUNDING = 1e-12  # of the largest eigenvalue of scaled equations: the accuracy of updated slopes
 
 
 def deviances(study: Study, residual: np.ndarray, power: float) -> np.ndarray:
-    """n (m^p - 1) / p of every series and pool (s, b), n ln m for p = 0; n (m - 1) below the floor."""
+    """Deviance of every series and pool of bands (s, b).
+
+    n (m^p - 1) / p with p = `power`, n ln m for p = 0; n (m - 1) below the floor.
+    """
     mean_square = study.levels(residual)
     return study.pooled * (boxcox(np.maximum(mean_square, 1.0), power) + np.minimum(mean_square - 1, 0.0))
 
 
-def cost_of(study: Study, look: Look, residual: np.ndarray, place: Place, used: np.ndarray, prior: Prior) -> float:
-    """What is minimised, of the `used` series (s,) and the priors, with this residual at this place."""
-    value = float(deviances(study, residual, POWER)[used].sum())
-    value += float((away(study, place, prior)[0][list(look.active)] ** 2).sum())
+def cost_of(study: Study, look: Linearisation, residual: np.ndarray, place: Point, used: np.ndarray, prior: Prior) -> float:
+    """The cost that a fit minimises: deviances of the fitted series, and squares of the priors.
+
+    Args:
+        study: The study.
+        look: Linearisation whose directions are free.
+        residual: Residual in rows (n,).
+        place: The point that the residual is of.
+        used: Which series (s,) are fitted.
+        prior: Priors of the directions.
+    """
+    value = float(deviances(study, residual, BOX_COX_POWER)[used].sum())
+    value += float((prior_residuals(study, place, prior)[0][list(look.active)] ** 2).sum())
     return value + float(((place.own / study.own_width) ** 2).sum())
 
 
-def away(study: Study, place: Place, prior: Prior) -> tuple[np.ndarray, np.ndarray]:
-    """What priors are the squares of (p,), and its slopes along the directions: z (1 + (z / FAR)^2), z how far from what is
-    expected in standard deviations.
+def prior_residuals(study: Study, place: Point, prior: Prior) -> tuple[np.ndarray, np.ndarray]:
+    """Residuals of the priors, and their slopes along the directions (each d,).
 
-    A Gaussian prior is no match for thousands of samples of what the model lacks: a mass that was weighed would be moved by
-    twenty of its deviations.
+    z (1 + (z / 3)^2) with z the distance from the mean in standard deviations (`STEEP_PRIOR_DEVIATIONS` is 3). A Gaussian prior
+    is too weak against thousands of samples of what the model lacks: a weighed mass would be moved by twenty deviations.
     """
     z = (study.steps(place.x) - prior.mean) / prior.width
-    return z * (1 + (z / FAR) ** 2), (1 + 3 * (z / FAR) ** 2) / prior.width
+    return z * (1 + (z / STEEP_PRIOR_DEVIATIONS) ** 2), (1 + 3 * (z / STEEP_PRIOR_DEVIATIONS) ** 2) / prior.width
 
 
-def likelihoods(study: Study, residual: np.ndarray) -> np.ndarray:
+def minus_two_log_likelihood(study: Study, residual: np.ndarray) -> np.ndarray:
     """-2 ln L of every series (s,)."""
     return deviances(study, residual, 0.0).sum(axis=1)
 
 
-def weights(study: Study, residual: np.ndarray) -> np.ndarray:
-    """By which rows' squares count where `cost_of` is taken as quadratic."""
-    each = study.pooled * np.maximum(study.levels(residual), 1.0) ** (POWER - 1)
+def row_weights(study: Study, residual: np.ndarray) -> np.ndarray:
+    """Weights of rows (n,) in the quadratic approximation of `cost_of`."""
+    each = study.pooled * np.maximum(study.levels(residual), 1.0) ** (BOX_COX_POWER - 1)
     return each.ravel()[study.pool] * study.share
 
 
-class Block(NamedTuple):
-    """Of one decay: Gauss-Newton matrix and gradient of its own unknowns, and the cross block; whether it is fitted."""
+class DecayBlock(NamedTuple):
+    """Part of the normal equations that belongs to one decay.
+
+    Attributes:
+        own: Gauss-Newton matrix of its own unknowns (o, o).
+        cross: Cross block with the parameters (o, q).
+        slope: Gradient of its own unknowns (o,).
+        fitted: Whether the decay is fitted.
+    """
 
     own: np.ndarray
     cross: np.ndarray
@@ -67,16 +90,25 @@ class Block(NamedTuple):
     fitted: bool
 
 
-class Equations(NamedTuple):
-    """Gauss-Newton matrix and gradient of the parameters, and every decay's block: an arrow."""
+class NormalEquations(NamedTuple):
+    """Gauss-Newton equations of parameters and of every decay's own unknowns (arrow form).
+
+    Attributes:
+        matrix: Matrix of the parameters (q, q).
+        slope: Gradient of the parameters (q,).
+        blocks: One block for every decay.
+    """
 
     matrix: np.ndarray
     slope: np.ndarray
-    blocks: list[Block]
+    blocks: list[DecayBlock]
 
     def reduced(self, damping: float = 0.0) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-        """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated, and what gives all of these
-        back."""
+        """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated.
+
+        Returns:
+            Matrix (q, q), gradient (q,), and by decay what recovers its own unknowns (o, q + 1).
+        """
         matrix, slope = self.matrix + damping * np.diag(np.diag(self.matrix)), self.slope
         back = []
         for block in self.blocks:
@@ -89,10 +121,18 @@ class Equations(NamedTuple):
         return matrix, slope, back
 
 
-def equations(study: Study, look: Look, weight: np.ndarray, used: np.ndarray, prior: Prior) -> Equations:
-    """Of the `used` series (s,) for the parameters; of all decays for their own unknowns. `weight` (n,) by row."""
+def normal_equations(study: Study, look: Linearisation, weight: np.ndarray, used: np.ndarray, prior: Prior) -> NormalEquations:
+    """Normal equations of a linearisation.
+
+    Args:
+        study: The study.
+        look: The linearisation.
+        weight: Weights of rows (n,).
+        used: Which series (s,) are fitted; every decay's own unknowns take part.
+        prior: Priors of the directions.
+    """
     active = list(look.active)
-    far, steep = (one[active] for one in away(study, look.place, prior))
+    far, steep = (one[active] for one in prior_residuals(study, look.place, prior))
     mine = weight * used[study.row_series]
     matrix = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(steep**2)
     slope = look.slopes.T @ (mine * look.residual) + steep * far
@@ -100,47 +140,60 @@ def equations(study: Study, look: Look, weight: np.ndarray, used: np.ndarray, pr
     for i, span in enumerate(study.spans):
         own, slopes, w = look.own[span], look.slopes[span], weight[span]
         blocks.append(
-            Block(
+            DecayBlock(
                 own.T @ (w[:, None] * own) + np.diag(1 / study.own_width[i] ** 2),
                 own.T @ (w[:, None] * slopes),
                 own.T @ (w * look.residual[span]) + look.place.own[i] / study.own_width[i] ** 2,
                 bool(used[study.row_series[span]].any()),
             )
         )
-    return Equations(matrix, slope, blocks)
+    return NormalEquations(matrix, slope, blocks)
 
 
-def own_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarray) -> np.ndarray:
-    """What the decays' own unknowns do where the parameters take a step."""
+def decay_unknown_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarray) -> np.ndarray:
+    """Steps of the decays' own unknowns (r, o) for a step of the parameters (q,)."""
     return np.array([-(one[:, -1] + one[:, :-1] @ step) for one in back]).reshape(study.own_width.shape)
 
 
-def inverted(matrix: np.ndarray) -> np.ndarray:
-    """A symmetric matrix's inverse, or pseudo-inverse, of parameters of any size."""
-    return pseudo_inverse(matrix, ROUNDING)
+def symmetric_inverse(matrix: np.ndarray) -> np.ndarray:
+    """Inverse or pseudo-inverse of a symmetric matrix, whatever the parameters' scales."""
+    return pseudo_inverse(matrix, EIGENVALUE_ROUNDING)
 
 
-def solve(study: Study, look: Look, used: np.ndarray, prior: Prior, damping: float) -> tuple[np.ndarray, np.ndarray]:
-    """A damped step of the parameters, and of every used decay's own unknowns."""
-    found = equations(study, look, weights(study, look.residual), used, prior)
+def damped_step(
+    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, damping: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Damped step of the parameters (q,), and of the fitted decays' own unknowns (r, o)."""
+    found = normal_equations(study, look, row_weights(study, look.residual), used, prior)
     matrix, slope, back = found.reduced(damping)
-    step = -inverted(matrix) @ slope
+    step = -symmetric_inverse(matrix) @ slope
     fitted = np.array([block.fitted for block in found.blocks], float)[:, None]
-    return step, own_steps(study, back, step) * fitted
+    return step, decay_unknown_steps(study, back, step) * fitted
 
 
-def linearly(study: Study, look: Look, step: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Rows of the residual after a step, were the model linear."""
+def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Residual in rows (n,) after a step, by the linearisation."""
     residual = look.residual + look.slopes @ step
     for span, mine in zip(study.spans, own):
         residual[span] += look.own[span] @ mine
     return residual
 
 
-def beyond(study: Study, look: Look, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of columns (n, k): their products (k,) with a look's residual, and their squares (k,), when what its directions and the
-    decays' unknowns can do instead, without limit, is projected out; weighed as a fit of the used tests does."""
-    root = np.sqrt(weights(study, look.residual) * study.used[study.row_series])[:, None]
+def projected_products(study: Study, look: Linearisation, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Products of columns with the residual, after projection.
+
+    What the directions of the linearisation and the decays' own unknowns can explain is projected out. Rows are weighed as in a
+    fit.
+
+    Args:
+        study: The study.
+        look: The linearisation.
+        columns: Columns in rows (n, k).
+
+    Returns:
+        Products with the residual (k,), and the columns' squares (k,).
+    """
+    root = np.sqrt(row_weights(study, look.residual) * study.used[study.row_series])[:, None]
     base, columns, residual = (root * one for one in (look.slopes, columns, look.residual[:, None]))
     for span in study.spans:
         own = np.linalg.qr(root[span] * look.own[span][:, look.own[span].any(axis=0)])[0]
@@ -152,8 +205,15 @@ def beyond(study: Study, look: Look, columns: np.ndarray) -> tuple[np.ndarray, n
     return (columns * residual).sum(axis=0), (columns**2).sum(axis=0)
 
 
-class Predicted(NamedTuple):
-    """Steps of the parameters, gains of -2 ln L by series (s,), which of these are of `used` tests, and the covariance."""
+class FirstOrderGain(NamedTuple):
+    """First-order gain of a step.
+
+    Attributes:
+        step: Step of the parameters (q,).
+        gain: Decrease of -2 ln L by series (s,).
+        used: Which series are of fitted tests (s,).
+        covariance: Covariance of the parameters (q, q).
+    """
 
     step: np.ndarray
     gain: np.ndarray
@@ -162,29 +222,32 @@ class Predicted(NamedTuple):
 
     @property
     def fitted(self) -> float:
-        """The gain in the fitted tests."""
+        """Decrease of -2 ln L in the fitted tests."""
         return float(self.gain[self.used].sum())
 
     @property
     def held(self) -> float:
-        """The gain in the held-out tests."""
+        """Decrease of -2 ln L in the held-out tests."""
         return float(self.gain[~self.used].sum())
 
     @property
     def deviation(self) -> np.ndarray:
-        """Standard deviations."""
+        """Standard deviations of the parameters (q,)."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def predict(study: Study, look: Look, prior: Prior) -> Predicted:
-    """What a look's directions would gain were the model linear, releases and offsets moving with them, weights renewed."""
+def predict_gain(study: Study, look: Linearisation, prior: Prior) -> FirstOrderGain:
+    """Gain that the directions of a linearisation would bring if the model were linear.
+
+    The decays' own unknowns move too, and weights are updated.
+    """
     residual, step = look.residual, np.zeros(len(look.active))
     covariance = np.zeros((len(step), len(step)))
-    for _ in range(ROUNDS):
-        found = equations(study, look, weights(study, residual), study.used, prior)
+    for _ in range(REWEIGHTINGS):
+        found = normal_equations(study, look, row_weights(study, residual), study.used, prior)
         matrix, slope, back = found.reduced()
-        covariance = inverted(matrix)
+        covariance = symmetric_inverse(matrix)
         step = -covariance @ slope
-        residual = linearly(study, look, step, own_steps(study, back, step))
-    gain = likelihoods(study, look.residual) - likelihoods(study, residual)
-    return Predicted(step, gain, study.used, covariance)
+        residual = linear_residual(study, look, step, decay_unknown_steps(study, back, step))
+    gain = minus_two_log_likelihood(study, look.residual) - minus_two_log_likelihood(study, residual)
+    return FirstOrderGain(step, gain, study.used, covariance)

@@ -1,17 +1,17 @@
-"""How large a residual is expected where a force acts that the model does not have: what records in waves are weighed by.
+"""Expected size of residuals in waves where an unknown force acts: the weights of wave tests.
 
-A force F that is missing leaves a residual H F, which is largest where the platform answers most. Weighed as if every
-frequency were alike, such a residual is best reduced by a model that answers less there: least squares damps slow motion away.
-Weighed by what an unknown force leaves, a resonance counts as the few frequencies that it is: the prediction error of a model
-that a force disturbs (Ljung 1999, System Identification, 2nd ed., section 3.2: errors filtered by the inverse of the
-disturbance's model; Whittle's likelihood of them is the sum over frequencies of |r|^2 / P + ln P).
+A missing force F leaves a residual H F, which is largest at resonance. With equal weights, least squares reduces it by damping
+slow motion away. Weighed by what an unknown force leaves, a resonance counts as the few frequencies that it is.
 
     P_i = sum over j of |H_ij|^2 S_j + floor_i^2,    H = (-omega^2 M + i omega C + K)^-1
 
-with M, C and K the mean tangents of the model's own forces along its motion in that sea, and S_j the spectrum of the missing
-force: the same over all frequencies slower than the waves, and over every band among them; H does not change from band to band
-as fast as it does over slow ones. S_j is that of F = H^-1 r, less what the floor has in it, lines with much of that in them
-counting less. Motions that were not measured, and loads' memories, stay at rest.
+M, C and K are mean tangents of the model's forces along its motion in that sea. S_j is the spectrum of the missing force,
+constant below the wave frequencies, and in every band among them. It is estimated from F = H^-1 r, less the floor's part; lines
+that are mostly floor count less. Motions that were not measured, and loads' memories, stay at rest.
+
+References:
+    Ljung 1999, System Identification, 2nd ed., section 3.2: prediction errors filtered by the inverse disturbance model.
+    Whittle 1953: their likelihood is the sum over frequencies of |r|^2 / P + ln P.
 """
 
 import equinox as eqx
@@ -20,20 +20,20 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.discovery.frequency_bands import Rows
-from calibration.discovery.linearisations import Place
+from calibration.discovery.frequency_bands import FourierRows
+from calibration.discovery.linearisations import Point
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
 from jaxhydro.dynamics.model import State
 
-INSTANTS = 256  # at which a model's forces are looked at
-ROUNDS = 6  # of the force's spectrum
+MAX_INSTANTS = 256  # instants at which forces are linearised
+SPECTRUM_ITERATIONS = 6  # iterations of the force's spectrum
 
 
 @eqx.filter_jit
 def _tangents(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "6 12"]:
     model, _, grid = record.simulated(x)
-    stride = max(1, record.steps // INSTANTS)
+    stride = max(1, record.steps // MAX_INSTANTS)
     times = record.times[0] + record.step * stride * jnp.arange(1, record.steps // stride)
     position, rate, _ = grid.at(times)
     memory = model.rest().memory
@@ -52,29 +52,34 @@ def _tangents(record: SeaRecord, x: Float[Array, " p"]) -> Float[Array, "6 12"]:
 
 
 def impedance(record: SeaRecord, x: np.ndarray, frequency: np.ndarray) -> np.ndarray:
-    """Force over motion (f, c, c) of a model in its sea, per unit of mass, in the motions that were measured, at frequencies
-    (Hz)."""
+    """Impedance of a model in its sea: force per unit of mass over motion (f, c, c).
+
+    Args:
+        record: The run.
+        x: Parameter coordinates (p,).
+        frequency: Frequencies (Hz; f,).
+    """
     found = -np.asarray(_tangents(record, jnp.asarray(x)))
     dofs = np.ix_(record.dofs, record.dofs)
     omega = 2 * np.pi * frequency[:, None, None]
     return -(omega**2) * np.eye(len(record.dofs)) + 1j * omega * found[:, 6:][dofs] + found[:, :6][dofs]
 
 
-def spectrum(power: np.ndarray, noise: np.ndarray, pool: np.ndarray) -> np.ndarray:
+def force_spectrum(power: np.ndarray, noise: np.ndarray, pool: np.ndarray) -> np.ndarray:
     """By line (f,), the same in every pool, of squares of which `noise` (f,) is expected in any case."""
     found = np.zeros(len(power))
     for one in np.unique(pool):
         mine = pool == one
         level = 0.0
-        for _ in range(ROUNDS):
+        for _ in range(SPECTRUM_ITERATIONS):
             weight = 1 / (level + noise[mine]) ** 2
             level = max(float((weight * (power[mine] - noise[mine])).sum() / weight.sum()), 0.0)
         found[mine] = level
     return found
 
 
-def expected(study: Study, place: Place) -> np.ndarray:
-    """How large rows (n,) are expected beside their floor, of what is seen at a place."""
+def expected_rows(study: Study, place: Point) -> np.ndarray:
+    """Expected size of every row (n,) over its floor, from the residual at a point."""
     residual = study.residual(place, "all")
     found = [np.ones(2 * len(study.cuts[0].take))] if study.decays is not None else []
     begin = sum(len(one) for one in found)
@@ -84,20 +89,27 @@ def expected(study: Study, place: Place) -> np.ndarray:
     return np.concatenate(found)
 
 
-def _of_sea(study: Study, record: SeaRecord, cut: Rows, place: Place, residual: np.ndarray, rows: slice) -> np.ndarray:
+def _of_sea(study: Study, record: SeaRecord, cut: FourierRows, place: Point, residual: np.ndarray, rows: slice) -> np.ndarray:
     shape = (len(record.tests), len(record.dofs), -1, 2)
     floor = study.floor.ravel()[study.cell[rows]].reshape(shape)[..., 0]
     pool = (study.pool[rows] % study.dof.shape[1]).reshape(shape)[0, 0, :, 0]
     duration = record.measured.shape[-1] * float(record.times[1] - record.times[0])
     stiffness = impedance(record, place.x, cut.take[: len(pool)] / duration)
-    found = [beside(lines, mine, pool, stiffness) for lines, mine in zip(residual.reshape(shape) @ [1, 1j], floor)]
+    found = [expected_over_floor(lines, mine, pool, stiffness) for lines, mine in zip(residual.reshape(shape) @ [1, 1j], floor)]
     return np.repeat(np.array(found).ravel(), 2)
 
 
-def beside(lines: np.ndarray, floor: np.ndarray, pool: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
-    """sqrt(P) over the floor (c, f), of a residual's Fourier lines (c, f), their pools (f,) and `impedance` (f, c, c)."""
+def expected_over_floor(lines: np.ndarray, floor: np.ndarray, pool: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+    """Expected residual over the floor, sqrt(P) / floor (c, f).
+
+    Args:
+        lines: Fourier lines of a residual (c, f).
+        floor: Floor of the lines (c, f).
+        pool: Pool of bands of every line (f,).
+        stiffness: Impedance (f, c, c).
+    """
     forces = np.abs(np.einsum("fji,if->jf", stiffness, lines)) ** 2 / 2
     noise = np.einsum("fji,if->jf", np.abs(stiffness) ** 2, floor**2)
-    missing = np.stack([spectrum(one, of_floor, pool) for one, of_floor in zip(forces, noise)])
+    missing = np.stack([force_spectrum(one, of_floor, pool) for one, of_floor in zip(forces, noise)])
     response = np.abs(np.linalg.inv(stiffness)) ** 2
     return np.sqrt(1 + np.einsum("fij,jf->if", response, missing) / floor**2)

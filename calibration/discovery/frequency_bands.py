@@ -1,4 +1,4 @@
-"""Records cut into frequency bands, so that residuals of any colour are weighed by what they are there."""
+"""Frequency bands of records, and Fourier lines as rows of a residual."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -7,21 +7,25 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal.windows import tukey
 
-GROWTH = 1.4  # of the edge of one band to the next
-LINES = 4  # Fourier lines in a band at least
+BAND_GROWTH = 1.4  # ratio of a band's edge to the one before
+MIN_LINES_PER_BAND = 4  # Fourier lines
 
 
 def step_of(time: np.ndarray) -> float:
-    """Step (s) of a record's times (n,), which need not be quite even."""
+    """Mean time step (s) of a record's times (n,)."""
     return float(time[-1] - time[0]) / (len(time) - 1)
 
 
 class Bands(NamedTuple):
-    """Which Fourier line of a record belongs to which band.
+    """Assignment of a record's Fourier lines to frequency bands.
 
-    `member` (b, f) is 1 where it does; `lines` (b,), how many lines of the record's own length those are (half of that is
-    the band's degrees of freedom: a line is a sine and a cosine); `low` and `high` (b,) in Hz. A line of frequency 0 is a band
-    of its own.
+    The line of frequency 0 is a band of its own.
+
+    Attributes:
+        member: 1 where a line belongs to a band (b, f).
+        lines: Lines of the record's own length in a band (b,); a line is a sine and a cosine, two degrees of freedom.
+        low: Lower edges (Hz; b,).
+        high: Upper edges (Hz; b,).
     """
 
     member: np.ndarray
@@ -31,16 +35,23 @@ class Bands(NamedTuple):
 
 
 def bands_of(duration: float, step: float, length: int, count: int, highest: float) -> Bands:
-    """`count` bands of a record of `duration` (s) among `length` samples `step` (s) apart, zeros after its end; up to
-    `highest` (Hz), widths growing by GROWTH. What is not needed of them is empty."""
+    """Frequency bands of a record, their width growing by `BAND_GROWTH`.
+
+    Args:
+        duration: Duration of the record (s).
+        step: Time step (s).
+        length: Number of samples, with zeros after the record's end.
+        count: Number of bands; those not needed are empty.
+        highest: Highest frequency (Hz).
+    """
     frequency = np.fft.rfftfreq(length, step)
     frequency = frequency[frequency <= highest]
     line = frequency * duration
     edges = [0.0, 0.5]
-    width = float(LINES)
+    width = float(MIN_LINES_PER_BAND)
     while edges[-1] < line[-1] + 0.5:
         edges.append(edges[-1] + width)
-        width = max(LINES, (GROWTH - 1) * edges[-1])
+        width = max(MIN_LINES_PER_BAND, (BAND_GROWTH - 1) * edges[-1])
     edges = edges[: count + 1]
     edges[-1] = max(edges[-1], line[-1] + 0.5)
     member = np.zeros((count, len(frequency)))
@@ -54,13 +65,19 @@ def bands_of(duration: float, step: float, length: int, count: int, highest: flo
     return Bands(member, lines, low, high)
 
 
-class Rows(NamedTuple):
-    """How some time series become one column of rows: real and imaginary parts of the Fourier lines that are in a band, scaled
-    so that sums of squares over rows are those over samples (Parseval).
+class FourierRows(NamedTuple):
+    """Transformation of time series to one column of rows: real and imaginary parts of Fourier lines.
 
-    `members` is how many series there are, some perhaps without rows; `take` (l,) are lines among those of all series, one
-    series after the other; `scale` (l,) their factor; `series` (2l,) and `band` (2l,) where a row belongs. Series are
-    multiplied by `taper` (t,), of mean square 1.
+    Rows are scaled so that sums of their squares are sums over samples (Parseval).
+
+    Attributes:
+        members: Number of series, some perhaps without rows.
+        take: Numbers of the lines among those of all series, one series after the other (l,).
+        scale: Factors of the lines (l,).
+        series: Series of every row (2l,).
+        band: Band of every row (2l,).
+        lines: Number of lines of a series.
+        taper: Taper of the series, of mean square 1 (t,).
     """
 
     members: int
@@ -72,9 +89,14 @@ class Rows(NamedTuple):
     taper: np.ndarray
 
     @classmethod
-    def of(cls, cuts: Sequence[Bands], samples: int, tapered: float = 0.0) -> "Rows":
-        """From the bands of every series, all of one length, of which the share `tapered` rises and falls at the ends: what
-        goes on beyond them leaks from where a spectrum has a peak into all that is beside it."""
+    def of(cls, cuts: Sequence[Bands], samples: int, tapered: float = 0.0) -> "FourierRows":
+        """Rows for the bands of some series of one length.
+
+        Args:
+            cuts: Bands by series.
+            samples: Number of samples.
+            tapered: Fraction of the record that is tapered, against leakage from peaks.
+        """
         lines = max(one.member.shape[1] for one in cuts)
         member = np.stack([np.pad(one.member, ((0, 0), (0, lines - one.member.shape[1]))) for one in cuts])
         series, line = np.nonzero(member.any(axis=1))
@@ -93,8 +115,8 @@ class Rows(NamedTuple):
         return np.stack([kept.real, kept.imag], axis=1).reshape(2 * len(kept), *values.shape[2:])
 
 
-def powers(cut: Bands, values: np.ndarray, tapered: float = 0.0) -> np.ndarray:
-    """Mean square of a time series (t,) in every band (b,), by degree of freedom: of white noise its variance in each."""
-    rows = Rows.of([cut], len(values), tapered)
+def band_powers(cut: Bands, values: np.ndarray, tapered: float = 0.0) -> np.ndarray:
+    """Mean square of a time series (t,) in every band (b,), per degree of freedom."""
+    rows = FourierRows.of([cut], len(values), tapered)
     found = np.bincount(rows.band, rows(values[None]) ** 2, len(cut.lines))
     return np.where(cut.lines > 0, found / np.where(cut.lines > 0, 2 * cut.lines, 1.0), 0.0)

@@ -1,4 +1,4 @@
-"""From a campaign's records to a study: decays in arrays, seas prepared, every motion cut into bands."""
+"""Records of a campaign gathered into a study: decays, seas, bands."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,11 +10,11 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
-from calibration.discovery.frequency_bands import Bands, Rows, bands_of, powers, step_of
-from calibration.discovery.linearisations import FLOOR, Series
+from calibration.discovery.frequency_bands import Bands, FourierRows, band_powers, bands_of, step_of
+from calibration.discovery.linearisations import RELATIVE_FLOOR, MotionSeries
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
-from calibration.discovery.wave_records import by_a_program, highest_difference
+from calibration.discovery.wave_records import highest_difference, simulated_by_program
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, dominant_period, gather_decays
@@ -28,14 +28,14 @@ from jaxhydro.environment import DOFS
 from jaxhydro.waves.irregular import fourier_length
 from jaxhydro.waves.irregular_sea import IrregularSea
 
-BANDS = 14
-EXCURSIONS = 1.5  # of `excursion_of` the model: how far a sea is prepared for
-MIN_EXCURSION = 1.7  # lengths of the sea's shortest wave: a sea is prepared at least this far
-OFFSET = 0.02  # of a decay's spread: what a sensor's zero may differ by between records, beside its noise
-TAPERED = 0.1  # of a test in waves, at its two ends together
-FIRST = 0.01  # of a sea's variance: slower than the components that have it, there is no first order worth the name
-ALONE = 0.7  # of all steps, in one sea or the decays: its directions are looked along side by side
-HIGHEST = 6.0  # times the highest natural frequency: what is looked at
+BAND_COUNT = 14  # frequency bands of a record
+EXCURSION_FACTOR = 1.5  # times the model's excursion, over which a sea is prepared
+MIN_EXCURSION = 1.7  # lengths of the shortest wave, over which a sea is prepared at least
+MAX_OFFSET_SHARE = 0.02  # of a decay's standard deviation: offset of a sensor's zero, beside noise
+TAPERED_SHARE = 0.1  # of a test in waves, both ends together
+MIN_FIRST_ORDER_SHARE = 0.01  # of a sea's variance: slower components are not first order
+DOMINANT_SHARE = 0.7  # of all steps in one run or the decays: then directions are differentiated in parallel
+MAX_FREQUENCY_RATIO = 6.0  # times the highest natural frequency, up to which motions are compared
 
 
 def study_of(
@@ -47,22 +47,32 @@ def study_of(
     options: Options,
     width: int,
 ) -> Study:
-    """The records of a campaign, against a model with every candidate at its null. Raises InputError.
+    """Gather a campaign's records into a study.
 
-    `width` directions are looked along at a time, or half as many where there is little that could be simulated beside them.
+    Args:
+        model: The model, every candidate at its neutral value.
+        space: All parameters.
+        names: Names of the directions.
+        directions: The directions (d, p).
+        campaign: The campaign.
+        options: How seas are reconstructed.
+        width: Number of directions that are differentiated at a time; halved where little can run in parallel.
+
+    Raises:
+        InputError: If records cannot be used.
     """
     records = [r for r in campaign.records if r.use in ("fit", "holdout")]
     decaying = tuple(r for r in records if r.kind == "decay")
     waving = {r.id for r in records if r.kind in IN_WAVES}
-    highest = highest_of(model)
+    highest = highest_frequency(model)
     from_rest = campaign.manifest.zero is not None
-    series: list[Series] = []
-    cuts: list[Rows] = []
+    series: list[MotionSeries] = []
+    cuts: list[FourierRows] = []
     decays, own_width = None, np.zeros((0, 0))
     if decaying:
-        shortest = min([HIGHEST / highest, *(dominant_period(r) for r in decaying)])
+        shortest = min([MAX_FREQUENCY_RATIO / highest, *(dominant_period(r) for r in decaying)])
         step = min(shortest / STEPS_PER_PERIOD, memory_step(model))
-        decays, found, own_width, rows = of_decays(decaying, model, space, from_rest, step, highest)
+        decays, found, own_width, rows = gather_decays(decaying, model, space, from_rest, step, highest)
         series += found
         cuts.append(rows)
     seas: list[SeaRecord] = []
@@ -85,12 +95,12 @@ def study_of(
                     separated[bound] = sea_of(run, model.environment, how).sea
                 other = replace(separated[bound], acting=how.acting)
                 others[name].append(_sea_record(run, other, tests, model, space, from_rest, step))
-            found, rows = series_of_sea(sea, tests, highest)
+            found, rows = gather_sea(sea, tests, highest)
             series += found
             cuts.append(rows)
             seas.append(sea)
     steps = [sea.fitted for sea in seas] + ([] if decays is None else [int(np.sum(decays.data.count))])
-    if max(steps) > ALONE * sum(steps):
+    if max(steps) > DOMINANT_SHARE * sum(steps):
         width = -(-width // 2)
     return Study(
         space,
@@ -110,11 +120,14 @@ def study_of(
 
 
 def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
-    """How seas may be instead, by `fits.Order`: a program, whose records are known by these, may have simplified."""
+    """Simplified second-order treatments to try, by name (see `effect_fits.SecondOrderTreatment`).
+
+    Programs simplify; whether one did is seen in the wave records.
+    """
     found: dict[str, Options] = {}
     if options.order == 2:
         found["first"] = replace(options, acting="nowhere")
-    if by_a_program(options):
+    if simulated_by_program(options):
         found["origin"] = replace(options, acting="at the origin")
         if (highest := highest_difference(recorded)) is not None:
             found["cut"] = replace(options, highest_difference=highest)
@@ -122,60 +135,78 @@ def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
     return found
 
 
-def highest_of(model: Model) -> float:
-    """The highest frequency (Hz) that is looked at."""
+def highest_frequency(model: Model) -> float:
+    """Highest frequency (Hz) of a model's motion that is compared."""
     periods = natural_modes(model).period
-    return HIGHEST / float(periods.min()) if len(periods) else 1.0
+    return MAX_FREQUENCY_RATIO / float(periods.min()) if len(periods) else 1.0
 
 
-def of_decays(
+def gather_decays(
     records: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float, highest: float
-) -> tuple[DecayProblem, list[Series], np.ndarray, Rows]:
-    """Decays in arrays, simulated in steps of at most `step` (s); every motion's series, how far their own unknowns may go, and
-    their rows up to `highest` (Hz)."""
+) -> tuple[DecayProblem, list[MotionSeries], np.ndarray, FourierRows]:
+    """Decays in arrays, with their series and rows.
+
+    Args:
+        records: The decays.
+        model: The model.
+        space: All parameters.
+        from_rest: Whether motions count from the static equilibrium.
+        step: Largest time step (s).
+        highest: Highest frequency (Hz).
+
+    Returns:
+        The problem, series, standard deviations of the decays' own unknowns (r, o), and rows.
+    """
     data = gather_decays(records, model, step, exact=True)
     decays = DecayProblem(model, data, space, from_rest, None if from_rest else equilibrium(model))
     found, own_width = _decay_series(records, data, highest)
-    return decays, [one for one, _ in found], own_width, Rows.of([cut for _, cut in found], data.time.shape[1])
+    return decays, [one for one, _ in found], own_width, FourierRows.of([cut for _, cut in found], data.time.shape[1])
 
 
-def series_of_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[Series], Rows]:
-    """Every motion of every test of a run, and their rows up to `highest` (Hz). What barely moves beside others of its unit has
-    no degrees of freedom: a model that sways too much in head waves would else be damped until it does not, and surge with it.
+def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tuple[list[MotionSeries], FourierRows]:
+    """Series and rows of all tests of a run in waves, up to `highest` (Hz).
+
+    A motion that is small beside others of its unit has no degrees of freedom. Otherwise a model that sways too much in head
+    waves would be damped until it does not, and surge with it.
     """
     measured, step = np.asarray(sea.measured), float(sea.times[1] - sea.times[0])
     n = measured.shape[-1]
-    cut = bands_of(n * step, step, n, BANDS, highest)
+    cut = bands_of(n * step, step, n, BAND_COUNT, highest)
     names = [DOFS[dof] for dof in sea.dofs]
     turns = np.array(sea.dofs) >= 3
     found = []
     for record, rows in zip(records, measured):
-        motions, moves = np.stack([powers(cut, values, TAPERED) for values in rows]), moving_channels(dict(zip(names, rows)))
+        motions, moves = (
+            np.stack([band_powers(cut, values, TAPERED_SHARE) for values in rows]),
+            moving_channels(dict(zip(names, rows))),
+        )
         for name, values, turn in zip(names, rows, turns):
             # sway is no more to be followed than to what surge is
             one = _series(record, name, values, cut, motions[turns == turn].max(axis=0), sea.slow)
             found.append(one if name in moves else replace(one, dof=0 * one.dof))
-    return found, Rows.of([cut] * len(found), n, TAPERED)
+    return found, FourierRows.of([cut] * len(found), n, TAPERED_SHARE)
 
 
-def _series(record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0) -> Series:
+def _series(
+    record: Record, channel: str, values: np.ndarray, cut: Bands, motion: np.ndarray, slow: float = 0.0
+) -> MotionSeries:
     """`motion` (b,) is the mean square of what the test is about, in the channel's unit."""
     noise, spread = record.noise[channel], float(np.std(values))
-    floor = np.sqrt(noise**2 + FLOOR[record.kind] ** 2 * motion)
-    return Series(
+    floor = np.sqrt(noise**2 + RELATIVE_FLOOR[record.kind] ** 2 * motion)
+    return MotionSeries(
         record.id, record.kind, record.use, channel, noise, spread, 2 * cut.lines, cut.low, cut.high, len(values), floor, slow
     )
 
 
-def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[Series, Bands]], np.ndarray]:
-    """Every motion of every decay, and how far the decays' own unknowns may go."""
+def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list[tuple[MotionSeries, Bands]], np.ndarray]:
+    """Series of every decay, and standard deviations of the decays' own unknowns."""
     found = []
     width = np.full((len(records), 3, len(data.dofs)), np.inf)
     for i, record in enumerate(records):
         n, dt = len(record.time), step_of(record.time)
-        cut = bands_of(n * dt, dt, data.time.shape[1], BANDS, highest)
+        cut = bands_of(n * dt, dt, data.time.shape[1], BAND_COUNT, highest)
         main = data.dofs.index(DOFS.index(record.degree_of_freedom))
-        motion = powers(cut, np.asarray(data.measured[i, main])) / float(data.unit[i, main]) ** 2
+        motion = band_powers(cut, np.asarray(data.measured[i, main])) / float(data.unit[i, main]) ** 2
         for j, dof in enumerate(data.dofs):
             channel = DOFS[dof]
             if channel in record.values:
@@ -183,10 +214,10 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
                 found.append((one, cut))
             else:  # a row of nothing keeps the arrays' shape
                 nothing = cut._replace(member=np.zeros_like(cut.member))
-                none = np.ones(BANDS)
-                one = Series(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none)
+                none = np.ones(BAND_COUNT)
+                one = MotionSeries(record.id, record.kind, record.use, channel, 1.0, 1.0, 0 * none, cut.low, cut.high, n, none)
                 found.append((one, nothing))
-            width[i, 2, j] = (OFFSET * one.spread + 3 * one.noise / np.sqrt(n)) / float(data.unit[i, j])
+            width[i, 2, j] = (MAX_OFFSET_SHARE * one.spread + 3 * one.noise / np.sqrt(n)) / float(data.unit[i, j])
     return found, width.reshape(len(records), -1)
 
 
@@ -208,13 +239,13 @@ def _sea_record(
     hull, computed = (model.hull.extremities(), model.cylinders), (model.transfer, model.excitation)
     # a gauge that stood elsewhere shifts the waves, whatever the size of the hull
     shortest = 2 * np.pi * float(model.environment.gravity) / float(np.max(np.asarray(made.components.omega))) ** 2
-    sea = made.prepared(*hull, instants, max(EXCURSIONS * excursion_of(model), MIN_EXCURSION * shortest), *computed)
+    sea = made.prepared(*hull, instants, max(EXCURSION_FACTOR * excursion_of(model), MIN_EXCURSION * shortest), *computed)
     channels = [dof for dof in DOFS if all(dof in r.values for r in tests)]
     windows = [samples_after_transient(run, r) for r in tests]
     n = min(len(w) for w in windows)
     power = np.asarray(made.components.amplitude) ** 2
     order = np.argsort(np.asarray(made.components.omega))
-    first = order[np.searchsorted(np.cumsum(power[order]), FIRST * power.sum())]
+    first = order[np.searchsorted(np.cumsum(power[order]), MIN_FIRST_ORDER_SHARE * power.sum())]
     slow = float(np.asarray(made.components.omega)[first]) / (2 * np.pi)
     fitted = [w[n - 1] for r, w in zip(tests, windows) if r.use == "fit"]
     last = int(np.ceil((times[max(fitted)] - times[0]) / dt - 1e-9)) if fitted else 0

@@ -1,7 +1,7 @@
-"""Tests cut into blocks of time that are left out in turn: for campaigns that hold no test out.
+"""Blocks of fitted tests left out in turn, for campaigns without held-out tests.
 
-A block of a decay begins with an initial state of its own, which is fitted to it; a block of a test in waves is simulated with
-the whole record and compared where it is.
+A block of a decay has an initial state of its own, which is fitted to it. A block of a test in waves is simulated with the
+whole record and compared within the block.
 """
 
 from collections.abc import Sequence
@@ -11,82 +11,101 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
-from calibration.discovery.acceptance import Left, State
+from calibration.discovery.acceptance import FitState, ResidualSummary
 from calibration.discovery.effect_descent import fit
-from calibration.discovery.expected_residuals import expected
-from calibration.discovery.gather import highest_of, of_decays, series_of_sea
-from calibration.discovery.linearisations import Place, Prior
+from calibration.discovery.expected_residuals import expected_rows
+from calibration.discovery.gather import gather_decays, gather_sea, highest_frequency
+from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.study import Study
 from calibration.residuals.decays import dominant_period, first_guess
 
-COUNT = 3  # blocks of a test
-CYCLES = 1.5  # of a decay in one of its blocks, at least
-ITERATIONS = 6
+BLOCKS_PER_TEST = 3  # blocks
+MIN_CYCLES_PER_BLOCK = 1.5  # cycles of a decay
+BLOCK_ITERATIONS = 6  # iterations of a fit to blocks
 
 
-class Blocks:
-    """A study's fitted tests in blocks: `block` (s,) is the number of every series' own."""
+class HeldOutBlocks:
+    """A study's fitted tests in blocks of time.
+
+    Attributes:
+        study: The study of the blocks.
+        block: Number of every series' block (s,).
+        summaries: Results so far, by names of effects.
+    """
 
     def __init__(self, study: Study, records: Sequence[Record]) -> None:
-        self.study, self.block = in_blocks(study, records)
-        self.known: dict[tuple[str, ...], Left] = {}
+        self.study, self.block = study_in_blocks(study, records)
+        self.summaries: dict[tuple[str, ...], ResidualSummary] = {}
 
-    def left(self, state: State, prior: Prior) -> Left:
-        """What is left of every block where the others are fitted, beginning at a state."""
+    def residual_summary(self, state: FitState, prior: Prior) -> ResidualSummary:
+        """Residual of every block where the others are fitted, beginning at a state."""
         names = tuple(one.name for one in state.chosen)
-        if names not in self.known:
-            self.known[names] = self._left(state, prior)
-        return self.known[names]
+        if names not in self.summaries:
+            self.summaries[names] = self._residual_summary(state, prior)
+        return self.summaries[names]
 
-    def _left(self, state: State, prior: Prior) -> Left:
+    def _residual_summary(self, state: FitState, prior: Prior) -> ResidualSummary:
         study = self.study
         own = np.zeros((0, 0))
         if study.decays is not None:
             own = np.asarray(first_guess(study.decay_records, study.decays.data))
-        place = Place(state.look.place.x, own)
+        place = Point(state.look.place.x, own)
         every = np.ones(len(study.series), bool)
         if study.decays is not None:
-            place = fit(study, study.look(place, ()), every, prior, iterations=ITERATIONS, looks=1).look.place
+            place = fit(
+                study, study.linearise(place, ()), every, prior, iterations=BLOCK_ITERATIONS, relinearisations=1
+            ).look.place
         if study.seas and study.expected is None:
-            self.study = study = replace(study, expected=expected(study, place))
-        look = study.look(place, state.look.active)
-        found = Left.of(study, look.residual)
-        for number in range(COUNT):
+            self.study = study = replace(study, expected=expected_rows(study, place))
+        look = study.linearise(place, state.look.active)
+        found = ResidualSummary.of(study, look.residual)
+        for number in range(BLOCKS_PER_TEST):
             out = self.block == number
-            there = fit(study, look, ~out, prior, iterations=ITERATIONS).look
+            there = fit(study, look, ~out, prior, iterations=BLOCK_ITERATIONS).look
             if study.decays is not None:
-                there = fit(study, there.along(()), out, prior, iterations=ITERATIONS).look
-            left = Left.of(study, study.residual(there.place))
-            found = Left(*(np.where(out if one.ndim == 1 else out[:, None], one, old) for one, old in zip(left, found)))
+                there = fit(study, there.restricted_to(()), out, prior, iterations=BLOCK_ITERATIONS).look
+            left = ResidualSummary.of(study, study.residual(there.place))
+            found = ResidualSummary(
+                *(np.where(out if one.ndim == 1 else out[:, None], one, old) for one, old in zip(left, found))
+            )
         return found
 
 
-def in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarray]:
-    """The fitted tests of a study, COUNT blocks of time of each; and the number of every series' block. Decays too short for it
-    are left out. Raises ValueError where nothing can be cut."""
+def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarray]:
+    """A study's fitted tests cut into blocks of time, `BLOCKS_PER_TEST` of each.
+
+    Decays that are too short are left out.
+
+    Returns:
+        The study of the blocks, and the number of every series' block (s,).
+
+    Raises:
+        ValueError: If nothing can be cut.
+    """
     by_id = {record.id: record for record in records}
-    highest = highest_of(study.model)
+    highest = highest_frequency(study.model)
     cut = [
         part
         for record in study.decay_records
-        if record.use == "fit" and record.time[-1] - record.time[0] > COUNT * CYCLES * dominant_period(record)
-        for part in parts(record)
+        if record.use == "fit"
+        and record.time[-1] - record.time[0] > BLOCKS_PER_TEST * MIN_CYCLES_PER_BLOCK * dominant_period(record)
+        for part in split_record(record)
     ]
     series, cuts, seas, numbers = [], [], [], []
     decays, own_width = None, np.zeros((0, 0))
     if cut:
         assert study.decays is not None
         step = float(np.asarray(study.decays.data.step).max())
-        decays, found, own_width, rows = of_decays(cut, study.model, study.space, study.decays.from_rest, step, highest)
+        decays, found, own_width, rows = gather_decays(cut, study.model, study.space, study.decays.from_rest, step, highest)
         series += found
         cuts.append(rows)
-        numbers += [i % COUNT for i in range(len(cut)) for _ in decays.data.dofs]
+        numbers += [i % BLOCKS_PER_TEST for i in range(len(cut)) for _ in decays.data.dofs]
     for sea in study.seas:
         fitted = [i for i, test in enumerate(sea.tests) if by_id[test].use == "fit"]
-        n = sea.measured.shape[-1] // COUNT
+        n = sea.measured.shape[-1] // BLOCKS_PER_TEST
         if not fitted:
             continue
-        places = [(i, k) for i in fitted for k in range(COUNT)]
+        places = [(i, k) for i in fitted for k in range(BLOCKS_PER_TEST)]
         one = replace(
             sea,
             measured=jnp.stack([sea.measured[i, :, k * n : (k + 1) * n] for i, k in places]),
@@ -94,7 +113,7 @@ def in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarra
             tests=tuple(f"{sea.tests[i]}, block {k + 1}" for i, k in places),
         )
         tests = [replace(by_id[sea.tests[i]], id=name) for (i, _), name in zip(places, one.tests)]
-        found, rows = series_of_sea(one, tests, highest)
+        found, rows = gather_sea(one, tests, highest)
         series += found
         cuts.append(rows)
         seas.append(one)
@@ -114,9 +133,9 @@ def in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.ndarra
     ), np.array(numbers)
 
 
-def parts(record: Record) -> list[Record]:
-    """A record in COUNT consecutive ones of as many samples."""
-    cuts = np.array_split(np.arange(len(record.time)), COUNT)
+def split_record(record: Record) -> list[Record]:
+    """A record cut into `BLOCKS_PER_TEST` consecutive blocks."""
+    cuts = np.array_split(np.arange(len(record.time)), BLOCKS_PER_TEST)
     return [
         replace(
             record,

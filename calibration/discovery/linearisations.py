@@ -1,4 +1,4 @@
-"""What a study is made of: the motions of tests, places where a fit is, and what is seen from there."""
+"""Points and linearisations of a fit, measured motions, priors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,17 +6,31 @@ from typing import Literal
 
 import numpy as np
 
-Seen = Literal["all", "fit"]
+SeaSelection = Literal["all", "fit"]
 # of the motion that a test is about, in every band: what strips with constant coefficients, and a measured wave, are not asked
 # to follow, however quiet the sensors are
-FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
+# smallest error over the motion that a model of strips can reach, by kind of test
+RELATIVE_FLOOR = {"decay": 0.005, "regular": 0.02, "irregular": 0.02}
 
 
 @dataclass(frozen=True)
-class Series:
-    """One motion of one test: what the residual of it is compared with. `noise` is the sensor's; `floor` (b,), by band, has
-    beside it what no model of strips is asked to follow. `dof` (b,) are degrees of freedom by band, `samples` how many there
-    are. Bands slower than `slow` (Hz) are one pool: see `calibration.discovery.expected_residuals`."""
+class MotionSeries:
+    """One motion of one test, and what its residual is compared with.
+
+    Attributes:
+        test: Name of the test.
+        kind: Kind of the test (decay, regular, irregular).
+        use: Use of the test (fit, holdout).
+        channel: The motion.
+        noise: Sensor noise (m, rad).
+        spread: Standard deviation of the motion (m, rad).
+        dof: Degrees of freedom by band (b,).
+        low: Lower edges of the bands (Hz; b,).
+        high: Upper edges of the bands (Hz; b,).
+        samples: Number of samples.
+        floor: Noise and unavoidable model error by band (m, rad; b,).
+        slow: Bands below this frequency (Hz) are one pool (see `calibration.discovery.expected_residuals`).
+    """
 
     test: str
     kind: str
@@ -33,62 +47,79 @@ class Series:
 
     @property
     def pool(self) -> np.ndarray:
-        """Number of every band's pool (b,): that of its first band. The mean is one of its own."""
+        """Number of every band's pool (b,), which is its first band; the mean is a pool of its own."""
         bands = np.arange(len(self.low))
         return np.where((bands > 0) & (self.high <= self.slow), 1, bands)
 
     @property
     def region(self) -> np.ndarray:
-        """Number of every band's region (b,): see `Study.by_region`."""
+        """Number of every band's region (b,). See `Study.by_region`."""
         return 0 * self.pool if self.kind == "decay" else np.minimum(self.pool, 2)
 
     @property
-    def least(self) -> float:
-        """The floor over all bands (m, rad)."""
+    def floor_rms(self) -> float:
+        """Root mean square of the floor over all bands (m, rad)."""
         return float(np.sqrt(self.noise**2 + (self.dof * (self.floor**2 - self.noise**2)).sum() / self.samples))
 
     @property
     def weight(self) -> float:
-        """Motions count by how much of them there is over their floor, up to a point."""
-        return min(self.spread / self.least, 50.0)
+        """Weight of the motion in averages: its size over its floor, limited."""
+        return min(self.spread / self.floor_rms, 50.0)
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where a fit is: coordinates of all parameters, and every decay's own unknowns."""
+class Point:
+    """A point of a fit.
+
+    Attributes:
+        x: Coordinates of all parameters (p,).
+        own: The decays' own unknowns (r, o).
+    """
 
     x: np.ndarray
     own: np.ndarray
 
-    def moved(self, directions: np.ndarray, step: np.ndarray, own: np.ndarray) -> "Place":
-        """A step along directions, and of the decays' unknowns."""
-        return Place(self.x + step @ directions, self.own + own)
+    def moved(self, directions: np.ndarray, step: np.ndarray, own: np.ndarray) -> "Point":
+        """The point after a step along directions, and of the decays' own unknowns."""
+        return Point(self.x + step @ directions, self.own + own)
 
 
 @dataclass(frozen=True)
-class Look:
-    """What is seen from a place, in rows (`Rows`), the decays' before the seas': the residual (n,), its slopes (n, q) along the
-    `active` directions, and those of the decays' rows (m, o) along their own unknowns."""
+class Linearisation:
+    """Residual and slopes at a point, in rows (`FourierRows`), the decays' rows before the seas'.
 
-    place: Place
+    Attributes:
+        place: The point.
+        active: Numbers of the directions.
+        residual: Residual (n,).
+        slopes: Slopes along the directions (n, q).
+        own: Slopes of the decays' rows along their own unknowns (m, o).
+    """
+
+    place: Point
     active: tuple[int, ...]
     residual: np.ndarray
     slopes: np.ndarray
     own: np.ndarray
 
-    def beside(self, other: "Look") -> "Look":
-        """The directions of another look too, as seen from there."""
+    def joined_with(self, other: "Linearisation") -> "Linearisation":
+        """The directions of another linearisation appended."""
         return replace(self, active=(*self.active, *other.active), slopes=np.hstack([self.slopes, other.slopes]))
 
-    def along(self, active: Sequence[int]) -> "Look":
-        """Some of the directions."""
+    def restricted_to(self, active: Sequence[int]) -> "Linearisation":
+        """Some of the directions only."""
         at = [self.active.index(i) for i in active]
         return replace(self, active=tuple(active), slopes=self.slopes[:, at])
 
 
 @dataclass(frozen=True)
 class Prior:
-    """Gaussian priors of the steps along directions from where the study starts: mean and standard deviation by direction."""
+    """Gaussian priors of steps along directions, from where the study starts.
+
+    Attributes:
+        mean: Means (d,).
+        width: Standard deviations (d,).
+    """
 
     mean: np.ndarray
     width: np.ndarray

@@ -1,4 +1,4 @@
-"""The residual taken apart: which motion, which test, which frequencies, how much above the noise."""
+"""Residuals by motion, test and frequency, relative to noise."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from calibration.discovery.diagnosis import Finding
 from calibration.formatting import number
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import State
+    from calibration.discovery.acceptance import FitState
     from calibration.discovery.greedy_search import Search
 
-QUIET = 1.3  # rms over noise below which nothing is said
+MIN_RESIDUAL_OVER_NOISE = 1.3  # rms; a smaller residual is at the noise
 
 
-def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
-    """Of every motion that the tests are about, what is left."""
+def anatomy(search: Search, state: FitState) -> tuple[Finding, ...]:
+    """Residual of every motion and test, in numbers and words."""
     study = search.study
     noise = np.array([[one.noise] for one in study.series])
     mean_square, dof = study.mean_squares(state.residual) * study.floor**2 / noise**2, study.dof
     found = []
     for one, squares, freedom in zip(study.series, mean_square, dof):
-        if one.channel not in search.posed.motions or not freedom.sum():
+        if one.channel not in search.setup.motions or not freedom.sum():
             continue
         ratio = math.sqrt(float((squares * freedom).sum() / freedom.sum()))
         # noise is in all bands, what is above it in those that are looked at
@@ -41,23 +41,27 @@ def anatomy(search: Search, state: State) -> tuple[Finding, ...]:
 
 
 def _words(within: float, over: float, bands: Sequence[tuple[float, float, float]]) -> str:
-    """`within` the bands that are looked at, and `over` all: rms over noise."""
-    if within < QUIET:
+    """A residual in words; rms over noise `within` the compared bands and `over` all."""
+    if within < MIN_RESIDUAL_OVER_NOISE:
         return "at the noise"
     worst = max(bands, key=lambda b: b[2])
     where = "in the mean" if worst[0] == 0 else f"from {worst[0]:.3g} to {worst[1]:.3g} Hz"
     return f"{number(over, 2)} times the noise, most of it {where}"
 
 
-def signature(search: Search, before: State, after: State) -> tuple[float, str]:
-    """Share of the error's energy above the floor that is left in what the tests are about, every motion over its own, and what
-    is known of it."""
+def signature(search: Search, before: FitState, after: FitState) -> tuple[float, str]:
+    """Fraction of the error's energy that is left, and the remaining residual in words.
+
+    Every motion that a test is about counts, relative to its own size and above its floor.
+    """
     study = search.study
-    told = study.main & np.array([one.channel in search.posed.motions for one in study.series])
+    told = study.main & np.array([one.channel in search.setup.motions for one in study.series])
     spread = np.array([one.spread for one in study.series])
     total, left = (float(((state.left.error / spread)[told] ** 2).sum()) for state in (before, after))
     share = left / total if total > 0 else 0.0
-    if not (after.left.squares.sum(axis=1) > (QUIET**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[told].any():
+    if not (after.left.squares.sum(axis=1) > (MIN_RESIDUAL_OVER_NOISE**2 - 1) * np.maximum(study.dof.sum(axis=1), 1.0))[
+        told
+    ].any():
         fitted = [record for record in search.campaign.records if record.use == "fit"]
         declared = all(set(record.noise) - {WAVE} <= set(search.campaign.manifest.noise) for record in fitted)
         return share, f"white at the {'declared noise level' if declared else 'level of the noise, which was estimated'}"

@@ -1,6 +1,6 @@
-"""Records against a model that may have more than was declared: residuals, and their slopes along any few directions.
+"""Residuals of decays and seas, and their slopes along any few directions.
 
-Which directions is data, so that one compiled program scores every candidate effect and refits any few of them.
+Directions are data, so that one compiled program scores every candidate effect and refits any few of them.
 """
 
 from typing import Any, NamedTuple
@@ -19,11 +19,16 @@ from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.waves.support_sea import SupportSea
 
-ROUNDING = 1e-6  # of a step
+STEP_ROUNDING = 1e-6  # fraction of a time step
 
 
 class Frame(NamedTuple):
-    """Coordinates x = origin + basis z of all parameters, z the few along which one looks."""
+    """Coordinates x = origin + basis z of all parameters.
+
+    Attributes:
+        origin: Coordinates at z = 0 (p,).
+        basis: The directions that are differentiated along (p, q).
+    """
 
     origin: Float[Array, " p"]
     basis: Float[Array, "p q"]
@@ -37,7 +42,7 @@ def _record_residual(
 
 @eqx.filter_jit
 def decay_residuals(problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, "r o"]) -> Float[Array, "r c t"]:
-    """Simulated less measured, zero where there is no sample."""
+    """Simulated minus measured motions of decays, zero where there is no sample (r, c, t)."""
     return jax.lax.map(lambda one: _record_residual(problem, x, *one), (own, problem.data))
 
 
@@ -45,7 +50,7 @@ def decay_residuals(problem: DecayProblem, x: Float[Array, " p"], own: Float[Arr
 def decay_slopes(
     problem: DecayProblem, frame: Frame, own: Float[Array, "r o"]
 ) -> tuple[Float[Array, "r c t"], Float[Array, "r c t k"]]:
-    """Residuals, and their slopes along the directions and the records' own unknowns."""
+    """Residuals of decays (r, c, t), and slopes along directions and own unknowns (r, c, t, k)."""
     q = frame.basis.shape[1]
 
     def of_record(inputs):
@@ -62,9 +67,23 @@ def decay_slopes(
 
 
 class SeaRecord(eqx.Module):
-    """One run in waves: its sea, and the tests in it, each from sample `begins` on for as many samples of the run's clock as
-    are measured. After `fitted` of the `steps` all fitted tests have ended. Slower than `slow` (Hz) the sea has no first
-    order."""
+    """One run in waves with the tests in it.
+
+    Attributes:
+        model: The model.
+        sea: The sea.
+        times: Times of the run (s).
+        step: Time step (s).
+        measured: Measured motions by test (w, c, n).
+        space: All parameters.
+        from_rest: Whether motions count from the static equilibrium.
+        steps: Number of steps.
+        fitted: Number of steps after which all fitted tests have ended.
+        begins: First sample of every test.
+        dofs: Numbers of the measured motions.
+        tests: Names of the tests.
+        slow: Frequency (Hz) below which the sea has no first-order waves.
+    """
 
     model: Model
     sea: SupportSea
@@ -81,31 +100,31 @@ class SeaRecord(eqx.Module):
     slow: float = eqx.field(static=True)
 
     def simulated(self, x: Float[Array, " p"], count: Int[Array, ""] | None = None) -> tuple[Model, Float[Array, "6"], Grid]:
-        """The model with these parameters, where it rests, and its motion from there on, over `count` steps or all."""
+        """The model with these parameters, its equilibrium, and its motion over `count` steps or all."""
         model = self.space.model(self.model, x)
         rest = equilibrium(model)
         start = State(rest, jnp.zeros(6), model.rest().memory)
         return model, rest, integrate(model, self.sea, start, self.times[0], self.step, self.steps, "ab4", count=count)
 
     def residual(self, x: Float[Array, " p"], count: Int[Array, ""]) -> Float[Array, "w c n"]:
-        """Simulated over `count` steps less measured, test by test; zeros of tests that have not ended then."""
+        """Simulated minus measured motions by test; zeros of tests that have not ended after `count` steps."""
         model, rest, grid = self.simulated(x, count)
         motion = observe(model, grid, self.times, rest if self.from_rest else None, in_waves=True)
         n = self.measured.shape[-1]
         found = jnp.stack([motion[begin : begin + n, list(self.dofs)].T for begin in self.begins]) - self.measured
-        ended = self.times[np.array(self.begins) + n - 1] <= self.times[0] + (count + ROUNDING) * self.step
+        ended = self.times[np.array(self.begins) + n - 1] <= self.times[0] + (count + STEP_ROUNDING) * self.step
         return jnp.where(ended[:, None, None], found, 0.0)
 
 
 @eqx.filter_jit
 def sea_residuals(record: SeaRecord, x: Float[Array, " p"], count: Int[Array, ""]) -> Float[Array, "w c n"]:
-    """Simulated less measured, test by test, over `count` steps."""
+    """Simulated minus measured motions by test, over `count` steps (w, c, n)."""
     return record.residual(x, count)
 
 
 @eqx.filter_jit
 def sea_slopes(record: SeaRecord, frame: Frame, count: Int[Array, ""]) -> tuple[Float[Array, "w c n"], Any]:
-    """Residuals over `count` steps, and their slopes along the directions."""
+    """Residuals over `count` steps (w, c, n), and slopes along the directions (w, c, n, q)."""
 
     def residual(z):
         r = record.residual(frame.origin + frame.basis @ z, count)

@@ -1,4 +1,4 @@
-"""From a campaign to a study: which motions, which candidates, which nuisances, every parameter with its scale."""
+"""Set-up of a study: motions, candidates, nuisance parameters, scales and priors."""
 
 import math
 from collections.abc import Sequence
@@ -8,9 +8,9 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.discovery.effects.candidates import Candidate, sought, with_candidates, with_drag
+from calibration.discovery.effects.candidates import Candidate, requested_table_labels, with_candidates, with_drag
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import scales_of
+from calibration.discovery.effects.listed import noticeable_scales
 from calibration.discovery.effects.nearly_known import PRETENSION, STIFFNESS
 from calibration.discovery.gather import study_of
 from calibration.discovery.linearisations import Prior
@@ -24,18 +24,28 @@ from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 
-WIDTH = 32  # directions at a time
-WIDE = 30.0  # what a candidate's coordinate may be, in noticeable units
-OF_MASS = 1.0  # by which mass properties may be off, in noticeable units: those of `nearly_known`
-TRIM = 3.0  # ... draught and trim, in noticeable units
-ENDS = 0.7
-# by which seas may move a coefficient from where decays, or the platform file, have it, in its logarithm: a standard deviation
-# of a prior that is steep beyond three. Drag changes with a sea; linear damping does not, and stands for nothing else
-ANCHORED, ANCHORED_DAMPING = 0.75, 0.5
+DIRECTIONS_AT_ONCE = 32  # directions differentiated at a time
+CANDIDATE_PRIOR_WIDTH = 30.0  # of a candidate's amplitudes, in noticeable sizes
+MASS_PRIOR_WIDTH = 1.0  # of mass properties, in the deviations of `nearly_known`
+TRIM_PRIOR_WIDTH = 3.0  # of draught and trim, in noticeable sizes
+COVERED_ENDS_PRIOR_WIDTH = 0.7  # of the share of covered ends
+# of a coefficient's logarithm in waves, around its value from decays or the platform file: one standard deviation of a prior
+# that is steep beyond three. Drag changes with the sea; linear damping does not
+COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH = 0.75, 0.5
 
 
-class Posed(NamedTuple):
-    """A study, its candidates, what is free in the declared model, what is only nearly known, and the priors of all."""
+class StudySetup(NamedTuple):
+    """A study with its candidates and priors.
+
+    Attributes:
+        study: The study.
+        candidates: Candidate effects.
+        declared: The declared model.
+        base: Labels of the declared model's free coefficients.
+        nuisances: Names of nearly known parameters, free within their priors.
+        prior: Priors of all directions.
+        motions: The motions that the tests are about.
+    """
 
     study: Study
     candidates: tuple[Candidate, ...]
@@ -47,7 +57,7 @@ class Posed(NamedTuple):
 
 
 def motions_of(campaign: Campaign) -> dict[str, float]:
-    """The motions that the tests are about, and their largest standard deviation in one test (m, rad)."""
+    """Motions that the tests are about, with their largest standard deviation in a test (m, rad)."""
     found: dict[str, float] = {}
     for record in campaign.records:
         if record.use == "ignore":
@@ -63,8 +73,21 @@ def motions_of(campaign: Campaign) -> dict[str, float]:
     return {dof: found[dof] for dof in DOFS if dof in found}
 
 
-def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), width: int = WIDTH) -> Posed:
-    """Everything that a diagnosis needs. Raises InputError where a campaign has nothing to diagnose."""
+def set_up_study(
+    campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), width: int = DIRECTIONS_AT_ONCE
+) -> StudySetup:
+    """Set up everything that a diagnosis needs.
+
+    Args:
+        campaign: The campaign.
+        options: How seas are reconstructed.
+        extra: The user's own candidate effects.
+        width: Number of directions that are differentiated at a time.
+
+    Raises:
+        InputError: If the campaign has nothing to diagnose.
+        ValueError: If a user's own candidate is incomplete.
+    """
     source = str(campaign.folder / "campaign.yaml")
     motions = motions_of(campaign)
     used = [r for r in campaign.records if r.use == "fit" and (r.kind == "decay" or r.kind in IN_WAVES)]
@@ -76,7 +99,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
     step = sea_step(declared, options) if waves else 0.0
-    candidates, scaled, units = catalogue(declared, scales_of(mass, stiffness, motions), bool(waves), variance, step)
+    candidates, scaled, units = catalogue(declared, noticeable_scales(mass, stiffness, motions), bool(waves), variance, step)
     for own in extra:
         if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
             raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
@@ -92,18 +115,18 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
             scaled[label], units[label] = FreeParameter(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)
     candidates = [*candidates, *extra]
     # what the platform file has is fitted, not looked for
-    taken = set(declared.values) - (sought(declared) - set(labels))
+    taken = set(declared.values) - (requested_table_labels(declared) - set(labels))
     candidates = [one for one in candidates if not set(one.amplitudes) & taken]
     scaled = {label: one for label, one in scaled.items() if label not in taken}
     base_space = space_of(campaign, labels, declared)
     nuisances: dict[str, tuple[dict[str, float], float]] = {}  # name -> parameters and how they go together, deviation
     free: list[FreeParameter] = [*base_space.free]
     for name in next(one.amplitudes for one in candidates if one.effect == "mass_properties"):
-        nuisances[name] = ({name: 1.0}, OF_MASS)
+        nuisances[name] = ({name: 1.0}, MASS_PRIOR_WIDTH)
     # draught and trim are as the platform was ballasted, sensors zeroed afloat or not
     for dof in ("heave", "roll", "pitch"):
         if dof in motions and (dof == "heave" or len(motions) > 1):
-            nuisances[f"static_offset.{dof}.force"] = ({f"static_offset.{dof}.force": 1.0}, TRIM)
+            nuisances[f"static_offset.{dof}.force"] = ({f"static_offset.{dof}.force": 1.0}, TRIM_PRIOR_WIDTH)
     lines = sorted({label.rsplit(".", 1)[0] for label in declared.values if label.startswith("mooring.line")})
     if lines and not any(label.startswith("mooring.") for label in labels):
         values = {label: float(value) for label, value in declared.values.items() if label.startswith("mooring.")}
@@ -119,7 +142,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     ends = bool(waves) and bool((np.asarray(declared.hull.ends.radius) == 0).any()) if declared.hull.ends.label else False
     if ends:
         free.append(FreeParameter("covered_ends.share", 0.0, Scaled(0.0, 1.0), 0.0, math.inf))
-        nuisances["covered_ends.share"] = ({"covered_ends.share": 1.0}, ENDS)
+        nuisances["covered_ends.share"] = ({"covered_ends.share": 1.0}, COVERED_ENDS_PRIOR_WIDTH)
     model = with_candidates(model, candidates, ["covered_ends.share"] if ends else [])
     free += list(scaled.values())
     space = ParameterSpace(tuple(free))
@@ -142,7 +165,7 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     for one in base_space.free:
         known = math.isfinite(one.prior_deviation)
         mean = one.prior_mean - float(x0[place[one.label]]) if known else 0.0
-        deviation = one.prior_deviation if known else width_of(one.label, declared, bool(waves))
+        deviation = one.prior_deviation if known else prior_width_of(one.label, declared, bool(waves))
         direction(one.label, {one.label: 1.0}, mean, deviation)
     for name, (parts, deviation) in nuisances.items():
         direction(name, parts, 0.0, deviation)
@@ -151,20 +174,20 @@ def pose(campaign: Campaign, options: Options, extra: Sequence[Candidate] = (), 
     for candidate in candidates:
         for label in candidate.amplitudes:
             if label not in names:
-                direction(label, {label: 1.0}, 0.0, WIDE)
+                direction(label, {label: 1.0}, 0.0, CANDIDATE_PRIOR_WIDTH)
         for label in candidate.shapes:
             shaped = isinstance(scaled[label].transform, LogInterval)
             direction(label, {label: 1.0}, 0.0, 0.7 if shaped else 3.0)
     study = study_of(model, space, names, np.array(rows), campaign, options, width)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
-    return Posed(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions))
+    return StudySetup(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions))
 
 
-def width_of(label: str, declared: Model, waves: bool) -> float:
-    """How well a coefficient is known before its records, one standard deviation of its logarithm."""
+def prior_width_of(label: str, declared: Model, waves: bool) -> float:
+    """Prior standard deviation of a coefficient's logarithm."""
     if not waves or float(declared.values[label]) == 0:
         return VAGUE_DEVIATION
-    return ANCHORED_DAMPING if label.startswith("linear_damping.") else ANCHORED
+    return DAMPING_PRIOR_WIDTH if label.startswith("linear_damping.") else COEFFICIENT_PRIOR_WIDTH
 
 
 def _pretension(model: Model, line: str) -> float:

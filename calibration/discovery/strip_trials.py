@@ -1,4 +1,4 @@
-"""How a program takes strips, where a program made a campaign's records and its platform file does not say."""
+"""Trial of strip conventions, for records that another program made."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -7,21 +7,29 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.strip_conventions import DEFAULT_STRIPS, StripConventions
-from calibration.discovery.acceptance import LEAST_TOGETHER
+from calibration.discovery.acceptance import MIN_LIKELIHOOD_GAIN
 from calibration.fitting.decay_fit import DecayFit, independent_observations, prepare_fit, run_fit
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.strip_drag import StripDrag
 
-SIMPLER = StripConventions(directions="earth", drag_speed="component", centripetal=False)  # as simpler programs take them
-FOLLOWED = (
+SIMPLER_STRIPS = StripConventions(
+    directions="earth", drag_speed="component", centripetal=False
+)  # as simpler programs take them
+SIMPLER_STRIPS_NOTE = (
     "decays are followed better with strips loaded along earth axes, drag by components of the speed and no centripetal "
-    f"acceleration, as programs may have it ({SIMPLER} in a platform file): so are they taken here, and in what is found"
+    f"acceleration, as programs may have it ({SIMPLER_STRIPS} in a platform file): so are they taken here, and in what is found"
 )
 
 
-class Conventions(NamedTuple):
-    """A campaign with strips as its decays have them, calibrated to these (None: nothing had to be found out), how they are
-    taken where that is not as its platform file says, and why."""
+class StripTrial(NamedTuple):
+    """Outcome of a trial of strip conventions.
+
+    Attributes:
+        campaign: The campaign, its model with the conventions that the decays prefer.
+        fit: Calibration to the decays with them; None: no trial was needed.
+        strips: The conventions, where not as the platform file says.
+        notes: The reason, in words.
+    """
 
     campaign: Campaign
     fit: DecayFit | None = None
@@ -29,9 +37,11 @@ class Conventions(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Conventions:
-    """Strips as simpler programs take them where the decays, calibrated, are then followed better; as they are where the
-    platform file says how they are taken, or has other laws of drag than a constant coefficient."""
+def try_strip_conventions(campaign: Campaign, say: Callable[[str, float], None]) -> StripTrial:
+    """Choose the strip conventions that the decays prefer.
+
+    The platform file's conventions stay where it states them, or has drag laws other than a constant coefficient.
+    """
     decays = [record for record in campaign.used("fit") if record.kind == "decay"]
     model = campaign.model
     said = (
@@ -40,19 +50,19 @@ def conventions_of(campaign: Campaign, say: Callable[[str, float], None]) -> Con
     )
     other_drag = any(hasattr(load, "coupled") and not isinstance(load, StripDrag) for load in model.loads)
     if said or other_drag or campaign.platform.sea_state_laws is not None or not decays or not model.hull.strips.element:
-        return Conventions(campaign)
+        return StripTrial(campaign)
     say("calibrating to the decays", 0.01)
     run_fit(fit := prepare_fit(campaign), near=True)
     say("calibrating to the decays, strips as simpler programs take them", 0.02)
-    other = campaign.with_model(SIMPLER.applied_to(model))
+    other = campaign.with_model(SIMPLER_STRIPS.applied_to(model))
     run_fit(again := prepare_fit(other), near=True)
-    if (better := _unlikelihood(fit) - _unlikelihood(again)) < LEAST_TOGETHER:
-        return Conventions(campaign, fit)
-    return Conventions(other, again, SIMPLER, (f"{FOLLOWED} (by {better:.0f} in -2 ln L of the decays)",))
+    if (better := _unlikelihood(fit) - _unlikelihood(again)) < MIN_LIKELIHOOD_GAIN:
+        return StripTrial(campaign, fit)
+    return StripTrial(other, again, SIMPLER_STRIPS, (f"{SIMPLER_STRIPS_NOTE} (by {better:.0f} in -2 ln L of the decays)",))
 
 
 def _unlikelihood(fit: DecayFit) -> float:
-    """-2 ln L of calibrated decays, of errors that are no smaller than stated noise."""
+    """-2 ln L of calibrated decays, errors no smaller than the stated noise."""
     data = fit.problem.data
     noise = np.array([[record.noise.get(DOFS[dof], 0.0) for dof in data.dofs] for record in fit.records])
     squares = np.maximum(fit.mean_squares(), noise**2)

@@ -1,4 +1,4 @@
-"""A campaign's records and a model with every candidate at its null: looked at from any place along any few parameters."""
+"""All records of a campaign and one model: residuals and linearisations at any point."""
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -11,8 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
-from calibration.discovery.frequency_bands import Rows, step_of
-from calibration.discovery.linearisations import Look, Place, Seen, Series
+from calibration.discovery.frequency_bands import FourierRows, step_of
+from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, SeaSelection
 from calibration.discovery.residuals import Frame, SeaRecord, decay_residuals, decay_slopes, sea_residuals, sea_slopes
 from calibration.fitting.cores import cores
 from calibration.parameters.space import ParameterSpace
@@ -22,16 +22,29 @@ from calibration.residuals.measured_seas import Options, moving
 from jaxhydro.dynamics.model import Model
 from jaxhydro.interrupts import stoppable_threads
 
-LOST = 1e100  # motions and slopes that are as large are of a simulation that overflows: nothing is known there
+OVERFLOW = 1e100  # motions and slopes from here on are those of a diverging simulation
 
 
 @dataclass(frozen=True)
 class Study:
-    """All records of a campaign that take part, against one model. Directions (d, p), orthogonal, are what is free: most are
-    one parameter each, some move several together. `width` is how many are looked along at a time; `cuts` are the rows of the
-    decays and of every sea; `other_seas` the seas as they may be instead, by `fits.Order`; `options` how all of them are made.
-    `expected` (n,) is how large rows are expected beside their floor (`expected_residuals`), None where that is not
-    known."""
+    """All records of a campaign that take part, and one model with every candidate at its neutral value.
+
+    Attributes:
+        space: All parameters.
+        model: The model.
+        names: Names of the directions.
+        directions: Orthogonal directions (d, p); most are one parameter, some move several together.
+        width: Number of directions that are differentiated at a time.
+        decays: The decays, or None.
+        seas: The runs in waves.
+        other_seas: The same with other second-order treatments, by `effect_fits.SecondOrderTreatment`.
+        series: All motions of all tests.
+        decay_records: Records of the decays.
+        own_width: Standard deviations of the decays' own unknowns (r, o).
+        cuts: Rows of the decays and of every run in waves.
+        options: How seas are reconstructed, by second-order treatment.
+        expected: Expected size of rows (n,) over their floor (`expected_residuals`), or None.
+    """
 
     space: ParameterSpace
     model: Model
@@ -41,10 +54,10 @@ class Study:
     decays: DecayProblem | None
     seas: tuple[SeaRecord, ...]
     other_seas: Mapping[str, tuple[SeaRecord, ...]]
-    series: tuple[Series, ...]
+    series: tuple[MotionSeries, ...]
     decay_records: tuple[Record, ...]
     own_width: np.ndarray
-    cuts: tuple[Rows, ...]
+    cuts: tuple[FourierRows, ...]
     options: Mapping[str, Options]
     expected: np.ndarray | None = None
 
@@ -54,18 +67,18 @@ class Study:
 
     @property
     def logarithmic(self) -> np.ndarray:
-        """Which directions are logarithms: long steps along them mean nothing."""
+        """Which directions are logarithms (d,); long steps along them are meaningless."""
         flags = np.array([isinstance(free.transform, LogInterval) for free in self.space.free])
         return (np.abs(self.directions) * flags).sum(axis=1) > 0
 
     @cached_property
     def dof(self) -> np.ndarray:
-        """Degrees of freedom (s, b)."""
+        """Degrees of freedom by series and band (s, b)."""
         return np.stack([one.dof for one in self.series])
 
     @cached_property
     def floor(self) -> np.ndarray:
-        """Standard deviations (s, b) below which an error is none."""
+        """Standard deviations by series and band (m, rad; s, b) below which there is no error."""
         return np.stack([one.floor for one in self.series])
 
     @cached_property
@@ -75,8 +88,10 @@ class Study:
 
     @cached_property
     def main(self) -> np.ndarray:
-        """Which series are what their tests are about (s,): a decay's own motion; in waves what moves beside others of its
-        unit."""
+        """Which series are what their tests are about (s,).
+
+        In a decay its own motion; in waves the motions that are not small beside others of their unit.
+        """
         own = {record.id: record.degree_of_freedom for record in self.decay_records}
         moves = {
             test: moving({one.channel: one.spread for one in self.series if one.test == test})
@@ -88,18 +103,18 @@ class Study:
 
     @cached_property
     def row_series(self) -> np.ndarray:
-        """Number of every row's series."""
+        """Series of every row (n,)."""
         begins = np.cumsum([0, *(one.members for one in self.cuts)])
         return np.concatenate([one.series + begin for one, begin in zip(self.cuts, begins)])
 
     @cached_property
     def cell(self) -> np.ndarray:
-        """Where a row is in an array of series by band, flattened."""
+        """Index of every row (n,) in a flattened array by series and band."""
         return self.row_series * self.dof.shape[1] + np.concatenate([one.band for one in self.cuts])
 
     @cached_property
     def frequency(self) -> np.ndarray:
-        """Frequency (Hz) of every pair of rows, a Fourier line's real and imaginary part."""
+        """Frequency (Hz) of every pair of rows: real and imaginary part of a Fourier line."""
         found = []
         if self.decays is not None:
             times = np.asarray(self.decays.data.time)
@@ -112,33 +127,32 @@ class Study:
 
     @cached_property
     def first_order(self) -> np.ndarray:
-        """Which pairs of rows are of tests in waves, where there are waves of first order."""
+        """Which pairs of rows are at frequencies of first-order waves."""
         slow, seas = (np.array(each) for each in zip(*((one.slow, one.kind != "decay") for one in self.series)))
         mine = self.row_series[::2]
         return seas[mine] & (self.frequency > slow[mine])
 
     @cached_property
     def pooled(self) -> np.ndarray:
-        """Degrees of freedom by pool (s, b), zeros where a band is no pool's first."""
+        """Degrees of freedom by pool (s, b), at the pool's first band."""
         found = np.zeros_like(self.dof)
         for into, dof, one in zip(found, self.dof, self.series):
             np.add.at(into, one.pool, dof)
         return found
 
     def by_region(self, values: np.ndarray) -> np.ndarray:
-        """What is given by band (s, b), summed over regions (s, 3): in waves the mean, what is slower than they are, and the
-        rest; a decay as one."""
+        """Sums by region (s, 3) of values by band (s, b): in waves mean, slower, rest; a decay is one region."""
         return np.stack([np.bincount(one.region, mine, 3) for one, mine in zip(self.series, values)])
 
     @cached_property
     def pool(self) -> np.ndarray:
-        """Where a row's pool is in an array of series by band, flattened."""
+        """Index of every row's pool (n,) in a flattened array by series and band."""
         width = self.dof.shape[1]
         return self.row_series * width + np.stack([one.pool for one in self.series]).ravel()[self.cell]
 
     @cached_property
     def share(self) -> np.ndarray:
-        """What a row's square counts (n,) in the mean square of its pool over the floor's: in proportion to 1 / expected^2."""
+        """Weight of a row's square (n,) in the mean square of its pool, proportional to 1 / expected^2."""
         rows = np.bincount(self.cell, minlength=self.dof.size)[self.cell]
         trust = 1.0 if self.expected is None else 1 / self.expected**2
         each = self.dof.ravel()[self.cell] / rows * trust
@@ -157,26 +171,25 @@ class Study:
 
     @cached_property
     def fitted_decays(self) -> np.ndarray:
-        """Which decays are of fitted tests (r,)."""
+        """Which decays are fitted (r,)."""
         return np.array([record.use == "fit" for record in self.decay_records], bool)
 
     def index(self, names: Sequence[str]) -> list[int]:
-        """Numbers of directions."""
+        """Numbers of the named directions."""
         return [self.names.index(name) for name in names]
 
     @cached_property
     def start(self) -> np.ndarray:
-        """Coordinates where the study starts."""
+        """Coordinates where the study starts (p,)."""
         return np.asarray(self.space.start)
 
     def steps(self, x: np.ndarray) -> np.ndarray:
-        """How far coordinates are from where the study starts, along every direction."""
+        """Distance of coordinates from the start along every direction (d,)."""
         return self.directions @ (x - self.start) / (self.directions**2).sum(axis=1)
 
     @cached_property
     def limits(self) -> np.ndarray:
-        """How far along every direction (d, 2) a parameter makes sense: of those that are one parameter each, and whose map
-        knows no bounds itself."""
+        """Smallest and largest step along every direction (d, 2), of single parameters with bounds."""
         found = np.tile([-np.inf, np.inf], (len(self.names), 1))
         for at, row in zip(found, self.directions):
             moved = np.flatnonzero(row)
@@ -187,21 +200,21 @@ class Study:
         return found
 
     def value(self, label: str, x: np.ndarray) -> float:
-        """A parameter (SI) at coordinates of all."""
+        """A parameter (SI) at given coordinates (p,)."""
         i = self.labels.index(label)
         return float(self.space.free[i].transform.forward(x[i]))
 
-    def seen(self, seas: Seen) -> list[bool]:
-        """Which seas are looked at: those with a fitted test, or all."""
+    def selected_seas(self, seas: SeaSelection) -> list[bool]:
+        """Which runs are simulated: those with a fitted test, or all."""
         uses = {one.test: one.use for one in self.series}
         return [seas == "all" or any(uses[test] == "fit" for test in record.tests) for record in self.seas]
 
-    def _steps(self, record: SeaRecord, seas: Seen) -> Any:
-        """Over how many steps a sea is simulated: to the end of what is looked at."""
+    def _steps(self, record: SeaRecord, seas: SeaSelection) -> Any:
+        """Number of steps that a run is simulated for."""
         return jnp.asarray(record.steps if seas == "all" else record.fitted)
 
-    def motions(self, place: Place, seas: Seen = "all") -> list[np.ndarray | None]:
-        """Simulated less measured in time (s, t), of the decays' motions and of every sea's."""
+    def motions(self, place: Point, seas: SeaSelection = "all") -> list[np.ndarray | None]:
+        """Simulated minus measured motions in time (s, t), of the decays and of every run in waves."""
         x = jnp.asarray(place.x)
 
         def of_decays() -> np.ndarray:
@@ -216,32 +229,34 @@ class Study:
         with stoppable_threads(cores()) as pool:
             return [None if job is None else job.result() for job in self._parts(pool, of_decays, of_sea, seas)]
 
-    def _parts(self, pool: Executor, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: Seen) -> list[Any]:
-        """Work on the decays and on every sea, begun side by side, as XLA runs a loop on one core; None where there is nothing
-        to be seen."""
+    def _parts(
+        self, pool: Executor, decays: Callable[[], Any], sea: Callable[[SeaRecord], Any], seas: SeaSelection
+    ) -> list[Any]:
+        """Parallel work on decays and runs in waves (XLA runs a loop on one core); None: not simulated."""
         jobs: list[Any] = [pool.submit(decays)] if self.decays is not None else []
-        return jobs + [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.seen(seas))]
+        return jobs + [pool.submit(sea, one) if seen else None for one, seen in zip(self.seas, self.selected_seas(seas))]
 
-    def residual(self, place: Place, seas: Seen = "fit") -> np.ndarray:
-        """Rows of the residual at a place; zeros of tests in waves that are not looked at."""
+    def residual(self, place: Point, seas: SeaSelection = "fit") -> np.ndarray:
+        """Residual at a point in rows (n,); zeros of runs that are not simulated."""
         parts = self.motions(place, seas)
         return np.concatenate([np.zeros(2 * len(cut.take)) if one is None else cut(one) for cut, one in zip(self.cuts, parts)])
 
-    def look(self, place: Place, active: Sequence[int]) -> Look:
-        """Residual and slopes at a place, of the decays and the seas with a fitted test."""
+    def linearise(self, place: Point, active: Sequence[int]) -> Linearisation:
+        """Residual and slopes at a point, of the decays and of runs with a fitted test."""
         some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
         with stoppable_threads(cores()) as pool:
             jobs = [self._slopes(pool, place, mine) for mine in some]
             looks = [
-                self._look(place, mine, [None if job is None else job.result() for job in one]) for mine, one in zip(some, jobs)
+                self._linearisation(place, mine, [None if job is None else job.result() for job in one])
+                for mine, one in zip(some, jobs)
             ]
         whole = looks[0]
         for one in looks[1:]:
-            whole = whole.beside(one)
+            whole = whole.joined_with(one)
         return whole
 
-    def _slopes(self, pool: Executor, place: Place, active: tuple[int, ...]) -> list[Any]:
-        """Work on a place's residual and slopes along at most `width` directions."""
+    def _slopes(self, pool: Executor, place: Point, active: tuple[int, ...]) -> list[Any]:
+        """Work on residual and slopes at a point, along at most `width` directions."""
         basis = np.zeros((len(place.x), self.width))
         basis[:, : len(active)] = self.directions[list(active)].T
         frame, own = Frame(jnp.asarray(place.x), jnp.asarray(basis)), jnp.asarray(place.own)
@@ -256,7 +271,9 @@ class Study:
 
         return self._parts(pool, of_decays, lambda one: flat(sea_slopes(one, frame, self._steps(one, "fit"))), "fit")
 
-    def _look(self, place: Place, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]) -> Look:
+    def _linearisation(
+        self, place: Point, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]
+    ) -> Linearisation:
         q = len(active)
         residual, slopes, own = [], [], np.zeros((0, 0))
         for i, (cut, part) in enumerate(zip(self.cuts, parts)):
@@ -269,11 +286,11 @@ class Study:
             if i == 0 and self.decays is not None:
                 own = cut(part[1][..., self.width :])
         along = np.concatenate(slopes)
-        along[:, ~(np.abs(along) < LOST).all(axis=0)] = 0.0
-        return Look(place, active, np.concatenate(residual), along, own)
+        along[:, ~(np.abs(along) < OVERFLOW).all(axis=0)] = 0.0
+        return Linearisation(place, active, np.concatenate(residual), along, own)
 
     def levels(self, residual: np.ndarray) -> np.ndarray:
-        """Mean square over the floor's by series and pool (s, b), rows by their `share`."""
+        """Mean square over the floor's by series and pool (s, b)."""
         return np.bincount(self.pool, self.share * residual**2, self.dof.size).reshape(self.dof.shape)
 
     def mean_squares(self, residual: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from calibration.discovery.diagnosis import Diagnosis, Effect
-from calibration.discovery.effects.effect_names import called
+from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.formatting import percent
 from calibration.plots.decay_figures import BAND_COLOURS, DECADES, MAX_FREQUENCY
 from calibration.plots.search_figures import MIN_SHOWN_GAIN, anatomy_figure, latent_figure, scores_figure
@@ -41,7 +41,7 @@ def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, 
         if row is not None:
             shown.add((row.test.id, row.series.channel))
             name = "-".join(filter(None, ("effect", effect.effect, effect.degree_of_freedom)))
-            title = called(effect.effect, effect.degree_of_freedom)
+            title = effect_in_words(effect.effect, effect.degree_of_freedom)
             yield f"{safe_name(name)}.png", _EFFECT.format(title=title, id=row.test.id), effect_figure(row, title)
     if any(max(one.gain, one.refitted or 0.0) > MIN_SHOWN_GAIN for one in diagnosis.scores):
         yield "scores.png", _SCORES, scores_figure(diagnosis)

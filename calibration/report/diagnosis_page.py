@@ -37,7 +37,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
         return figures([drawn.pop(name) for name in list(drawn) if name.startswith(starts)])
 
     if words.STOPPED in saved.notes:
-        yield warning_box(f"{words.capital(words.STOPPED)}.")
+        yield warning_box(f"{words.capitalised(words.STOPPED)}.")
     elif not saved.converged:
         yield warning_box(UNCONVERGED.format("a diagnosis"))
     yield result_box(words.verdict_sentence(saved))
@@ -99,13 +99,13 @@ def _measured(saved: SavedDiagnosis) -> str:
 
 
 def _effect(saved: SavedDiagnosis, one: SavedEffect) -> Iterator[str]:
-    name = words.called(one.effect, one.degree_of_freedom)
-    yield f"<h3>{escape(words.capital(name))}</h3>"
+    name = words.effect_in_words(one.effect, one.degree_of_freedom)
+    yield f"<h3>{escape(words.capitalised(name))}</h3>"
     sizes = "; ".join(words.describe_parameter(key, value) for key, value in words.sorted_by_certainty(one.parameters))
     yield f'<p class="size"><b>Size:</b> {escape(sizes)}.</p>' if sizes else ""
     if one.meaning:
         source = f" ({one.source})" if one.source else ""
-        yield f"<p>{escape(words.capital(one.meaning.rstrip('.')) + source)}.</p>"
+        yield f"<p>{escape(words.capitalised(one.meaning.rstrip('.')) + source)}.</p>"
     yield f"<p><b>How sure:</b> {escape(' '.join(words.describe_certainty(saved, one)))}</p>"
     yield f"<p><b>What else it could be:</b> {escape(words.describe_alternatives(one))}</p>"
 

@@ -1,6 +1,6 @@
 """Tables of a diagnosis, for the terminal and the page."""
 
-from calibration.discovery.effects.effect_names import called
+from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.formatting import number, percent, quantity, readable_unit, with_deviation
 from calibration.report.diagnosis_words import (
@@ -38,7 +38,11 @@ def effects(saved: SavedDiagnosis) -> Rows:
     """What was found: a row for every parameter."""
     rows = []
     for one in saved.missing.effects:
-        first = (called(one.effect, one.degree_of_freedom), evidence_strength(one.evidence), percent(one.evidence.holdout_gain))
+        first = (
+            effect_in_words(one.effect, one.degree_of_freedom),
+            evidence_strength(one.evidence),
+            percent(one.evidence.holdout_gain),
+        )
         for i, (name, value) in enumerate(sorted_by_certainty(one.parameters)):
             said = quantity(value.value, value.standard_deviation, value.unit) if is_determined(value) else UNDETERMINED
             rows.append((first[0] if i == 0 else "", plain_name(name), said, *(first[1:] if i == 0 else ("", ""))))
@@ -109,7 +113,7 @@ def rejected(saved: SavedDiagnosis) -> Rows:
     """What was tried and is not in the model, together where it is for the same reason."""
     reasons: dict[str, list[str]] = {}
     for one in saved.missing.rejected:
-        reasons.setdefault(one.reason, []).append(called(one.effect, one.degree_of_freedom))
+        reasons.setdefault(one.reason, []).append(effect_in_words(one.effect, one.degree_of_freedom))
     rows = [("; ".join(names), reason) for reason, names in reasons.items()]
     return ("Effect", "Why not"), rows
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER
-from calibration.discovery.effects.effect_names import called, capital
+from calibration.discovery.effects.effect_names import capitalised, effect_in_words
 from calibration.formatting import listed, number, percent, quantity
 from calibration.results.read_calibration import Parameter
 from calibration.results.read_diagnosis import SavedDiagnosis, SavedEffect, SavedEvidence
@@ -58,12 +58,12 @@ def validation_tests(saved: SavedDiagnosis) -> str:
 def verdict_sentence(saved: SavedDiagnosis) -> str:
     """What a project lead has to know, in one sentence."""
     missing = saved.missing
-    named = [(called(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
+    named = [(effect_in_words(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
     names, doubted = (listed([name for name, sure in named if sure is kind]) for kind in (True, False))
     if not saved.complete and not named:
         return UNFINISHED
     if missing.verdict == "found":
-        more = f" {capital(doubted)} may stand for something else (see below)." if doubted else ""
+        more = f" {capitalised(doubted)} may stand for something else (see below)." if doubted else ""
         until = "" if saved.complete else " This is what was found until the search was stopped."
         return f"The declared model lacks {names}: {error_reduction(saved)}.{more}{until}"
     if not saved.converged and not named:
@@ -133,7 +133,7 @@ def describe_certainty(saved: SavedDiagnosis, one: SavedEffect) -> list[str]:
 
 def describe_alternatives(one: SavedEffect) -> str:
     """What else it could be, and the test that would tell."""
-    names = listed([called(other) for other in one.indistinguishable_from])
+    names = listed([effect_in_words(other) for other in one.indistinguishable_from])
     said = f"These records cannot tell it from {names}." if names else ""
     if one.in_doubt == SECOND_ORDER:
         said += (
@@ -147,8 +147,8 @@ def describe_alternatives(one: SavedEffect) -> str:
         )
     elif one.in_doubt is not None:
         said += (
-            f" {capital(called(one.in_doubt))} explains more of the fitted tests beside it than it does, and is refused (see "
-            "what was rejected): it may stand for something that neither is."
+            f" {capitalised(effect_in_words(one.in_doubt))} explains more of the fitted tests beside it than it does, and is "
+            "refused (see what was rejected): it may stand for something that neither is."
         )
     elif not names and one.evidence.score is not None:
         said = "No other effect that was tried does as well."

@@ -8,10 +8,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from calibration.discovery.effect_descent import LEAST, fit, mended
-from calibration.discovery.eliminated_least_squares import cost_of, likelihoods, linearly, predict
-from calibration.discovery.frequency_bands import Rows, bands_of
-from calibration.discovery.linearisations import Look, Place, Prior, Series
+from calibration.discovery.effect_descent import MIN_RELATIVE_GAIN, broyden_update, fit
+from calibration.discovery.eliminated_least_squares import cost_of, linear_residual, minus_two_log_likelihood, predict_gain
+from calibration.discovery.frequency_bands import FourierRows, bands_of
+from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, Prior
 from calibration.discovery.study import Study
 
 SAMPLES, NOISE = 201, 0.05
@@ -21,24 +21,24 @@ TIME = np.linspace(0.0, 20.0, SAMPLES)
 class Oscillations(Study):
     """Three records, the last held out: x = a exp(-z t) cos(w t) + offset, w and z shared, a and offset each record's own."""
 
-    def values(self, place: Place) -> np.ndarray:
+    def values(self, place: Point) -> np.ndarray:
         rate, decay = place.x
         return np.stack([a * np.exp(-decay * TIME) * np.cos(rate * TIME) + offset for a, offset in place.own])
 
-    def residual(self, place: Place, seas="fit") -> np.ndarray:
+    def residual(self, place: Point, seas="fit") -> np.ndarray:
         return self.cuts[0](self.values(place) - self.measured)
 
-    def look(self, place: Place, active) -> Look:
+    def linearise(self, place: Point, active) -> Linearisation:
         self.looks.append(place)
         steps = 1e-6 * np.eye(4)
 
         def slope(x, own):
-            ahead, behind = (self.residual(Place(place.x + s * x, place.own + s * own)) for s in (1, -1))
+            ahead, behind = (self.residual(Point(place.x + s * x, place.own + s * own)) for s in (1, -1))
             return (ahead - behind) / 2e-6
 
         slopes = np.stack([slope(one[:2], 0) for one in steps[:2]], axis=1)[:, list(active)]
         own = np.stack([slope(0, one[2:]) for one in steps[2:]], axis=1)
-        return Look(place, tuple(active), self.residual(place), slopes, own)
+        return Linearisation(place, tuple(active), self.residual(place), slopes, own)
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def study():
     noise = np.random.default_rng(1).normal(0, NOISE, (3, SAMPLES))
     uses = ("fit", "fit", "holdout")
     series = tuple(
-        Series(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES, np.full(12, NOISE))
+        MotionSeries(f"r{i}", "decay", use, "surge", NOISE, 1.0, 2 * cut.lines, cut.low, cut.high, SAMPLES, np.full(12, NOISE))
         for i, use in enumerate(uses)
     )
     free = tuple(SimpleNamespace(label=name, transform=None) for name in ("rate", "decay"))
@@ -64,10 +64,10 @@ def study():
         series,
         tuple(SimpleNamespace(use=use) for use in uses),
         np.full((3, 2), np.inf),
-        (Rows.of([cut] * 3, SAMPLES),),
+        (FourierRows.of([cut] * 3, SAMPLES),),
         {},
     )
-    truth = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
+    truth = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     object.__setattr__(found, "looks", [])
     object.__setattr__(found, "measured", found.values(truth) + noise)
     return found
@@ -76,12 +76,12 @@ def study():
 PRIOR = Prior(np.zeros(2), np.full(2, 10.0))
 
 
-def best(study: Study, begin: Place) -> np.ndarray:
+def best(study: Study, begin: Point) -> np.ndarray:
     """By SciPy, of the fitted records."""
-    look = study.look(begin, (0, 1))
+    look = study.linearise(begin, (0, 1))
 
     def cost(z):
-        place = Place(z[:2], np.vstack([z[2:].reshape(2, 2), begin.own[2:]]))
+        place = Point(z[:2], np.vstack([z[2:].reshape(2, 2), begin.own[2:]]))
         return cost_of(study, look, study.residual(place), place, study.used, PRIOR)
 
     start = np.concatenate([begin.x, begin.own[:2].ravel()])
@@ -92,10 +92,12 @@ def best(study: Study, begin: Place) -> np.ndarray:
 def test_a_fit_ends_where_scipy_does(study, looks, close):
     """From slopes far from the end's: nearly so with these alone, mended; exactly with slopes taken anew. The held-out record's
     own unknowns stay."""
-    begin = Place(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
+    begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
     expected = best(study, begin)
     study.looks.clear()
-    reached = fit(study, study.look(begin, (0, 1)), study.used, PRIOR, iterations=60, looks=looks, tolerance=1e-6)
+    reached = fit(
+        study, study.linearise(begin, (0, 1)), study.used, PRIOR, iterations=60, relinearisations=looks, tolerance=1e-6
+    )
     assert reached.settled
     assert len(study.looks) <= 1 + looks + 1
     assert_allclose(reached.look.place.x, expected[:2], atol=close)
@@ -105,25 +107,25 @@ def test_a_fit_ends_where_scipy_does(study, looks, close):
 
 def test_a_fit_stays_where_its_parameters_make_sense(study):
     """What would leave is at the end of its range, and all others where SciPy has them with it there."""
-    begin = Place(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
+    begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
     study.__dict__["limits"] = np.array([[-np.inf, np.inf], [-0.02, np.inf]])
-    look = study.look(begin, (0, 1))
+    look = study.linearise(begin, (0, 1))
 
     def cost(z):
-        place = Place(np.array([z[0], 0.08]), np.vstack([z[1:].reshape(2, 2), begin.own[2:]]))
+        place = Point(np.array([z[0], 0.08]), np.vstack([z[1:].reshape(2, 2), begin.own[2:]]))
         return cost_of(study, look, study.residual(place), place, study.used, PRIOR)
 
     options = {"xatol": 1e-8, "fatol": 1e-10, "maxiter": 8000}
     expected = minimize(cost, [1.25, *begin.own[:2].ravel()], method="Nelder-Mead", options=options).x
-    reached = fit(study, look, study.used, PRIOR, iterations=60, looks=3, tolerance=1e-6)
+    reached = fit(study, look, study.used, PRIOR, iterations=60, relinearisations=3, tolerance=1e-6)
     assert_allclose(reached.look.place.x, [expected[0], 0.08], atol=2e-4)
     assert_allclose(reached.look.place.own[:2].ravel(), expected[1:], atol=2e-3)
 
 
 def test_held_out_records_are_fitted_with_parameters_as_they_are(study):
     """No directions: only the own unknowns of what is asked for move."""
-    begin = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.1, 0.3]]))
-    reached = fit(study, study.look(begin, ()), ~study.used, PRIOR, iterations=10, tolerance=1e-6)
+    begin = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.1, 0.3]]))
+    reached = fit(study, study.linearise(begin, ()), ~study.used, PRIOR, iterations=10, tolerance=1e-6)
     assert_allclose(reached.look.place.own[2], [0.5, 0.0], atol=0.02)
     assert_allclose(reached.look.place.own[:2], begin.own[:2])
     assert_allclose(reached.look.place.x, begin.x)
@@ -131,23 +133,23 @@ def test_held_out_records_are_fitted_with_parameters_as_they_are(study):
 
 def test_mended_slopes_give_the_step_that_was_taken(study):
     """The secant equation, record by record."""
-    begin = Place(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
-    look = study.look(begin, (0, 1))
+    begin = Point(np.array([1.25, 0.1]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.0]]))
+    look = study.linearise(begin, (0, 1))
     step, own = np.array([0.03, -0.02]), np.array([[0.1, 0.05], [0.2, -0.1], [0.0, 0.0]])
     there = begin.moved(study.directions, step, own)
     residual = study.residual(there)
-    after = mended(study, look, there, residual, step, own)
-    assert_allclose(linearly(study, after, -step, -own), look.residual, atol=1e-10)
+    after = broyden_update(study, look, there, residual, step, own)
+    assert_allclose(linear_residual(study, after, -step, -own), look.residual, atol=1e-10)
 
 
 def test_a_prediction_is_exact_where_the_model_is_linear(study):
     """Along the own unknowns alone the model is linear: what is predicted is what a fit gains, held-out tests too."""
-    begin = Place(np.array([1.3, 0.06]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.1]]))
-    look = study.look(begin, ())
-    found = predict(study, look, PRIOR)
+    begin = Point(np.array([1.3, 0.06]), np.array([[0.9, 0.0], [1.8, 0.0], [0.4, 0.1]]))
+    look = study.linearise(begin, ())
+    found = predict_gain(study, look, PRIOR)
     for used, gain in ((study.used, found.fitted), (~study.used, found.held)):
         reached = fit(study, look, used, PRIOR, iterations=20, tolerance=1e-9)
-        now = likelihoods(study, look.residual) - likelihoods(study, reached.look.residual)
+        now = minus_two_log_likelihood(study, look.residual) - minus_two_log_likelihood(study, reached.look.residual)
         assert now[used].sum() > 10
         assert_allclose(gain, now[used].sum(), rtol=0.01)
 
@@ -155,22 +157,22 @@ def test_a_prediction_is_exact_where_the_model_is_linear(study):
 @pytest.mark.parametrize("far", [1.0, 1e2, 1e4, 1e6])
 def test_a_fit_is_converged_to_the_tolerance_of_where_it_ends(study, far):
     """However large what is minimised was at first: releases may begin far off. The least is SciPy's, from near the truth."""
-    begin = Place(np.array([1.25, 0.1]), far * np.array([[0.9, 0.3], [-1.8, 0.3], [0.4, 0.0]]))
+    begin = Point(np.array([1.25, 0.1]), far * np.array([[0.9, 0.3], [-1.8, 0.3], [0.4, 0.0]]))
     costs = []
     reached = fit(
         study,
-        study.look(begin, (0, 1)),
+        study.linearise(begin, (0, 1)),
         study.used,
         PRIOR,
         iterations=200,
-        looks=20,
+        relinearisations=20,
         tolerance=1e-6,
-        say=lambda _, cost: costs.append(cost),
+        report=lambda _, cost: costs.append(cost),
     )
-    near = Place(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
+    near = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     expected = best(study, near)
     z = np.concatenate([reached.look.place.x, reached.look.place.own[:2].ravel()])
-    place = Place(expected[:2], np.vstack([expected[2:].reshape(2, 2), begin.own[2:]]))
+    place = Point(expected[:2], np.vstack([expected[2:].reshape(2, 2), begin.own[2:]]))
     least = cost_of(study, reached.look, study.residual(place), place, study.used, PRIOR)
-    assert reached.settled and costs[-1] - least < 2 * LEAST * abs(least)
+    assert reached.settled and costs[-1] - least < 2 * MIN_RELATIVE_GAIN * abs(least)
     assert_allclose(z, expected, atol=2e-3)

@@ -16,16 +16,16 @@ from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.commands.calibrate_command import simulate_campaign
-from calibration.discovery import strip_trials as conventions
-from calibration.discovery.channel_signs import turned
-from calibration.discovery.checkpoint import keep, resumed
+from calibration.discovery import strip_trials
+from calibration.discovery.channel_signs import with_signs_reversed
+from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude
-from calibration.discovery.effects.phase_shift_start import FINENESS, from_afar
-from calibration.discovery.greedy_search import FIRST_ORDER, SIMPLER, Search
-from calibration.discovery.linearisations import Place
-from calibration.discovery.set_up import pose
-from calibration.discovery.wave_records import by_a_program, highest_difference, options_for
+from calibration.discovery.effects.phase_shift_start import PHASE_SPACING, phase_shift_start
+from calibration.discovery.greedy_search import FIRST_ORDER_NOTE, SIMPLER_SEA_NOTES, Search
+from calibration.discovery.linearisations import Point
+from calibration.discovery.set_up import set_up_study
+from calibration.discovery.wave_records import highest_difference, options_for, simulated_by_program
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import seas_of
 from calibration.results.applied_calibration import apply_calibration
@@ -189,12 +189,12 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
     for shift in (far, near):
         (folder := tmp_path / f"{shift}").mkdir()
         campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
-        posed = pose(campaign, options_for(campaign)[0])
-        (one,) = (one for one in posed.candidates if label in one.amplitudes)
-        look = posed.study.look(Place(np.asarray(posed.study.space.start), np.zeros((0, 0))), posed.study.index([label]))
-        found.append(from_afar(posed.study, look, label, one.turns))
+        setup = set_up_study(campaign, options_for(campaign)[0])
+        (one,) = (one for one in setup.candidates if label in one.amplitudes)
+        look = setup.study.linearise(Point(np.asarray(setup.study.space.start), np.zeros((0, 0))), setup.study.index([label]))
+        found.append(phase_shift_start(setup.study, look, label, one.phase_per_unit))
     there, nothing = found
-    assert there.values[label] == pytest.approx(far, abs=FINENESS / abs(turns(0.65))) and there.gain > 500
+    assert there.values[label] == pytest.approx(far, abs=PHASE_SPACING / abs(turns(0.65))) and there.gain > 500
     assert nothing is None
 
 
@@ -247,22 +247,22 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     campaign = load_campaign(tmp_path)
     options, _ = options_for(campaign)
-    assert by_a_program(options)
+    assert simulated_by_program(options)
     assert highest_difference(seas_of(campaign, model.environment, options)) == pytest.approx(HIGHEST, abs=0.002)
     cut = dataclasses.replace(options, highest_difference=HIGHEST)
     assert highest_difference(seas_of(campaign, model.environment, cut)) is None
-    posed = pose(campaign, options)
-    search = Search(campaign, posed, lambda *_: None)
-    state = search.declared()
+    setup = set_up_study(campaign, options)
+    search = Search(campaign, setup, lambda *_: None)
+    state = search.fit_baseline()
     assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
     taken = search.study.options[search.order]
     assert taken == dataclasses.replace(cut, highest_difference=taken.highest_difference, acting="at the origin")
-    told = [said.format(highest=taken.highest_difference) for said in SIMPLER.values()]
+    told = [said.format(highest=taken.highest_difference) for said in SIMPLER_SEA_NOTES.values()]
     assert [note for note in search.notes if all(said in note for said in told)]
-    keep(tmp_path / "kept", search, [state], 1.0)
-    again = Search(campaign, posed, lambda *_: None)
-    assert len(resumed(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
-    assert set(pose(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
+    save_checkpoint(tmp_path / "kept", search, [state], 1.0)
+    again = Search(campaign, setup, lambda *_: None)
+    assert len(load_checkpoint(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
+    assert set(set_up_study(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
     found = conclude(campaign, search, state, state, (), 1.0)
     write_diagnosis(found, tmp_path / "found", figures=False)
     assert simulate_campaign(tmp_path, tmp_path / "seas", calibration=tmp_path / "found")
@@ -277,18 +277,18 @@ def test_second_order_is_taken_again(tmp_path: Path) -> None:
     """Where waves of first order were taken, and follow no better any more, those of the record; with the declared model that
     was fitted in them."""
     campaign = campaign_of(tmp_path, pressure)
-    search = Search(campaign, pose(campaign, options_for(campaign)[0]), lambda *_: None)
-    declared = search.declared()
-    assert search.declared_in_second_order is None and search.in_second_order(declared, 1) is None
+    search = Search(campaign, set_up_study(campaign, options_for(campaign)[0]), lambda *_: None)
+    declared = search.fit_baseline()
+    assert search.declared_in_second_order is None and search.second_order_again(declared, 1) is None
     of_second = search.blocks
     search.take_seas("first")
     assert of_second is not None and search.blocks is not None  # which are of the seas in hand
     assert search.blocks.study.seas[0].sea is search.study.seas[0].sea is not of_second.study.seas[0].sea
-    search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER} (by 30 in -2 ln L)", "another"]
+    search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER_NOTE} (by 30 in -2 ln L)", "another"]
     lost = dataclasses.replace(declared, likelihood=declared.likelihood - 1e3)  # waves of first order follow far better
-    assert search.in_second_order(lost, 1) is None and search.study.seas is search.study.other_seas["first"]
-    again = search.in_second_order(declared, 1)
-    assert again is not None and again[0] is declared and search.study.seas is search.posed.study.seas
+    assert search.second_order_again(lost, 1) is None and search.study.seas is search.study.other_seas["first"]
+    again = search.second_order_again(declared, 1)
+    assert again is not None and again[0] is declared and search.study.seas is search.setup.study.seas
     assert search.notes == ["another"] and search.declared_in_second_order is None
     used = search.study.used
     assert_allclose(again[1].likelihood[used].sum(), declared.likelihood[used].sum(), atol=1.0)
@@ -316,7 +316,10 @@ def test_a_campaign_turned_round(tmp_path: Path) -> None:
     manifest["tests"][1]["channels"] = {"heave": {"sign": -1}}
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     one = load_campaign(tmp_path)
-    made, again = turned(one, ["wave", "heave"]), turned(turned(one, ["wave", "heave"]), ["wave", "heave"])
+    made, again = (
+        with_signs_reversed(one, ["wave", "heave"]),
+        with_signs_reversed(with_signs_reversed(one, ["wave", "heave"]), ["wave", "heave"]),
+    )
     for was, now, right in zip(campaign.records, made.records, (-1, 1), strict=True):
         assert_allclose(now.values["heave"], right * was.values["heave"])
         assert_allclose(now.wave, -was.wave)
@@ -350,15 +353,15 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     windows = {"fit": [0, 0.4 * DURATION], "holdout": [0.4 * DURATION, DURATION - STEP]}
     manifest["tests"] = [{"id": use, "window": window, "use": use, **sea} for use, window in windows.items()]
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
-    study = pose(campaign := load_campaign(tmp_path), options_for(campaign)[0]).study
+    study = set_up_study(campaign := load_campaign(tmp_path), options_for(campaign)[0]).study
     (record,) = study.seas
     assert record.fitted < 0.45 * record.steps
-    place = Place(np.asarray(study.space.start), np.zeros((0, 0)))
+    place = Point(np.asarray(study.space.start), np.zeros((0, 0)))
     every, some, fitted = study.residual(place, "all"), study.residual(place), study.used[study.row_series]
     assert_allclose(some[fitted], every[fitted], rtol=0, atol=1e-12)
     assert np.abs(every[~fitted]).max() > 1e-3 and not some[~fitted].any()
     active = range(study.width + 5)
-    looks = [one.look(place, active) for one in (study, dataclasses.replace(study, width=study.width + 8))]
+    looks = [one.linearise(place, active) for one in (study, dataclasses.replace(study, width=study.width + 8))]
     assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)
     assert not looks[0].slopes[~fitted].any() and np.abs(looks[0].slopes[fitted]).max() > 1e-3
     assert_allclose(looks[0].slopes, looks[1].slopes, rtol=0, atol=1e-9 * np.abs(looks[1].slopes).max())
@@ -369,17 +372,17 @@ def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatc
     """Where calibrated decays are followed better so, and no word of the platform file says how strips are taken."""
     campaign = load_campaign(resources.files("jaxhydro") / "campaigns" / "volturnus-s-decays")
     asked: list[Campaign] = []
-    monkeypatch.setattr(conventions, "prepare_fit", lambda one: asked.append(one) or one)
-    monkeypatch.setattr(conventions, "run_fit", lambda one, near: None)
-    monkeypatch.setattr(conventions, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
-    found = conventions.conventions_of(campaign, lambda *_: None)
+    monkeypatch.setattr(strip_trials, "prepare_fit", lambda one: asked.append(one) or one)
+    monkeypatch.setattr(strip_trials, "run_fit", lambda one, near: None)
+    monkeypatch.setattr(strip_trials, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
+    found = strip_trials.try_strip_conventions(campaign, lambda *_: None)
     model = found.campaign.model
     assert [one.model.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
     assert (model.directions, model.centripetal) == (("earth", False) if simpler else ("body", True))
     assert [load.coupled for load in model.loads if isinstance(load, StripDrag)] == [not simpler]
-    assert bool(found.notes) is simpler and found.strips == (conventions.SIMPLER if simpler else None)
+    assert bool(found.notes) is simpler and found.strips == (strip_trials.SIMPLER_STRIPS if simpler else None)
     said = dataclasses.replace(campaign, platform=campaign.platform.model_copy(update={"drag_speed": "vector"}))
-    assert conventions.conventions_of(said, lambda *_: None) == conventions.Conventions(said)
+    assert strip_trials.try_strip_conventions(said, lambda *_: None) == strip_trials.StripTrial(said)
     assert len(asked) == 2
 
 
@@ -392,7 +395,7 @@ def test_errors_below_the_noise_tell_nothing() -> None:
         records = [SimpleNamespace(noise=one) for one in noise]
         problem = SimpleNamespace(data=data)
         fit = SimpleNamespace(problem=problem, records=records, ends=[100.0, 100.0], mean_squares=lambda: np.array(squares))
-        return conventions._unlikelihood(fit)  # type: ignore[arg-type]
+        return strip_trials._unlikelihood(fit)  # type: ignore[arg-type]
 
     least = of([0.01, 1e-6], [0.01, 1e-6])
     assert of([0.001, 1e-9], [0.01, 1e-8]) == pytest.approx(least)

@@ -343,6 +343,8 @@ def test_sizes_and_names_as_people_read_them() -> None:
     assert words.is_determined(small.model_copy(update={"start": 2000.0}))  # known to be small
     near = known.model_copy(update={"standard_deviation": 20e3})
     assert words.describe_parameter("quintic", near).endswith("kN m/rad³, less than 2 standard deviations from zero")
-    assert words.called("hysteresis (surge)") == "hysteresis in surge" and words.called("current") == "a current"
+    assert (
+        words.effect_in_words("hysteresis (surge)") == "hysteresis in surge" and words.effect_in_words("current") == "a current"
+    )
     assert words.listed(["a"]) == "a" and words.listed(["a", "b", "c"]) == "a, b and c" and words.listed([]) == ""
     assert words.describe_change(0.5, 0.6) == "grows by 20 % (J from 0.500 to 0.600)"

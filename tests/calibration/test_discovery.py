@@ -13,19 +13,19 @@ from scipy.integrate import solve_ivp
 import jaxhydro as jh
 from calibration import calibrate
 from calibration.campaign.load_campaign import load_campaign
-from calibration.discovery import checkpoint as kept
+from calibration.discovery import checkpoint
 from calibration.discovery import greedy_search as search
-from calibration.discovery.acceptance import SLIGHT, Left, Verdict, given_up
-from calibration.discovery.candidate_trials import Found, Scored
+from calibration.discovery.acceptance import NEGLIGIBLE, ResidualSummary, Verdict, abandoned_decays
+from calibration.discovery.candidate_trials import AcceptedEffect, ScoredCandidate
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import scales_of
-from calibration.discovery.eliminated_least_squares import Predicted
-from calibration.discovery.frequency_bands import Rows, bands_of
+from calibration.discovery.effects.listed import noticeable_scales
+from calibration.discovery.eliminated_least_squares import FirstOrderGain
+from calibration.discovery.frequency_bands import FourierRows, bands_of
 from calibration.discovery.greedy_search import Search
-from calibration.discovery.linearisations import Place, Prior
-from calibration.discovery.set_up import pose
+from calibration.discovery.linearisations import Point, Prior
+from calibration.discovery.set_up import set_up_study
 from calibration.residuals.measured_seas import Options
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
@@ -98,7 +98,7 @@ def test_rows_hold_the_sum_of_squares():
     rng = np.random.default_rng(0)
     values = rng.normal(size=(2, 401, 3))  # an odd number has no line at half the sampling rate
     cut = bands_of(40.1, 0.1, 401, 12, 6.0)  # all frequencies
-    rows = Rows.of([cut, cut], 401)
+    rows = FourierRows.of([cut, cut], 401)
     found = rows(values)
     for i, one in enumerate(values):
         mine = found[rows.series == i]
@@ -110,7 +110,7 @@ def test_a_series_without_rows_keeps_its_place():
     """A motion that a record lacks has no lines, and is counted all the same: what comes after it stays where it was."""
     cut = bands_of(40.1, 0.1, 401, 12, 6.0)
     nothing = cut._replace(member=np.zeros_like(cut.member))
-    rows = Rows.of([cut, nothing], 401)
+    rows = FourierRows.of([cut, nothing], 401)
     assert rows.members == 2
     assert set(rows.series) == {0}
 
@@ -118,7 +118,7 @@ def test_a_series_without_rows_keeps_its_place():
 def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
     """What is declared is fitted, not looked for."""
     campaign = campaign_of(tmp_path, lambda x, v: 0.0)
-    names = {one.name for one in pose(campaign, Options()).candidates}
+    names = {one.name for one in set_up_study(campaign, Options()).candidates}
     assert {"coulomb_friction (roll)", "nonlinear_hydrostatics (roll)", "quadratic_damping (roll)"} <= names
     assert not any("surge" in name for name in names)
 
@@ -187,18 +187,18 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
     assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
     assert 0.9 < found.effects[0].evidence.holdout_gain < 1.0
     with monkeypatch.context() as limited:
-        limited.setattr("calibration.discovery.diagnose.ROUNDS", 1)
+        limited.setattr("calibration.discovery.diagnose.MAX_EFFECTS", 1)
         seen.clear()
         again = found_in(campaign, progress=lambda progress: seen.append(progress.stage), kept=path)
     assert not any(stage.startswith("round") for stage in seen) and len(again.effects) == 1
     assert any("ended with the effect number 1" in note for note in again.notes)
     assert not any("ended with" in note for note in found.notes)
     search = SimpleNamespace()
-    monkeypatch.setattr(kept, "fingerprint", lambda search: "of another campaign")
-    assert kept.resumed(path, search) == []
+    monkeypatch.setattr(checkpoint, "fingerprint", lambda search: "of another campaign")
+    assert checkpoint.load_checkpoint(path, search) == []
     path.write_bytes(path.read_bytes()[:1000])
-    assert kept.resumed(path, search) == []
-    assert kept.resumed(tmp_path / "none", search) == []
+    assert checkpoint.load_checkpoint(path, search) == []
+    assert checkpoint.load_checkpoint(tmp_path / "none", search) == []
 
 
 class Sine(AbstractLoad):
@@ -278,13 +278,15 @@ def test_the_best_of_every_motion_is_tried_where_the_best_of_all_do_not_last():
     study = SimpleNamespace(series=series, used=np.array([True, True, True, False]))
     gains = {"a": [9, 30, 0, 99], "b": [20, 29, 1, 0], "c": [1, 31, 2, 0]}
     rest = [
-        Scored(Candidate(name, None, ()), Predicted(np.zeros(0), np.array(gain, float), study.used, np.zeros((0, 0))), None)
+        ScoredCandidate(
+            Candidate(name, None, ()), FirstOrderGain(np.zeros(0), np.array(gain, float), study.used, np.zeros((0, 0))), None
+        )
         for name, gain in gains.items()
     ]
-    found = Search.by_motion(SimpleNamespace(study=study), rest, 5.0)
+    found = Search.best_by_motion(SimpleNamespace(study=study), rest, 5.0)
     assert [one.candidate.effect for one in found] == ["b", "c"]
     assert (rest[0].predicted.fitted, rest[0].predicted.held) == (39.0, 99.0)
-    assert Search.by_motion(SimpleNamespace(study=study), [], 5.0) == []
+    assert Search.best_by_motion(SimpleNamespace(study=study), [], 5.0) == []
 
 
 @pytest.mark.parametrize(
@@ -301,26 +303,26 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         return z * (1 + (z / 3) ** 2), 0
 
     def state(x, chosen=()):
-        look = SimpleNamespace(place=Place(np.array(x), None), active=(0, 1))
+        look = SimpleNamespace(place=Point(np.array(x), None), active=(0, 1))
         return SimpleNamespace(look=look, chosen=chosen, likelihood=np.zeros(1))
 
-    monkeypatch.setattr(search, "predict", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
-    monkeypatch.setattr(search, "away", away)
+    monkeypatch.setattr(search, "predict_gain", lambda *_: SimpleNamespace(deviation=np.array([0.1, deviation])))
+    monkeypatch.setattr(search, "prior_residuals", away)
     after = state([0.1, inertia], (one,))
     under_way = SimpleNamespace(
-        posed=SimpleNamespace(candidates=[one], prior=nearly),
+        setup=SimpleNamespace(candidates=[one], prior=nearly),
         found={},
         rejected={},
         notes=[],
         count=500.0,
-        study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], look=lambda *_: None, steps=lambda x: x),
+        study=SimpleNamespace(used=np.array([True]), index=lambda _: [0, 1], linearise=lambda *_: None, steps=lambda x: x),
         active=lambda chosen: [0, 1],
         refit=lambda *_: after,
         prior=lambda chosen: free if chosen else nearly,
-        gain=lambda *_: 0.0,
-        judge=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
+        likelihood_gain=lambda *_: 0.0,
+        assess=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
     )
-    found = Search.weighed(under_way, state([0.1, 0.9 * inertia]))
+    found = Search.with_mass_properties(under_way, state([0.1, 0.9 * inertia]))
     assert (found is after) == told == ("mass_properties" in under_way.found)
     if told:
         evidence = under_way.found["mass_properties"].verdict
@@ -329,7 +331,8 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
 
 
 @pytest.mark.parametrize(
-    ("bic", "refused", "stays"), [(150.0, SLIGHT, True), (90.0, SLIGHT, False), (150.0, "grows", False), (90.0, "", True)]
+    ("bic", "refused", "stays"),
+    [(150.0, NEGLIGIBLE, True), (90.0, NEGLIGIBLE, False), (150.0, "grows", False), (90.0, "", True)],
 )
 def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, refused, stays):
     """Where it hardly matters with them in the model: it is they that share what is its own."""
@@ -338,17 +341,17 @@ def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, ref
     whole, without = (SimpleNamespace(chosen=chosen, look=look) for chosen in ((first, last), (last,)))
     of_last, of_first = Verdict(60.0, 0.5, True, 120.0, 9.0, 1.2, ""), Verdict(bic, 0.5, True, 60.0, 9.0, 0.9, refused)
     under_way = SimpleNamespace(
-        found={one.name: Found(1.0, None, None, of_last, ()) for one in (first, last)},
+        found={one.name: AcceptedEffect(1.0, None, None, of_last, ()) for one in (first, last)},
         rejected={},
         notes=[],
-        study=SimpleNamespace(look=lambda *_: look),
+        study=SimpleNamespace(linearise=lambda *_: look),
         active=lambda chosen: [],
-        renewed=lambda *_: None,
+        with_starting_values=lambda *_: None,
         refit=lambda *_: without,
-        judge=lambda *_, **__: of_first,
-        refuse=lambda one, why, verdict: under_way.rejected.update({one.name: why}),
+        assess=lambda *_, **__: of_first,
+        reject=lambda one, why, verdict: under_way.rejected.update({one.name: why}),
     )
-    assert Search.pruned(under_way, whole) is (whole if stays else without)
+    assert Search.without_needless_effects(under_way, whole) is (whole if stays else without)
     assert bool(under_way.rejected) is not stays and bool(under_way.notes) is (stays and bool(refused))
     assert not stays or under_way.found[first.name].verdict == of_first._replace(refused="")
 
@@ -362,10 +365,10 @@ def test_a_decay_that_the_seas_take_away_is_said():
     used, main = np.array([True, True, True, True, False, True]), np.array([True, True, True, True, True, False])
     study = SimpleNamespace(series=series, used=used, main=main)
     alone, now = (
-        Left(np.zeros((6, 1)), np.array(error)[:, None], np.zeros(6))
+        ResidualSummary(np.zeros((6, 1)), np.array(error)[:, None], np.zeros(6))
         for error in ([0.1, 0.1, 0.6, 0.1, 0.1, 0.1], [1.5, 0.19, 1.5, 1.5, 1.5, 1.5])
     )
-    (said,) = given_up(study, alone, now)
+    (said,) = abandoned_decays(study, alone, now)
     assert "the decay a is given up: 75 % of its motion is left, 5 % where decays are fitted alone" in said
 
 
@@ -373,7 +376,7 @@ def test_every_candidate_can_be_put_into_a_model_of_the_platform():
     """By its labels alone, as a file of a diagnosis has them; amplitudes silent."""
     model = jh.load_model("volturnus-s")
     mass, stiffness = (np.asarray(m) for m in linearised(model, equilibrium(model)))
-    scales = scales_of(mass, stiffness, dict.fromkeys(DOFS, 0.1))
+    scales = noticeable_scales(mass, stiffness, dict.fromkeys(DOFS, 0.1))
     candidates, free, units = catalogue(model, scales, True, 1.0)
     assert {"wave_excitation", "wave_drift", "umbilical", "amplitude_dependent_drag"} <= {one.effect for one in candidates}
     for one in candidates:

@@ -11,13 +11,13 @@ from numpy.testing import assert_allclose
 from test_water_effects import irregular
 
 import jaxhydro as jh
-from calibration.discovery.eliminated_least_squares import deviances, weights
-from calibration.discovery.expected_residuals import beside, impedance, spectrum
-from calibration.discovery.frequency_bands import Rows, bands_of
+from calibration.discovery.eliminated_least_squares import deviances, row_weights
+from calibration.discovery.expected_residuals import expected_over_floor, force_spectrum, impedance
+from calibration.discovery.frequency_bands import FourierRows, bands_of
 from calibration.discovery.greedy_search import Search
-from calibration.discovery.linearisations import Prior, Series
+from calibration.discovery.linearisations import MotionSeries, Prior
 from calibration.discovery.residuals import SeaRecord
-from calibration.discovery.set_up import ANCHORED, ANCHORED_DAMPING, Posed, width_of
+from calibration.discovery.set_up import COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH, StudySetup, prior_width_of
 from calibration.discovery.study import Study
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import Scaled
@@ -80,7 +80,7 @@ def test_what_a_white_force_leaves() -> None:
         force, noise = (random.normal(size=(2, 179, 2)) @ [1, 1j] for _ in "ab")
         lines = np.einsum("fij,jf->if", np.linalg.inv(stiffness), deviation * force) + floor * noise
         squares = squares + np.abs(lines) ** 2 / 2 / 300
-        expected = expected + (beside(lines, floor, pool, stiffness) * floor) ** 2 / 300
+        expected = expected + (expected_over_floor(lines, floor, pool, stiffness) * floor) ** 2 / 300
     assert expected.max() > 1e3 * expected.min()
     assert_allclose(expected / squares, 1, atol=0.35)
     assert_allclose(np.log(expected / squares).mean(axis=1), 0, atol=0.02)
@@ -90,9 +90,9 @@ def test_noise_alone_is_no_force() -> None:
     """Where all is floor, nothing is missing."""
     random, floor = np.random.default_rng(1), np.full((2, 179), 2e-2)
     lines = floor * (random.normal(size=(2, 179, 2)) @ [1, 1j])
-    found = beside(lines, floor, np.zeros(179, int), coupled(np.arange(1, 180) / 3600))
+    found = expected_over_floor(lines, floor, np.zeros(179, int), coupled(np.arange(1, 180) / 3600))
     assert found.max() < 1.8 and np.median(found) < 1.1
-    assert spectrum(np.zeros(9), np.ones(9), np.zeros(9, int)).max() == 0
+    assert force_spectrum(np.zeros(9), np.ones(9), np.zeros(9, int)).max() == 0
 
 
 @pytest.fixture
@@ -100,10 +100,24 @@ def study() -> Study:
     """One motion in a sea of an hour, slow to 0.05 Hz."""
     n = 3600
     cut = bands_of(n, 1.0, n, 14, 0.2)
-    series = Series("sea", "irregular", "fit", "surge", 0.01, 1.0, 2 * cut.lines, cut.low, cut.high, n, np.full(14, 0.02), 0.05)
+    series = MotionSeries(
+        "sea", "irregular", "fit", "surge", 0.01, 1.0, 2 * cut.lines, cut.low, cut.high, n, np.full(14, 0.02), 0.05
+    )
     space = SimpleNamespace(labels=(), start=jnp.zeros(0), free=())
     return Study(
-        space, None, (), np.zeros((0, 0)), 8, None, (), (), (series,), (), np.zeros((0, 0)), (Rows.of([cut], n, 0.1),), {}
+        space,
+        None,
+        (),
+        np.zeros((0, 0)),
+        8,
+        None,
+        (),
+        (),
+        (series,),
+        (),
+        np.zeros((0, 0)),
+        (FourierRows.of([cut], n, 0.1),),
+        {},
     )  # type: ignore[arg-type]
 
 
@@ -132,15 +146,19 @@ def test_a_resonance_counts_as_what_it_is(study: Study) -> None:
     # weights are the slopes of what is minimised
     step = 1e-6 * residual
     change = float((deviances(told, residual + step, 0.2) - deviances(told, residual, 0.2)).sum())
-    assert change == pytest.approx(2 * float((weights(told, residual) * residual * step).sum()), rel=1e-4)
+    assert change == pytest.approx(2 * float((row_weights(told, residual) * residual * step).sum()), rel=1e-4)
 
 
 def test_how_well_coefficients_are_known() -> None:
     """In waves about where decays have them, linear damping best; vaguely without waves, and where declared as none."""
     model = jh.build(jh.Platform.model_validate(AFLOAT | {"linear_damping": {"B11": B11, "B55": 1e-300}}))
     model = model.with_values({"linear_damping.B55": 0.0})
-    assert width_of("linear_damping.B11", model, True) == ANCHORED_DAMPING < ANCHORED < VAGUE_DEVIATION
-    assert width_of("linear_damping.B11", model, False) == width_of("linear_damping.B55", model, True) == VAGUE_DEVIATION
+    assert prior_width_of("linear_damping.B11", model, True) == DAMPING_PRIOR_WIDTH < COEFFICIENT_PRIOR_WIDTH < VAGUE_DEVIATION
+    assert (
+        prior_width_of("linear_damping.B11", model, False)
+        == prior_width_of("linear_damping.B55", model, True)
+        == VAGUE_DEVIATION
+    )
 
 
 @pytest.mark.parametrize("seas", [(), ("a sea",)])
@@ -153,7 +171,7 @@ def test_coefficients_are_anchored_where_the_search_begins(seas: tuple[str, ...]
     )
     prior = Prior(np.array([0.0, 0.3, 0.0, 0.0]), np.ones(4))
     search = Search.__new__(Search)
-    search.study, search.posed = study, Posed(study, (), None, names[:2], names[2:3], prior, ())  # type: ignore[arg-type]
+    search.study, search.setup = study, StudySetup(study, (), None, names[:2], names[2:3], prior, ())  # type: ignore[arg-type]
     search.anchor(np.array([1.0, 2.0, 3.0, 4.0]))
     assert_allclose(search.begun, [1.0, 2.0, 3.0, 4.0])
-    assert_allclose(search.posed.prior.mean, [1.0 if seas else 0.0, 0.3, 0.0, 0.0])
+    assert_allclose(search.setup.prior.mean, [1.0 if seas else 0.0, 0.3, 0.0, 0.0])

@@ -10,31 +10,31 @@ import pytest
 from numpy.testing import assert_allclose
 
 from calibration.campaign.records import Record
-from calibration.discovery import acceptance as judgement
+from calibration.discovery import acceptance as acceptance
 from calibration.discovery.acceptance import (
     BLOCKS,
     FITTED,
     HELD_OUT,
-    LEAST_MATTER,
-    SLIGHT,
-    Grounds,
-    Left,
+    MIN_MOTION_SHARE,
+    NEGLIGIBLE,
+    HeldOutComparison,
+    ResidualSummary,
     Verdict,
-    judge,
-    refusal,
-    worse,
+    assess_effect,
+    reason_to_reject,
+    worsened_motion,
 )
-from calibration.discovery.candidate_trials import Tried, in_order
+from calibration.discovery.candidate_trials import RefittedCandidate, in_order_of_belief
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
-from calibration.discovery.diagnosis_conclusion import much
-from calibration.discovery.doubts import in_doubt, in_motion, like, outdone
+from calibration.discovery.diagnosis_conclusion import unexplained_motions
+from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
 from calibration.discovery.effect_descent import fit
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.eliminated_least_squares import inverted, likelihoods
-from calibration.discovery.frequency_bands import Rows, bands_of, powers
-from calibration.discovery.gather import series_of_sea
-from calibration.discovery.held_out_blocks import COUNT, parts
-from calibration.discovery.linearisations import Look, Prior, Series
+from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, symmetric_inverse
+from calibration.discovery.frequency_bands import FourierRows, band_powers, bands_of
+from calibration.discovery.gather import gather_sea
+from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
+from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.study import Study
 
 CUT = bands_of(400.0, 0.1, 4000, 14, 1.0)
@@ -43,43 +43,43 @@ TIME = 0.1 * np.arange(4000)
 
 def test_powers_of_white_noise_are_its_variance_in_every_band():
     """And a sine's are all in the band that has it: n / 2 times its square."""
-    white = np.mean([powers(CUT, np.random.default_rng(k).normal(0, 0.3, 4000)) for k in range(60)], axis=0)
+    white = np.mean([band_powers(CUT, np.random.default_rng(k).normal(0, 0.3, 4000)) for k in range(60)], axis=0)
     assert_allclose(white[CUT.lines > 0], 0.09, rtol=0.35)
-    sine = powers(CUT, np.sin(2 * np.pi * 0.2 * TIME))
+    sine = band_powers(CUT, np.sin(2 * np.pi * 0.2 * TIME))
     band = int(np.flatnonzero((CUT.low <= 0.2) & (CUT.high > 0.2))[0])
     assert sine.argmax() == band
     assert_allclose(2 * CUT.lines[band] * sine[band], 2000.0, rtol=1e-6)
 
 
-def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0, use: str = "holdout") -> Series:
-    return Series("t", "decay", use, channel, noise, spread, 2 * CUT.lines, CUT.low, CUT.high, 4000, np.full(14, floor))
+def series(channel: str, floor: float, noise: float = 0.01, spread: float = 1.0, use: str = "holdout") -> MotionSeries:
+    return MotionSeries("t", "decay", use, channel, noise, spread, 2 * CUT.lines, CUT.low, CUT.high, 4000, np.full(14, floor))
 
 
-def study_of(*found: Series) -> Study:
+def study_of(*found: MotionSeries) -> Study:
     """Of decays in surge."""
     records = (SimpleNamespace(id="t", degree_of_freedom="surge"),)
-    cuts = (Rows.of([CUT] * len(found), 4000),)
+    cuts = (FourierRows.of([CUT] * len(found), 4000),)
     return Study(None, None, (), np.zeros((0, 0)), 8, None, (), (), found, records, np.zeros((0, 0)), cuts, {})  # type: ignore[arg-type]
 
 
-def left(squares, error) -> Left:
+def left(squares, error) -> ResidualSummary:
     """All in the first region; squares by degree of freedom."""
     one = 2 * CUT.lines.sum() * np.array(squares, float)[:, None] * [1, 0, 0]
-    return Left(one, np.array(error)[:, None] * [1, 0, 0], one.sum(axis=1))
+    return ResidualSummary(one, np.array(error)[:, None] * [1, 0, 0], one.sum(axis=1))
 
 
 def test_a_quiet_sensor_does_not_make_a_motion_count_more():
     """A series' least is its floor over all bands, and its weight is by that, up to a point."""
-    assert_allclose(series("surge", 0.01).least, 0.01)
+    assert_allclose(series("surge", 0.01).floor_rms, 0.01)
     share = CUT.lines.sum() * 2 / 4000  # of the samples' degrees of freedom that is looked at
-    assert_allclose(series("surge", 0.1).least, np.sqrt(0.01**2 + share * (0.1**2 - 0.01**2)))
+    assert_allclose(series("surge", 0.1).floor_rms, np.sqrt(0.01**2 + share * (0.1**2 - 0.01**2)))
     assert series("surge", 0.5, noise=1e-6).weight == pytest.approx(1 / (0.5 * np.sqrt(share)))
     assert series("surge", 1e-6, noise=1e-6).weight == 50.0
 
 
 def test_a_test_is_about_what_moves_in_it():
     """A decay about its own motion; a sea about what moves beside others of its unit, not about sway in head waves, whose
-    error may be all of it and says nothing of the model. So `much` is left of surge alone."""
+    error may be all of it and says nothing of the model. So `unexplained_motions` is left of surge alone."""
     of_decay = [series(channel, 0.01) for channel in ("surge", "heave", "sway")]
     sizes = {"surge": 1.0, "sway": 0.1, "pitch": 0.02, "roll": 0.003, "heave": 0.3}
     of_sea = [replace(series(name, 0.01, spread=size, use="fit"), test="sea", kind="irregular") for name, size in sizes.items()]
@@ -90,11 +90,11 @@ def test_a_test_is_about_what_moves_in_it():
         return [Finding("sea", "fit", channel, 0.1, 0.001, 0.9, (), "")]
 
     under_way = SimpleNamespace(study=study)
-    assert much(under_way, left_of("surge")) and much(under_way, left_of("heave"))  # type: ignore[arg-type]
-    assert not much(under_way, [*left_of("sway"), *left_of("roll")])  # type: ignore[arg-type]
+    assert unexplained_motions(under_way, left_of("surge")) and unexplained_motions(under_way, left_of("heave"))  # type: ignore[arg-type]
+    assert not unexplained_motions(under_way, [*left_of("sway"), *left_of("roll")])  # type: ignore[arg-type]
     worst = replace(left_of("heave")[0], relative=0.95)
-    assert much(under_way, [*left_of("surge"), worst])[0] is worst  # type: ignore[arg-type]
-    assert like([Candidate("hidden_oscillator", "heave", ())], [worst]).startswith(
+    assert unexplained_motions(under_way, [*left_of("surge"), worst])[0] is worst  # type: ignore[arg-type]
+    assert unexplained_note([Candidate("hidden_oscillator", "heave", ())], [worst]).startswith(
         "with a hidden oscillator in heave in the model 95 % of heave is left in sea: what acts is not, or not only,"
     )
 
@@ -105,12 +105,12 @@ def test_what_barely_moves_in_a_sea_weighs_nothing():
     sea = SimpleNamespace(measured=rows[None], times=TIME, dofs=(0, 1, 4), slow=0.03)
     noise = {"surge": 0.01, "sway": 0.01, "pitch": 1e-4}
     record = Record("sea", "irregular", "fit", None, TIME, {}, None, None, noise, True, 0.0, SimpleNamespace(), "sea.csv")
-    found, cut = series_of_sea(sea, [record], 0.5)  # type: ignore[arg-type]
+    found, cut = gather_sea(sea, [record], 0.5)  # type: ignore[arg-type]
     assert [one.channel for one in found] == ["surge", "sway", "pitch"]
     assert [bool(one.dof.any()) for one in found] == [True, False, True]
     study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), (), tuple(found), (), np.zeros((0, 0)), (cut,), {})  # type: ignore[arg-type]
     errors = [cut(np.stack([0 * TIME, size * np.sin(0.3 * TIME), 0 * TIME])) for size in (0.0, 3.0)]
-    assert len({float(likelihoods(study, one).sum()) for one in errors}) == 1
+    assert len({float(minus_two_log_likelihood(study, one).sum()) for one in errors}) == 1
     assert list(study.main) == [True, False, True]
 
 
@@ -128,10 +128,10 @@ def test_what_something_refused_outdoes_is_in_doubt():
         return Verdict(bic, 0.9, True, -100.0, 30.0, 5.0, refused)
 
     tried = {"drag": verdict(335.0, "the held-out tests do not gain"), "memory": verdict(20.0, "too little")}
-    assert outdone({"lag": 158.0, "umbilical": 1300.0}, tried) == {"lag": "drag"}
-    assert outdone({"lag": 158.0, "current": 60.0}, tried | {"current": verdict(40.0, "")}) == {}
-    assert outdone({"lag": 400.0}, tried) == {} == outdone({"lag": 400.0}, {})
-    assert outdone({"mass": np.nan}, tried) == {}  # told though no error shows it
+    assert outdone_effects({"lag": 158.0, "umbilical": 1300.0}, tried) == {"lag": "drag"}
+    assert outdone_effects({"lag": 158.0, "current": 60.0}, tried | {"current": verdict(40.0, "")}) == {}
+    assert outdone_effects({"lag": 400.0}, tried) == {} == outdone_effects({"lag": 400.0}, {})
+    assert outdone_effects({"mass": np.nan}, tried) == {}  # told though no error shows it
 
 
 def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
@@ -148,14 +148,14 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
         scores=scores,
         rejected=rejected,
         found={friction.name: SimpleNamespace(verdict=good)},
-        posed=SimpleNamespace(candidates=[friction, drag, memory]),
+        setup=SimpleNamespace(candidates=[friction, drag, memory]),
         declared_in_second_order=None,
     )
     state: Any = SimpleNamespace(chosen=(friction,))
-    assert in_doubt(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
+    assert doubted_effects(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
     taken_out = small._replace(bic=350.0, refused="all in all the held-out tests do not gain by it")
     rejected[drag.name] = Rejected(drag.effect, None, "", taken_out)
-    assert in_doubt(search, state, errors(), errors()) == {friction.name: drag.name}  # type: ignore[arg-type]
+    assert doubted_effects(search, state, errors(), errors()) == {friction.name: drag.name}  # type: ignore[arg-type]
 
 
 def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
@@ -167,18 +167,20 @@ def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
         scores=[],
         rejected={},
         found={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
-        posed=SimpleNamespace(candidates=[drift, friction]),
+        setup=SimpleNamespace(candidates=[drift, friction]),
         declared_in_second_order=None,
     )
     state: Any = SimpleNamespace(chosen=(drift, friction))
-    assert in_doubt(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
+    assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
     worse, better = errors(surge=0.38, pitch=0.1), errors(surge=0.1, pitch=0.13)
     both = {drift.name: HELD_OUT_ERROR, friction.name: HELD_OUT_ERROR}
-    assert in_doubt(search, state, errors(surge=0.3, pitch=0.1), worse) == both  # type: ignore[arg-type]
-    of_motion = in_doubt(search, state, errors(surge=0.3, pitch=0.1), better)  # type: ignore[arg-type]
+    assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), worse) == both  # type: ignore[arg-type]
+    of_motion = doubted_effects(search, state, errors(surge=0.3, pitch=0.1), better)  # type: ignore[arg-type]
     assert of_motion == {drift.name: HELD_OUT_ERROR}
     search.declared_in_second_order = "a state"
-    assert in_doubt(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {drift.name: SECOND_ORDER}  # type: ignore[arg-type]
+    assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {
+        drift.name: SECOND_ORDER
+    }  # type: ignore[arg-type]
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():
@@ -193,7 +195,9 @@ def test_a_decay_that_begins_in_motion_is_told_where_that_matters():
     swings, rubs = Candidate("hidden_oscillator", "pitch", ()), Candidate("coulomb_friction", "pitch", ())
 
     def told(*chosen: Candidate) -> list[str]:
-        return in_motion(SimpleNamespace(study=study), SimpleNamespace(chosen=chosen, look=SimpleNamespace(place=place)))  # type: ignore[arg-type]
+        return moving_release_notes(
+            SimpleNamespace(study=study), SimpleNamespace(chosen=chosen, look=SimpleNamespace(place=place))
+        )  # type: ignore[arg-type]
 
     assert told(rubs) == []
     (said,) = told(rubs, swings)
@@ -213,7 +217,7 @@ def test_no_step_is_taken_to_where_a_test_diverges_that_is_not_fitted(monkeypatc
         x=np.zeros(1), own=np.zeros((0, 0)), moved=lambda directions, step, own: SimpleNamespace(x=step, own=own, moved=None)
     )
     study = replace(study, directions=np.eye(1), decay_records=(), own_width=np.zeros((0, 0)))
-    look = Look(moving, (0,), residual(0.0), -rows(np.stack([sine, 0 * sine]))[:, None], np.zeros((0, 0)))  # type: ignore[arg-type]
+    look = Linearisation(moving, (0,), residual(0.0), -rows(np.stack([sine, 0 * sine]))[:, None], np.zeros((0, 0)))  # type: ignore[arg-type]
     monkeypatch.setattr(Study, "residual", lambda self, place: residual(float(place.x[0])))
     monkeypatch.setattr(Study, "logarithmic", np.array([False]))
     monkeypatch.setattr(Study, "limits", np.array([[-np.inf, np.inf]]))
@@ -227,34 +231,36 @@ def test_what_is_left_is_a_root_mean_square():
     """Of a residual that is a sine of 0.2 m: 0.2 / sqrt(2), less what the floor hides."""
     study = study_of(series("surge", 1e-4))
     (rows,) = study.cuts
-    found = Left.of(study, rows(0.2 * np.sin(2 * np.pi * 0.2 * TIME)[None]))
+    found = ResidualSummary.of(study, rows(0.2 * np.sin(2 * np.pi * 0.2 * TIME)[None]))
     assert_allclose(found.error, 0.2 / np.sqrt(2), rtol=1e-4)
-    assert Left.of(study, rows(0.5e-4 * np.ones((1, 4000)) / np.sqrt(4000))).squares.max() == 0.0
+    assert ResidualSummary.of(study, rows(0.5e-4 * np.ones((1, 4000)) / np.sqrt(4000))).squares.max() == 0.0
 
 
 def test_gain_is_of_what_is_asked():
     """The held-out motion's error halves, the other's is as it was: a gain of three quarters of its square."""
     study = study_of(series("surge", 0.01), series("surge", 0.01, use="fit"))
     before, after = left([400, 400], [0.2, 0.2]), left([100, 400], [0.1, 0.2])
-    grounds = Grounds(study, np.array([True, False]), before, after, True)
-    gain, told = grounds.gain()
+    grounds = HeldOutComparison(study, np.array([True, False]), before, after, True)
+    gain, told = grounds.error_reduction()
     assert told
     assert gain == pytest.approx(0.75, abs=1e-3)
-    assert grounds.net == pytest.approx(300 * 2 * CUT.lines.sum())
-    assert Grounds(study, np.array([False, True]), before, after, True).gain()[0] == pytest.approx(0.0)
+    assert grounds.likelihood_gain == pytest.approx(300 * 2 * CUT.lines.sum())
+    assert HeldOutComparison(study, np.array([False, True]), before, after, True).error_reduction()[0] == pytest.approx(0.0)
     nothing = left([0, 0], [0, 0])
-    assert Grounds(study, np.array([True, True]), nothing, nothing, True).gain() == (0.0, True)
-    assert Grounds(study, np.array([True, True]), nothing, nothing, False).gain() == (0.0, False)
+    assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, True).error_reduction() == (0.0, True)
+    assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, False).error_reduction() == (0.0, False)
 
 
-@pytest.mark.parametrize(("refused", "said"), [("", "worse"), (SLIGHT, "worse"), ("grows", "grows")])
+@pytest.mark.parametrize(("refused", "said"), [("", "worse"), (NEGLIGIBLE, "worse"), ("grows", "grows")])
 def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against_it(refused, said, monkeypatch):
-    for name, value in {"refusal": refused, "worse": "worse", "clearness": 9.0}.items():
-        monkeypatch.setattr(judgement, name, lambda *_, value=value: value)
+    for name, value in {"reason_to_reject": refused, "worsened_motion": "worse", "significance": 9.0}.items():
+        monkeypatch.setattr(acceptance, name, lambda *_, value=value: value)
     study = SimpleNamespace(used=np.array([True]))
     state = SimpleNamespace(likelihood=np.zeros(1), left=None, look=SimpleNamespace(place=SimpleNamespace(x=None)))
-    grounds = SimpleNamespace(gain=lambda: (0.5, True), net=20.0, matters=lambda: 0.5, unseen=True, study=study)
-    assert judge(study, state, state, Candidate("a", None, ("a",)), None, 100.0, grounds).refused == said
+    grounds = SimpleNamespace(
+        error_reduction=lambda: (0.5, True), likelihood_gain=20.0, relevance=lambda: 0.5, unseen=True, study=study
+    )
+    assert assess_effect(study, state, state, Candidate("a", None, ("a",)), None, 100.0, grounds).refused == said
 
 
 def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
@@ -264,7 +270,7 @@ def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
     study = study_of(series("surge", 0.01, spread=2.0), of_sea, series("surge", 0.01, use="fit"))
 
     def refused(dof: str | None, *after: float) -> str:
-        return worse(study, dof, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after))
+        return worsened_motion(study, dof, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after))
 
     assert refused("surge", 0.5, 0.9, 0.1) == "" == refused("surge", 0.82, 0.1, 0.1) == refused("pitch", 2.0, 2.0, 2.0)
     said = "surge is followed worse with it (J of it in {}: {} without it, {} with it)"
@@ -285,18 +291,20 @@ def test_gain_in_waves_is_where_an_effect_acts():
     before = 400 * dof
     for other, expected in ((0.25, 0.75), (4.0, 0.0)):
         after = before * [[1, 0.25, 1], [1, other, 1]]
-        two = (Left(squares, np.sqrt(squares), squares.sum(axis=1)) for squares in (before, after))
-        assert Grounds(study, np.array([True, True]), *two, True).gain()[0] == pytest.approx(expected, abs=2e-3)
+        two = (ResidualSummary(squares, np.sqrt(squares), squares.sum(axis=1)) for squares in (before, after))
+        assert HeldOutComparison(study, np.array([True, True]), *two, True).error_reduction()[0] == pytest.approx(
+            expected, abs=2e-3
+        )
 
 
-@pytest.mark.parametrize(("channel", "least"), [("surge", LEAST_MATTER), ("pitch", 0.3)])
+@pytest.mark.parametrize(("channel", "least"), [("surge", MIN_MOTION_SHARE), ("pitch", 0.3)])
 def test_what_matters_of_a_decay(channel, least):
     """Its own motion: a share of it; of another the floor alone is a measure, here 0.1."""
     study = study_of(series(channel, 0.1, noise=0.1))
     for share, matters in ((0.99, False), (1.01, True)):
         after = 0.5 - share * least
-        grounds = Grounds(study, np.array([True]), left([1], [0.5]), left([1], [after]), True)
-        assert (grounds.matters() >= 1) == matters
+        grounds = HeldOutComparison(study, np.array([True]), left([1], [0.5]), left([1], [after]), True)
+        assert (grounds.relevance() >= 1) == matters
 
 
 @pytest.mark.parametrize(
@@ -325,16 +333,16 @@ def test_what_matters_of_a_decay(channel, least):
 )
 def test_what_an_effect_has_to_reach(numbers, where, said):
     """Little in the fitted tests is enough where tests that were not fitted agree; much is not where they do not."""
-    reason = refusal(**{"held": 0.7, "net": 100.0, "clear": 6.0, "matters": 2.0, **numbers}, where=where)
+    reason = reason_to_reject(**{"held": 0.7, "net": 100.0, "clear": 6.0, "matters": 2.0, **numbers}, where=where)
     assert said in reason if said else not reason
 
 
 def test_blocks_are_consecutive_and_whole():
     """No sample twice, none lost, each beginning where the one before it ends."""
     whole = Record("d", "decay", "fit", "surge", TIME, {"surge": np.sin(TIME)}, None, None, {}, True, 0.0, None, "d.csv")
-    cut = parts(whole)
-    assert len(cut) == COUNT
-    assert len({one.id for one in cut}) == COUNT
+    cut = split_record(whole)
+    assert len(cut) == BLOCKS_PER_TEST
+    assert len({one.id for one in cut}) == BLOCKS_PER_TEST
     assert_allclose(np.concatenate([one.time for one in cut]), TIME)
     assert_allclose(np.concatenate([one.values["surge"] for one in cut]), np.sin(TIME))
 
@@ -342,8 +350,8 @@ def test_blocks_are_consecutive_and_whole():
 def test_of_what_cannot_be_told_apart_the_simplest_is_believed_first():
     """Sensors before others within a tenth of the best one's worth, few parameters before many; else by worth."""
 
-    def tried(effect: str, count: int, worth: float) -> Tried:
-        return Tried(Candidate(effect, None, tuple(map(str, range(count)))), 0.0, None, None, worth)  # type: ignore[arg-type]
+    def tried(effect: str, count: int, worth: float) -> RefittedCandidate:
+        return RefittedCandidate(Candidate(effect, None, tuple(map(str, range(count)))), 0.0, None, None, worth)  # type: ignore[arg-type]
 
     some = [
         tried("umbilical", 4, 2380.0),
@@ -352,10 +360,10 @@ def test_of_what_cannot_be_told_apart_the_simplest_is_believed_first():
         tried("sensor_lag", 1, 1400.0),
         tried("hysteresis", 2, 2000.0),
     ]
-    names = [one.candidate.effect for one in in_order(some)]
+    names = [one.candidate.effect for one in in_order_of_belief(some)]
     assert names == ["wave_gauge_position", "static_offset", "umbilical", "hysteresis", "sensor_lag"]
-    assert [one.worth for one in in_order(some[:1] + some[3:])] == [2380.0, 2000.0, 1400.0]
-    assert in_order([]) == []
+    assert [one.worth for one in in_order_of_belief(some[:1] + some[3:])] == [2380.0, 2000.0, 1400.0]
+    assert in_order_of_belief([]) == []
 
 
 def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatch) -> None:
@@ -364,9 +372,9 @@ def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatc
     for variances in ((1.0, 1.0), (1.0, 1e-12), (1.0, 1e-20), (1e-20, 1.0)):
         covariance, steps = np.diag(variances), 5 * np.sqrt(variances)
         study = SimpleNamespace(index=lambda names: [0, 1], steps=lambda x, steps=steps: steps)
-        monkeypatch.setattr(judgement, "predict", lambda *_, c=covariance: SimpleNamespace(covariance=c))
+        monkeypatch.setattr(acceptance, "predict_gain", lambda *_, c=covariance: SimpleNamespace(covariance=c))
         state = SimpleNamespace(look=SimpleNamespace(active=(0, 1), place=SimpleNamespace(x=None)))
-        assert judgement.clearness(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
+        assert acceptance.significance(study, one, state, None) == pytest.approx(math.sqrt(2 * 25 - 1))
 
 
 def test_there_is_one_pseudo_inverse() -> None:
@@ -374,4 +382,6 @@ def test_there_is_one_pseudo_inverse() -> None:
     root = np.random.default_rng(0).normal(size=(9, 6)) * np.logspace(-6, 6, 6)
     for matrix in (root.T @ root, np.pad(root.T @ root, (0, 1)), np.zeros((2, 2))):
         scale = np.outer(*2 * [1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))])
-        np.testing.assert_array_equal(inverted(matrix), np.linalg.pinv(matrix * scale, rcond=1e-12, hermitian=True) * scale)
+        np.testing.assert_array_equal(
+            symmetric_inverse(matrix), np.linalg.pinv(matrix * scale, rcond=1e-12, hermitian=True) * scale
+        )

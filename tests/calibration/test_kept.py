@@ -14,11 +14,11 @@ import pytest
 from test_discovery import campaign_of
 
 from calibration.campaign.load_campaign import load_campaign
-from calibration.discovery import checkpoint as kept
-from calibration.discovery.checkpoint import keep, resumed
+from calibration.discovery import checkpoint
+from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.greedy_search import Search
-from calibration.discovery.set_up import pose
+from calibration.discovery.set_up import set_up_study
 from calibration.residuals.measured_seas import Options
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro import fingerprint as fingerprints
@@ -32,12 +32,12 @@ class Killed(Exception):
 
 def searched(campaign):
     """A search with the declared model fitted, as the states that were kept."""
-    search = Search(campaign, pose(campaign, Options()), lambda *_: None)
-    return search, search.declared()
+    search = Search(campaign, set_up_study(campaign, Options()), lambda *_: None)
+    return search, search.fit_baseline()
 
 
 def fresh(campaign):
-    return Search(campaign, pose(campaign, Options()), lambda *_: None)
+    return Search(campaign, set_up_study(campaign, Options()), lambda *_: None)
 
 
 @pytest.fixture(scope="module")
@@ -46,14 +46,14 @@ def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("campaign")
     campaign = campaign_of(folder, lambda x, v: -500.0 * x**3)
     search, state = searched(campaign)
-    keep(folder / "kept", search, [state], 12.0)
+    save_checkpoint(folder / "kept", search, [state], 12.0)
     return SimpleNamespace(folder=folder, campaign=campaign, search=search, state=state, path=folder / "kept")
 
 
 def reasons(path, campaign):
     """States that are gone on from, and what is told."""
     told = []
-    return resumed(path, fresh(campaign), told.append), told
+    return load_checkpoint(path, fresh(campaign), told.append), told
 
 
 def same(one, other):
@@ -70,7 +70,7 @@ def same(one, other):
 
 def test_what_was_reached_is_read_back_to_the_last_bit(written):
     again, told = fresh(written.campaign), []
-    (state,) = resumed(written.path, again, told.append)
+    (state,) = load_checkpoint(written.path, again, told.append)
     assert not told and same(dataclasses.replace(state, chosen=()), dataclasses.replace(written.state, chosen=()))
     assert again.earlier == 12.0 and again.notes == written.search.notes and same(again.begun, written.search.begun)
 
@@ -213,13 +213,13 @@ def test_other_inputs_start_anew(written, tmp_path, how):
 
 def test_other_options_and_another_model_start_anew(written):
     """A model of one's own, too: its numbers are not in any file."""
-    search = Search(written.campaign, pose(written.campaign, Options(stretching="none")), lambda *_: None)
-    assert resumed(written.path, search) == []
+    search = Search(written.campaign, set_up_study(written.campaign, Options(stretching="none")), lambda *_: None)
+    assert load_checkpoint(written.path, search) == []
     model = written.campaign.model
     for label in ("linear_damping.B44", "hydrostatics.C44"):
         if label in model.values:
             own = written.campaign.with_model(model.with_values({label: 1.01 * model.values[label]}))
-            assert resumed(written.path, fresh(own)) == []
+            assert load_checkpoint(written.path, fresh(own)) == []
 
 
 class Sine(AbstractLoad):
@@ -375,7 +375,7 @@ WORDS = (
 def test_the_packages_read_and_write_no_pickles():
     """Neither in their own words nor by NumPy's: `allow_pickle` is False wherever it is."""
     for package in ("jaxhydro", "calibration"):
-        root = kept.Path(__import__(package).__file__).parent
+        root = checkpoint.Path(__import__(package).__file__).parent
         for file in root.rglob("*.py"):
             text = file.read_text(encoding="utf-8")
             for word in WORDS:

@@ -17,11 +17,11 @@ from scipy.signal import hilbert
 from test_discovery import NOISE, PLATFORM
 
 from calibration.discovery.diagnosis import Law, LawTerm
-from calibration.discovery.gather import highest_of
+from calibration.discovery.gather import highest_frequency
 from calibration.discovery.latent_force.describe_force import described, law_in_words
-from calibration.discovery.latent_force.force_law import IN_STILL_WATER, LAGGED, Part, best, law_of
+from calibration.discovery.latent_force.force_law import LAGGED_TERMS, STILL_WATER_TERMS, RegressionBlock, best_terms, law_of
 from calibration.discovery.latent_force.recover_force import forces_of, latent_forces, latent_of
-from calibration.discovery.latent_force.recovered_force import Force, Moved
+from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest
 from calibration.report.write_report import write_report
 from calibration.result import Series, TestFit
 from calibration.results.read_diagnosis import read_diagnosis
@@ -79,14 +79,16 @@ def model(tmp_path_factory):
     return made
 
 
-def decays(model, torque, seed=0, releases=RELEASES) -> list[tuple[Moved, np.ndarray]]:
+def decays(model, torque, seed=0, releases=RELEASES) -> list[tuple[ResampledTest, np.ndarray]]:
     """Decays with a torque (N m) that the model does not have, and the torque along them."""
     found = []
     for i, (amplitude, use) in enumerate(releases):
         roll, speed = rolled(torque, amplitude)
         measured = roll + np.random.default_rng(10 * seed + i).normal(0, NOISE, TIME.size)
         simulated = np.asarray(free_decay(model, {"roll": amplitude}, TIME).position[:, 3])
-        test = Moved(f"roll-{i}", use, "decay", TIME, {"roll": measured}, {"roll": simulated}, {"roll": NOISE}, StillWater())
+        test = ResampledTest(
+            f"roll-{i}", use, "decay", TIME, {"roll": measured}, {"roll": simulated}, {"roll": NOISE}, StillWater()
+        )
         found.append((test, torque(roll, speed)))
     return found
 
@@ -98,11 +100,11 @@ def decays(model, torque, seed=0, releases=RELEASES) -> list[tuple[Moved, np.nda
 def test_the_force_is_found_back(model, torque, least):
     """Inside the record it is the torque that SciPy had, as far as it can be seen: 0.998 correlated, to 0.6 % of its size."""
     for test, true in decays(model(), torque):
-        found = forces_of(model(), test, np.zeros(6), highest_of(model()))["roll"]
+        found = forces_of(model(), test, np.zeros(6), highest_frequency(model()))["roll"]
         some = found.inside
         assert found.visible and some.stop - some.start > 0.85 * len(TIME)
         assert np.corrcoef(found.force[some], true[some])[0, 1] > least
-        seen = found.seen(true)[some]
+        seen = found.through_filter(true)[some]
         assert np.corrcoef(found.force[some], seen)[0, 1] > 0.995
         assert_allclose(np.std(found.force[some]), np.std(seen), rtol=0.02)
         assert np.std(found.force[some] - seen) < 3 * found.noise + 0.02 * np.std(seen)
@@ -141,8 +143,8 @@ def test_the_law_is_named(model, torque, damping, expected, power):
 
 def test_a_law_is_said_in_seconds_and_units():
     """Not in omegas: the time constant of a lag, the speed at which friction turns."""
-    lag, turns = LAGGED[1], [kind.name for kind in IN_STILL_WATER].index("tanh(v/v0)")
-    terms = tuple(LawTerm(IN_STILL_WATER[i].name, -2.0, "N m", i) for i in (lag, turns))
+    lag, turns = LAGGED_TERMS[1], [kind.name for kind in STILL_WATER_TERMS].index("tanh(v/v0)")
+    terms = tuple(LawTerm(STILL_WATER_TERMS[i].name, -2.0, "N m", i) for i in (lag, turns))
     said = law_in_words(Law(terms, 0.8, 0.9, "held-out tests", v0=0.02, pace=0.5), "N m")
     assert "v lagged by a time constant of 2.0 s" in said and said.endswith("v0 = 0.020 rad/s")
     said = law_in_words(Law(terms[1:], 0.8, 0.9, "held-out tests", v0=0.02), "N")
@@ -164,7 +166,7 @@ def test_nothing_is_named_in_noise(model, seed):
     assert latent_forces(model(), tests, ["roll"], False) == ()
 
 
-def sea(height: float, seed: int, use: str, law) -> Force:
+def sea(height: float, seed: int, use: str, law) -> RecoveredForce:
     """A force in waves of a spectrum about 0.1 Hz, on a body that drifts about on its own, with noise of a tenth of it."""
     rng, step, n = np.random.default_rng(seed), 0.5, 7200
     frequency = np.fft.rfftfreq(n, step)
@@ -178,9 +180,11 @@ def sea(height: float, seed: int, use: str, law) -> Force:
     force = law(wave)
     force = force + 0.1 * np.std(force) * random(0.05, 0.05)
     velocity, time = np.gradient(position, step), step * np.arange(n)
-    test = Moved(f"sea-{seed}", use, "irregular", time, {"surge": position}, {"surge": 0 * position}, {}, StillWater(), wave)
+    test = ResampledTest(
+        f"sea-{seed}", use, "irregular", time, {"surge": position}, {"surge": 0 * position}, {}, StillWater(), wave
+    )
     gain = np.ones(len(frequency))
-    return Force(
+    return RecoveredForce(
         test,
         "surge",
         force,
@@ -232,12 +236,12 @@ def test_terms_that_all_but_cancel_are_no_law():
     """Two terms that differ by a thousandth follow anything that is like their difference."""
     one, other = np.random.default_rng(0).standard_normal((2, 500))
     terms = np.column_stack([one, one + 1e-3 * other, 0.3 * other])
-    part = Part(other, terms, terms, 1.0)
-    assert best(part.products(), 2)[0] != (0, 1)
-    chosen, coefficients = best(part.products(), 1)
+    part = RegressionBlock(other, terms, terms, 1.0)
+    assert best_terms(part.products(), 2)[0] != (0, 1)
+    chosen, coefficients = best_terms(part.products(), 1)
     assert chosen == (2,)
     assert_allclose(coefficients, 1 / 0.3, rtol=1e-6)
-    assert best(Part(other, terms[:, :2], terms[:, :2], 1.0).products(), 2)[0] == ()
+    assert best_terms(RegressionBlock(other, terms[:, :2], terms[:, :2], 1.0).products(), 2)[0] == ()
 
 
 def test_what_is_written(model, tmp_path):
@@ -267,7 +271,7 @@ def test_what_is_written(model, tmp_path):
         for test, _ in made
     )
     campaign = SimpleNamespace(manifest=SimpleNamespace(zero=None), records=[SimpleNamespace(id=test.id) for test in tests])
-    search = SimpleNamespace(campaign=campaign, study=SimpleNamespace(seas=()), posed=SimpleNamespace(motions=("roll",)))
+    search = SimpleNamespace(campaign=campaign, study=SimpleNamespace(seas=()), setup=SimpleNamespace(motions=("roll",)))
     latent = latent_of(search, SimpleNamespace(model=model(), tests=tests))
     assert_allclose({term.name: term.coefficient for term in latent[0].law.terms}["x^3"], -500.0, rtol=0.15)
     folder = write_diagnosis(replace(fake_diagnosis(), verdict="unexplained", effects=(), latent=latent), tmp_path)

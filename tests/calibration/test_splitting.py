@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from calibration.discovery.effects.mode_splitting import modes_of, split, swinging
+from calibration.discovery.effects.mode_splitting import modes_of, oscillator_from_modes, oscillator_in_decay
 
 STEP = 0.16  # s
 
@@ -36,9 +36,9 @@ def test_modes_of_a_record_are_those_that_made_it() -> None:
     order = np.argsort(-found.eigenvalue.imag)
     assert_allclose(found.eigenvalue[order], value, rtol=1e-6)
     assert_allclose(found.amplitude[order], amplitude, rtol=1e-5)
-    assert found.left < 1e-8
+    assert found.residual_rms < 1e-8
     noisy = modes_of(decay(value, amplitude, 0.01), STEP, 4)
-    assert noisy.left == pytest.approx(0.01, rel=0.15)
+    assert noisy.residual_rms == pytest.approx(0.01, rel=0.15)
 
 
 @pytest.mark.parametrize("period", [2.2, 2.58, 2.7, 3.5])
@@ -46,22 +46,22 @@ def test_modes_of_a_record_are_those_that_made_it() -> None:
 def test_two_modes_tell_what_swings(share: float, period: float) -> None:
     """The closed form leaves damping out of frequencies and amplitudes: it is right to the square of damping over how far the
     modes are apart, the damping ratio to the first power of that."""
-    found = swinging(*two_modes(share, period, 0.01))
+    found = oscillator_from_modes(*two_modes(share, period, 0.01))
     assert found is not None
-    assert found.hull == pytest.approx(2.58, rel=2e-3)
+    assert found.hull_period == pytest.approx(2.58, rel=2e-3)
     assert found.period == pytest.approx(period, rel=2e-3)
-    assert found.share == pytest.approx(share, rel=0.08)
-    assert found.ratio == pytest.approx(0.01, rel=0.25)
+    assert found.mass_ratio == pytest.approx(share, rel=0.08)
+    assert found.damping_ratio == pytest.approx(0.01, rel=0.25)
 
 
 def test_a_record_is_split_by_what_swings_alone() -> None:
     """Not by another motion's mode, nor by damping that is not linear, nor by noise."""
     record = decay(*two_modes(0.02, 2.7, 0.01), noise=0.003)
-    found, left = split(record, STEP, 2.6, [], 2)
+    found, left = oscillator_in_decay(record, STEP, 2.6, [], 2)
     assert found is not None and found.period == pytest.approx(2.7, rel=0.01)
     assert left < 0.02
     modes = 2 * np.pi / two_modes(0.02, 2.7, 0.01)[0].imag
-    assert split(record, STEP, 2.6, [float(modes.max())], 2)[0] is None
+    assert oscillator_in_decay(record, STEP, 2.6, [float(modes.max())], 2)[0] is None
     time = STEP * np.arange(400)
 
     def rate(_, y, linear, quadratic):
@@ -70,4 +70,4 @@ def test_a_record_is_split_by_what_swings_alone() -> None:
     for linear, quadratic in ((0.03, 0.0), (0.0, 0.05), (0.01, 0.3)):
         motion = solve_ivp(rate, (0, 64), [1.0, 0.0], t_eval=time, args=(linear, quadratic), rtol=1e-9).y[0]
         motion = motion + np.random.default_rng(1).normal(0, 1e-3, time.size)
-        assert split(motion, STEP, 2.6, [], 2)[0] is None, (linear, quadratic)
+        assert oscillator_in_decay(motion, STEP, 2.6, [], 2)[0] is None, (linear, quadratic)

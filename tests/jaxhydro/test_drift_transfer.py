@@ -13,9 +13,9 @@ from test_loads import COLUMN, build, model_of
 from test_water_effects import HULL, WATER, acts, irregular
 
 import jaxhydro as jh
-from calibration.discovery.effects.candidates import sought
+from calibration.discovery.effects.candidates import requested_table_labels
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import Scales
+from calibration.discovery.effects.listed import NoticeableScales
 from jaxhydro.dynamics.statics import linearised
 from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_drift import COLUMNS, read_transfer
@@ -177,8 +177,8 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     assert jh.load_model(tmp_path / "b" / "platform.yaml").transfer is not None
     path.write_text(text + "\ndrift: {file: hull.12d, use: candidate}\n", encoding="utf-8")
     model = jh.load_model(path)
-    assert sought(model) == {"drift_transfer.share"}
-    scales = {"surge": Scales(5.0, 0.1, 1e5, 2e7)}
+    assert requested_table_labels(model) == {"drift_transfer.share"}
+    scales = {"surge": NoticeableScales(5.0, 0.1, 1e5, 2e7)}
     known = {waves: [one.effect for one in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
     assert "drift_transfer" in known[True] and "drift_transfer" not in known[False]
     path.write_text(text + "\ndrift: {file: none.12d}\n", encoding="utf-8")

@@ -16,9 +16,9 @@ from scipy.integrate import quad
 from test_loads import BODY, COEFFICIENTS, COLUMN, build, model_of, only
 
 import jaxhydro as jh
-from calibration.discovery.effects.candidates import sought, with_candidates
+from calibration.discovery.effects.candidates import requested_table_labels, with_candidates
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import Scales
+from calibration.discovery.effects.listed import NoticeableScales
 from jaxhydro.dynamics.simulate import default_step, memory_step
 from jaxhydro.errors import InputError
 from jaxhydro.interop.capytaine_radiation import read_capytaine
@@ -392,12 +392,12 @@ def test_wrong_declarations_are_told(tmp_path: Path, keys: dict, words: str) -> 
 
 def test_a_declared_candidate_is_in_the_catalogue(tmp_path: Path) -> None:
     """Beside the lowest-order memory; not where the platform has it already. What was found is used without the catalogue."""
-    scales = {"heave": Scales(1.0, 0.3, 1e5, 1e7)}
+    scales = {"heave": NoticeableScales(1.0, 0.3, 1e5, 1e7)}
     for use, there in (("candidate", True), ("load", False)):
         model = jh.load_model(folder(tmp_path, use=use))
         found, free, sizes = catalogue(model, scales, False, 1.0)
         names = [one.effect for one in found]
-        assert "radiation_memory" in names and ("computed_radiation" in names) == there == bool(sought(model))
+        assert "radiation_memory" in names and ("computed_radiation" in names) == there == bool(requested_table_labels(model))
         if there:
             one = found[names.index("computed_radiation")]
             assert one.positive == one.amplitudes == ("computed_radiation.share",) and one.telling and one.source

@@ -17,7 +17,7 @@ from calibration import calibrate, load_campaign
 from calibration.decay_analysis.model_damping import model_damping
 from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import Scales
+from calibration.discovery.effects.listed import NoticeableScales
 from calibration.parameters.space import match_free_labels
 from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import WaveExcitation
@@ -165,7 +165,7 @@ def test_effects_of_a_diagnosis_go_with_their_coefficients(effect: str) -> None:
 def test_the_catalogue_asks_for_what_is_there() -> None:
     """Pressure of waves by every Ca of the model: none of a coefficient that is another's."""
     _, once = platforms()
-    scales = {dof: Scales(1.0, 0.5, 1e5, 1e7) for dof in ("surge", "heave", "pitch")}
+    scales = {dof: NoticeableScales(1.0, 0.5, 1e5, 1e7) for dof in ("surge", "heave", "pitch")}
     found = next(one for one in catalogue(once, scales, True, 1.0)[0] if one.effect == "wave_excitation")
     pressed = {label.removeprefix("wave_excitation.") for label in found.labels}
     assert pressed == {"column.Cp_t", "column.Cp_z", "leg.Cp_z", "pontoon.Cp_t", "pontoon.Cp_z"}

@@ -16,10 +16,10 @@ from test_diagnosis_in_waves import PLATFORM, excited, write_table
 import jaxhydro as jh
 from calibration import load_campaign
 from calibration.commands.calibrate_command import simulate_campaign
-from calibration.discovery.diagnosis_conclusion import tests_of as fitted_tests
+from calibration.discovery.diagnosis_conclusion import test_fits_at as fitted_tests
 from calibration.discovery.effects.candidates import with_effects
-from calibration.discovery.linearisations import Place
-from calibration.discovery.set_up import pose
+from calibration.discovery.linearisations import Point
+from calibration.discovery.set_up import set_up_study
 from calibration.parameters.space import parameter_space
 from calibration.residuals.decays import Unknowns
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
@@ -186,10 +186,10 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
     """For every kind of effect: errors in diagnosis.json, by the diagnosis's own path, and in comparison.json of
     `simulate --calibration`, which reads the effect back from the file."""
     campaign = load_campaign(folder)
-    posed = pose(campaign, OPTIONS)
-    study, started = posed.study, np.asarray(posed.study.space.start)
-    search = SimpleNamespace(study=study, posed=posed)
-    kinds = {one.effect: one for one in reversed(posed.candidates)}
+    setup = set_up_study(campaign, OPTIONS)
+    study, started = setup.study, np.asarray(setup.study.space.start)
+    search = SimpleNamespace(study=study, setup=setup)
+    kinds = {one.effect: one for one in reversed(setup.candidates)}
     assert {
         "sensor_reference",
         "sensor_lag",
@@ -203,15 +203,15 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         "amplitude_dependent_drag",
     } <= set(kinds)
 
-    def calibration(place: Place, model: Model, labels: tuple[str, ...]) -> Calibration:
+    def calibration(place: Point, model: Model, labels: tuple[str, ...]) -> Calibration:
         values = {label: float(model.values[label]) for label in labels}
         parameters = {k: Estimate(k, v, 0.0, "-", "of the test", 0.0, False, True) for k, v in values.items()}
         tests = tuple(fitted_tests(campaign, search, place))
         return Calibration(campaign.manifest.name, model, parameters, tests, True, 1, 1.0, (), (), campaign.platform.name, None)
 
-    null = Place(started, np.zeros((0, 0)))
+    null = Point(started, np.zeros((0, 0)))
     damping = ("linear_damping.B33",)
-    before = calibration(null, posed.declared, damping)
+    before = calibration(null, setup.declared, damping)
     changed = {}
     for effect, one in kinds.items():
         amplitude, shape = (
@@ -220,10 +220,10 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         )
         # hysteresis that yields at a small displacement is too fast for the time step: with another shape, then
         moves = ((4.0, 4.0),) if effect == "hysteresis" else ((4.0, 0.0), (1.0, 0.0))
-        places = (Place(started + size * amplitude + far * shape, null.own) for size, far in moves)
+        places = (Point(started + size * amplitude + far * shape, null.own) for size, far in moves)
         place = next(at for at in places if all(np.isfinite(row).all() for row in study.motions(at)))
         values = {label: study.value(label, place.x) for label in (*one.labels, *one.choices)}
-        model = with_effects(posed.declared, values).with_values(values)
+        model = with_effects(setup.declared, values).with_values(values)
         after = calibration(place, model, (*damping, *values))
         found = fake_diagnosis(baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name)
         write_diagnosis(found, tmp_path / effect, figures=False)

@@ -1,1 +1,1 @@
-"""The effects that a model may lack, and where a fit of each begins."""
+"""Catalogue of candidate effects, and starting points for their fits."""

@@ -1,4 +1,4 @@
-"""Effects that may be missing, as loads: what a candidate is, and how a model is given one, at its null."""
+"""Candidate effects as loads at their neutral values."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 
-from calibration.discovery.effects.mode_splitting import Begins
-from calibration.discovery.effects.oscillator_start import Places
-from calibration.discovery.effects.phase_shift_start import Turns
+from calibration.discovery.effects.mode_splitting import StartingValuesFinder
+from calibration.discovery.effects.oscillator_start import ShapeFinder
+from calibration.discovery.effects.phase_shift_start import PhasePerUnit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
@@ -45,24 +45,37 @@ from jaxhydro.loads import (
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect that may be missing. `amplitudes` are the labels that are null where it is not; `shapes` those that mean
-    nothing then, freed with it, and tried at the values of `grid` first, then at those that `places` finds in a look
-    and slopes along the first amplitude, of each of the grid; `positive`, amplitudes that physics wants above zero;
-    `begin`, values that another program has, where a refit begins, too: far from the null what was fitted without the
-    effect may stand in its way; `begins`, the same, of coefficients too, as the records themselves say; `turns`, by which phase
-    a unit of its one amplitude turns waves, where it does nothing else. `telling`: the test that would tell it from others.
-    One's own law comes with its `load` at null and, by label, `sizes` of its amplitudes that are noticeable."""
+    """An effect that a model may lack.
+
+    A user's own candidate has a `load` at its neutral value, and `sizes`.
+
+    Attributes:
+        effect: Name of the effect.
+        dof: The motion that it acts in, or None.
+        amplitudes: Labels of parameters that are neutral where the effect is absent.
+        shapes: Labels of parameters without meaning at the neutral value; they are freed with the effect.
+        grid: Values of shapes or discrete choices that are tried.
+        shape_finder: Finds further shapes to try, from a linearisation and the slopes along the first amplitude.
+        positive: Amplitudes that physics requires to be positive.
+        starting_values: Values where a refit begins too, from another program.
+        starting_values_finder: Finds such values, of coefficients too, from the decays.
+        phase_per_unit: Phase that a unit of the only amplitude shifts waves by, where the effect does nothing else.
+        telling: The test that would tell the effect from others.
+        source: Reference of its law.
+        load: A user's own load at its neutral value.
+        sizes: Noticeable sizes of the amplitudes of that load, by label.
+    """
 
     effect: str
     dof: str | None
     amplitudes: tuple[str, ...]
     shapes: tuple[str, ...] = ()
     grid: tuple[Mapping[str, float], ...] = ()
-    places: Places | None = None
+    shape_finder: ShapeFinder | None = None
     positive: tuple[str, ...] = ()
-    begin: Mapping[str, float] = field(default_factory=dict)
-    begins: Begins | None = None
-    turns: Turns | None = None
+    starting_values: Mapping[str, float] = field(default_factory=dict)
+    starting_values_finder: StartingValuesFinder | None = None
+    phase_per_unit: PhasePerUnit | None = None
     telling: str = ""
     source: str = ""
     load: AbstractLoad | None = None
@@ -70,22 +83,22 @@ class Candidate:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """All its parameters."""
+        """Labels of all parameters."""
         return (*self.amplitudes, *self.shapes)
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """What the grid tells apart and no fit moves: one of a few."""
+        """Labels of discrete choices, which no fit moves."""
         return tuple(dict.fromkeys(label for at in self.grid for label in at if label not in self.shapes))
 
     @property
     def name(self) -> str:
-        """As it is listed: the effect, and its motion where it has one."""
+        """Name of the effect, with its motion where it has one."""
         return self.effect if self.dof is None else f"{self.effect} ({self.dof})"
 
 
 def with_drag(model: Model) -> Model:
-    """The model with `ChangingDrag` in place of plain drag; itself where it has none."""
+    """The model with `ChangingDrag` in place of plain drag; unchanged where it has none."""
     plain = [load for load in model.loads if type(load) in (StripDrag, EndDrag)]
     if not plain or any(isinstance(load, ChangingDrag) for load in model.loads):
         return model
@@ -100,7 +113,7 @@ def _dofs(labels: Iterable[str], effect: str) -> list[str]:
     return [dof for dof in DOFS if dof in found]
 
 
-BY_DOF: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
+PER_MOTION_LOADS: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
     "coulomb_friction": CoulombFriction.null,
     "hysteresis": Hysteresis.null,
     "mooring_nonlinearity": MooringNonlinearity.null,
@@ -112,7 +125,7 @@ BY_DOF: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
     "wave_drift": WaveDrift.null,
     "wave_drift_damping": WaveDriftDamping.null,
 }
-WHOLE: dict[str, Callable[[], AbstractLoad]] = {
+WHOLE_PLATFORM_LOADS: dict[str, Callable[[], AbstractLoad]] = {
     "umbilical": Umbilical.null,
     "current": Current.null,
     "sensor_reference": SensorReference.null,
@@ -121,44 +134,54 @@ WHOLE: dict[str, Callable[[], AbstractLoad]] = {
     "wave_reflection": WaveReflection.null,
     "covered_ends": CoveredEnds.null,
 }
-DRAG = ("amplitude_dependent_drag", "sea_state_dependent_drag")
+DRAG_EFFECTS = ("amplitude_dependent_drag", "sea_state_dependent_drag")
 
 
-class Computed(NamedTuple):
-    """What a platform file may declare as a candidate: its load, whether it acts in waves only, and what would tell it."""
+class TableEffect(NamedTuple):
+    """An effect that a platform file may declare as a candidate.
+
+    Attributes:
+        load: Its load.
+        in_waves: Whether it acts in waves only.
+        telling: The test that would tell it from others.
+    """
 
     load: type[AbstractLoad]
     in_waves: bool
     telling: str
 
 
-COMPUTED = {
-    "computed_excitation": Computed(
+TABLE_EFFECTS = {
+    "computed_excitation": TableEffect(
         ComputedExcitation, True, "the platform held in regular waves of three periods, its forces measured"
     ),
-    "drift_transfer": Computed(DriftTransfer, True, "the same irregular sea at another height: drift goes as Hs^2"),
-    "computed_radiation": Computed(
+    "drift_transfer": TableEffect(DriftTransfer, True, "the same irregular sea at another height: drift goes as Hs^2"),
+    "computed_radiation": TableEffect(
         ComputedRadiation, False, "forced oscillation at three periods, or a decay in each motion from a small amplitude"
     ),
 }
 
 
-def sought(model: Model) -> set[str]:
-    """Labels of what the platform declares to be looked for: its load is there, at its null."""
-    labels = (f"{effect}.share" for effect in COMPUTED)
+def requested_table_labels(model: Model) -> set[str]:
+    """Labels of effects that the platform file requests as candidates, at their neutral value."""
+    labels = (f"{effect}.share" for effect in TABLE_EFFECTS)
     return {label for label in labels if label in model.values and float(model.values[label]) == 0}
 
 
 def with_effects(model: Model, labels: Iterable[str]) -> Model:
-    """The model with the loads, at null, that own those labels that it has not. Raises KeyError for what no effect has."""
+    """Add loads at neutral values, so that the model has parameters with these labels.
+
+    Raises:
+        KeyError: If no effect has such a label.
+    """
     labels = [label for label in labels if label not in model.values]
     effects = dict.fromkeys(label.split(".")[0] for label in labels)
     for effect in effects:
         mine = [label for label in labels if label.startswith(f"{effect}.")]
-        if effect in BY_DOF:
-            model = model.with_load(BY_DOF[effect](_dofs(mine, effect)))
-        elif effect in WHOLE:
-            model = model.with_load(WHOLE[effect]())
+        if effect in PER_MOTION_LOADS:
+            model = model.with_load(PER_MOTION_LOADS[effect](_dofs(mine, effect)))
+        elif effect in WHOLE_PLATFORM_LOADS:
+            model = model.with_load(WHOLE_PLATFORM_LOADS[effect]())
         elif effect == "mass_properties":
             model = model.with_load(MassError.null(model.body.mass, model.body.centre))
         elif effect == "coupled_damping":
@@ -167,7 +190,7 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
             model = model.with_load(QuadraticDamping({label: jnp.zeros(()) for label in mine}))
         elif effect == "wave_excitation":
             model = model.with_load(WaveExcitation.null([label.split(".", 1)[1] for label in mine]))
-        elif effect in DRAG:
+        elif effect in DRAG_EFFECTS:
             model = with_drag(model)
         else:
             raise KeyError(f"no effect {effect!r}")
@@ -175,7 +198,7 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
 
 
 def with_candidates(model: Model, candidates: Sequence[Candidate], nuisances: Sequence[str] = ()) -> Model:
-    """The model with every candidate at its null."""
+    """The model with every candidate at its neutral value."""
     for one in candidates:
         if one.load is not None:
             model = model.with_load(one.load)

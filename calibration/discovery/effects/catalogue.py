@@ -1,15 +1,15 @@
-"""The effects that are looked for: which load has them, which parameters, how large they may be expected, what would tell."""
+"""Catalogue of candidate effects: parameters, noticeable sizes, tests that would tell."""
 
 import math
 from collections.abc import Mapping
 
 import numpy as np
 
-from calibration.discovery.effects.candidates import COMPUTED, Candidate, sought
-from calibration.discovery.effects.catalogue_of_motions import of_motion
-from calibration.discovery.effects.listed import Listed, Scales
-from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, size
-from calibration.discovery.effects.reflection_start import AT_ONCE, delays
+from calibration.discovery.effects.candidates import TABLE_EFFECTS, Candidate, requested_table_labels
+from calibration.discovery.effects.catalogue_of_motions import add_motion_effects
+from calibration.discovery.effects.listed import CatalogueBuilder, NoticeableScales
+from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, displaced_length
+from calibration.discovery.effects.reflection_start import ZERO_DELAY_GRID, reflection_delays
 from calibration.parameters.space import FreeParameter
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS, STANDARD_GRAVITY
@@ -30,167 +30,180 @@ from jaxhydro.loads import (
 from jaxhydro.loads.wave_reflection import COEFFICIENT, DEFAULT_DELAY, DELAY, MAX_DELAY, SEEN
 from jaxhydro.waves.dispersion import wavenumber
 
-SIZE = 27.0  # m, of a platform of 20 000 t
-CUTOFFS = (0.03, 0.015, 0.06)  # Hz: below which motion is slow, tried in turn
-SHARE = 0.1  # of computed radiation or drift that is noticeable
+REFERENCE_LENGTH = 27.0  # m, of a platform of 20 000 t
+SLOW_MOTION_CUTOFFS = (0.03, 0.015, 0.06)  # Hz: motion is slow below; tried in turn
+NOTICEABLE_SHARE = 0.1  # noticeable fraction of computed radiation or drift
 
 
 def catalogue(
-    model: Model, scales: Mapping[str, Scales], waves: bool, wave_variance: float, step: float = 0.0
+    model: Model, scales: Mapping[str, NoticeableScales], waves: bool, wave_variance: float, step: float = 0.0
 ) -> tuple[list[Candidate], dict[str, FreeParameter], dict[str, float]]:
-    """Candidates for the motions that `scales` has, their parameters, and what is noticeable of each of these.
+    """Candidate effects for a model and the motions that were tested.
 
-    `step` (s) is that of simulations in waves, which has to follow what is looked for. Coordinates are values less null, so
-    that programs compiled for one campaign serve all of a platform.
+    Coordinates are values less neutral values, so that programs compiled for one campaign serve all of a platform.
+
+    Args:
+        model: The model.
+        scales: Noticeable sizes by motion.
+        waves: Whether there are tests in waves.
+        wave_variance: Largest variance of the wave elevation (m²).
+        step: Time step of simulations in waves (s), which limits the periods of candidates.
+
+    Returns:
+        The candidates, their parameters by label, and noticeable sizes by label.
     """
     # by octaves' tenths: programs compiled for one campaign serve others
-    known = Listed(2.0 ** (round(10 * math.log2(size(model) / SIZE)) / 10))
+    builder = CatalogueBuilder(2.0 ** (round(10 * math.log2(displaced_length(model) / REFERENCE_LENGTH)) / 10))
     for dof in DOFS:
         if dof in scales:
-            of_motion(known, dof, scales, wave_variance if waves else None, step)
-    _of_tables(known, model, waves)
-    _of_the_whole(known, scales)
-    _of_mass(known, model, scales)
-    _of_strips(known, model, waves)
+            add_motion_effects(builder, dof, scales, wave_variance if waves else None, step)
+    _of_tables(builder, model, waves)
+    _of_the_whole(builder, scales)
+    _of_mass(builder, model, scales)
+    _of_strips(builder, model, waves)
     if waves:
-        _of_gauges(known)
-        _of_the_basin(known)
-    return known.found, known.free, known.units
+        _of_gauges(builder)
+        _of_the_basin(builder)
+    return builder.candidates, builder.free, builder.noticeable
 
 
-def _of_tables(known: Listed, model: Model, waves: bool) -> None:
-    """Those that the platform file names."""
-    looked_for = sought(model)
-    tables = {k: one for k, one in COMPUTED.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
+def _of_tables(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
+    """Add effects that the platform file requests."""
+    looked_for = requested_table_labels(model)
+    tables = {k: one for k, one in TABLE_EFFECTS.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
     for effect, one in tables.items():
-        share, alone = known.linear(f"{effect}.share", SHARE), len(tables) == 1
+        share, alone = builder.add_linear(f"{effect}.share", NOTICEABLE_SHARE), len(tables) == 1
         begin = {share: 1.0} if alone else {}
-        known.add(effect, None, [share], passive=True, begin=begin, telling=one.telling, source=one.load.source)
+        builder.add(effect, None, [share], passive=True, starting_values=begin, telling=one.telling, source=one.load.source)
     if len(tables) > 1:  # what one program has computed belongs together: one table alone may not be better than none
         shares = {f"{effect}.share": 1.0 for effect in tables}
         telling, sources = next(iter(tables.values())).telling, "; ".join(one.load.source for one in tables.values())
-        known.add("potential_flow", None, list(shares), passive=True, begin=shares, telling=telling, source=sources)
+        builder.add("potential_flow", None, list(shares), passive=True, starting_values=shares, telling=telling, source=sources)
 
 
-def _of_the_whole(known: Listed, scales: Mapping[str, Scales]) -> None:
-    """Those of several motions at once."""
+def _of_the_whole(builder: CatalogueBuilder, scales: Mapping[str, NoticeableScales]) -> None:
+    """Add effects that act in several motions."""
     if "surge" in scales:
         s = scales["surge"]
         stiff = s.force / s.amplitude
-        known.add(
+        builder.add(
             "umbilical",
             None,
             [
-                known.linear("umbilical.stiffness", stiff),
-                known.linear("umbilical.pull", s.force),
-                known.linear("umbilical.mass", 0.1 * s.force / STANDARD_GRAVITY),
+                builder.add_linear("umbilical.stiffness", stiff),
+                builder.add_linear("umbilical.pull", s.force),
+                builder.add_linear("umbilical.mass", 0.1 * s.force / STANDARD_GRAVITY),
             ],
-            shapes=(known.linear("umbilical.height", 5.0 * known.length, 12.0 * known.length),),
+            shapes=(builder.add_linear("umbilical.height", 5.0 * builder.length, 12.0 * builder.length),),
             positive=("umbilical.stiffness",),
             telling="the same decays with the cable taken off",
             source=Umbilical.source,
         )
-        known.add(
+        builder.add(
             "current",
             None,
-            [known.linear("current.x", 0.03 * known.time)],
+            [builder.add_linear("current.x", 0.03 * builder.time)],
             telling="decays from both sides, and a look at the basin's circulation",
             source=Current.source,
         )
         if "pitch" in scales:
-            known.add(
+            builder.add(
                 "coupled_damping",
                 None,
-                [known.linear("coupled_damping.B15", s.force / scales["pitch"].rate)],
+                [builder.add_linear("coupled_damping.B15", s.force / scales["pitch"].rate)],
                 telling="forced pitch, with the surge force measured",
                 source=CoupledDamping.source,
             )
     if {"surge", "pitch"} <= set(scales) or {"sway", "roll"} <= set(scales):
-        known.add(
+        builder.add(
             "sensor_reference",
             None,
-            [known.linear(f"sensor_reference.{axis}", 0.5 * known.length) for axis in "zx"],
+            [builder.add_linear(f"sensor_reference.{axis}", 0.5 * builder.length) for axis in "zx"],
             telling="an inclining test, the tracked point's place measured on the model",
             source=SensorReference.source,
         )
 
 
-def _of_mass(known: Listed, model: Model, scales: Mapping[str, Scales]) -> None:
-    """What was weighed wrongly."""
+def _of_mass(builder: CatalogueBuilder, model: Model, scales: Mapping[str, NoticeableScales]) -> None:
+    """Add errors of weighed mass properties."""
     mass = float(model.body.mass)
     turning = np.asarray(model.body.inertia)
-    labels = [known.linear("mass_properties.mass", MASS * mass)]
+    labels = [builder.add_linear("mass_properties.mass", MASS * mass)]
     for dof, name, scale in (("roll", "inertia_roll", turning[0, 0]), ("pitch", "inertia_pitch", turning[1, 1])):
         if dof in scales:
-            labels.append(known.linear(f"mass_properties.{name}", INERTIA * float(scale)))
+            labels.append(builder.add_linear(f"mass_properties.{name}", INERTIA * float(scale)))
     if {"pitch", "roll"} & set(scales):
-        labels.append(known.linear("mass_properties.centre_z", CENTRE_UP * size(model)))
+        labels.append(builder.add_linear("mass_properties.centre_z", CENTRE_UP * displaced_length(model)))
     if "pitch" in scales:
-        labels.append(known.linear("mass_properties.centre_x", CENTRE_ALONG * size(model)))
-    known.add("mass_properties", None, labels, telling="weigh the model and swing it in air", source=MassError.source)
+        labels.append(builder.add_linear("mass_properties.centre_x", CENTRE_ALONG * displaced_length(model)))
+    builder.add("mass_properties", None, labels, telling="weigh the model and swing it in air", source=MassError.source)
 
 
-def _of_strips(known: Listed, model: Model, waves: bool) -> None:
-    """Other drag than by one coefficient, other excitation than by added mass."""
+def _of_strips(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
+    """Add other laws of drag and of wave excitation."""
     groups = sorted({label.rsplit(".", 1)[0] for label in model.values if ".Cd_" in label})
     if groups and any(type(load) in (StripDrag, EndDrag, ChangingDrag) for load in model.loads):
-        known.add(
+        builder.add(
             "amplitude_dependent_drag",
             None,
-            [known.linear(f"amplitude_dependent_drag.{group}.exponent", 0.1) for group in groups],
+            [builder.add_linear(f"amplitude_dependent_drag.{group}.exponent", 0.1) for group in groups],
             telling="decays at three amplitudes, the largest several times the smallest",
             source="Graham 1980",
         )
-        known.add(
+        builder.add(
             "sea_state_dependent_drag",
             None,
-            [known.linear("sea_state_dependent_drag.low_share", 0.1, 1.0)],
-            shapes=(known.shape(cutoff := "sea_state_dependent_drag.cutoff", *(f / known.time for f in (0.03, 0.005, 0.08))),),
-            grid=tuple({cutoff: frequency / known.time} for frequency in CUTOFFS),
+            [builder.add_linear("sea_state_dependent_drag.low_share", 0.1, 1.0)],
+            shapes=(
+                builder.add_shape(
+                    cutoff := "sea_state_dependent_drag.cutoff", *(f / builder.time for f in (0.03, 0.005, 0.08))
+                ),
+            ),
+            grid=tuple({cutoff: frequency / builder.time} for frequency in SLOW_MOTION_CUTOFFS),
             telling="a decay in surge in still water against one in waves",
             source="OpenFAST HydroDyn, pull request 2895",
         )
     pressed = sorted(label.replace(".Ca_", ".Cp_") for label in model.values if ".Ca_" in label)
     if waves and pressed:
-        known.add(
+        builder.add(
             "wave_excitation",
             None,
-            [known.linear(f"wave_excitation.{one}", 0.05, 1.0) for one in pressed],
+            [builder.add_linear(f"wave_excitation.{one}", 0.05, 1.0) for one in pressed],
             telling="the platform held in regular waves of three periods, its forces measured",
             source=WaveExcitation.source,
         )
 
 
-def _of_gauges(known: Listed) -> None:
+def _of_gauges(builder: CatalogueBuilder) -> None:
     """What was measured at another time or place."""
-    known.add(
+    builder.add(
         "sensor_lag",
         None,
-        [known.linear("sensor_lag.delay", 0.05 * known.time)],
-        turns=lambda omega, water: -omega,
+        [builder.add_linear("sensor_lag.delay", 0.05 * builder.time)],
+        phase_per_unit=lambda omega, water: -omega,
         telling="tap the wave gauge and the tracker at once",
         source=SensorLag.source,
     )
-    known.add(
+    builder.add(
         "wave_gauge_position",
         None,
-        [known.linear("wave_gauge_position.distance", known.length)],
-        turns=lambda omega, water: np.asarray(wavenumber(omega, water.depth, water.gravity)),
+        [builder.add_linear("wave_gauge_position.distance", builder.length)],
+        phase_per_unit=lambda omega, water: np.asarray(wavenumber(omega, water.depth, water.gravity)),
         telling="regular waves of three periods with a second gauge",
         source=WaveGaugePosition.source,
     )
 
 
-def _of_the_basin(known: Listed) -> None:
-    """What is in the water that was not sent: the gauge saw it, too, or did not."""
-    known.linear(SEEN, 1.0)
-    known.add(
+def _of_the_basin(builder: CatalogueBuilder) -> None:
+    """Add reflected waves; the gauge may have measured them or not."""
+    builder.add_linear(SEEN, 1.0)
+    builder.add(
         "wave_reflection",
         None,
-        [known.linear(COEFFICIENT, 0.02)],
-        shapes=(known.linear(DELAY, MAX_DELAY / 3, DEFAULT_DELAY),),
-        grid=AT_ONCE,
-        places=delays,
+        [builder.add_linear(COEFFICIENT, 0.02)],
+        shapes=(builder.add_linear(DELAY, MAX_DELAY / 3, DEFAULT_DELAY),),
+        grid=ZERO_DELAY_GRID,
+        shape_finder=reflection_delays,
         telling="a few regular waves that stop: what comes after them, at a row of gauges",
         source=WaveReflection.source,
     )

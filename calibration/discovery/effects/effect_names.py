@@ -1,6 +1,6 @@
-"""Effects as people call them."""
+"""Names of effects in words."""
 
-NAMES = {
+EFFECT_NAMES = {
     "coulomb_friction": "Coulomb friction",
     "mass_properties": "wrong mass properties",
     "mooring_nonlinearity": "a nonlinear mooring",
@@ -19,14 +19,17 @@ NAMES = {
 }
 
 
-def called(effect: str, motion: str | None = None) -> str:
-    """An effect as people say it: `coulomb_friction (surge)`, or its name and motion apart, is "Coulomb friction in surge"."""
+def effect_in_words(effect: str, motion: str | None = None) -> str:
+    """Name of an effect in words.
+
+    `coulomb_friction (surge)`, or effect and motion apart, becomes "Coulomb friction in surge".
+    """
     name, _, inside = effect.removesuffix(")").partition(" (")
-    words = NAMES.get(name, name.replace("_", " "))
+    words = EFFECT_NAMES.get(name, name.replace("_", " "))
     motion = motion or inside
     return f"{words} in {motion}" if motion else words
 
 
-def capital(words: str) -> str:
-    """With a capital first letter."""
+def capitalised(words: str) -> str:
+    """Words with a capital first letter."""
     return f"{words[:1].upper()}{words[1:]}"

@@ -1,15 +1,17 @@
-"""What swings in a hull, from the two modes that it makes of one: where a search begins that no first order would lead to.
+"""Starting point for a hidden oscillator: the two modes into which it splits one.
 
-A mass on a spring whose period is close to a motion's own does not perturb that motion, it makes two of it. Undamped, with
-omega_h the hull's own frequency, omega_0 the mass's and mu its share of the hull's (Den Hartog 1956, Mechanical Vibrations,
-section 3.2, the equation for the natural frequencies):
+An oscillator with a period close to that of a motion splits its mode into two. First-order slopes do not lead there. Undamped,
+with omega_h the hull's own frequency, omega_0 the oscillator's and mu its mass over the hull's:
 
     omega_1^2 + omega_2^2 = omega_h^2 + (1 + mu) omega_0^2,    omega_1^2 omega_2^2 = omega_h^2 omega_0^2
 
-In mode k the mass moves r_k = omega_0^2 / (omega_0^2 - omega_k^2) as far as the hull. Released from rest together with it,
-A_1 + A_2 = A_1 r_1 + A_2 r_2, which gives the third equation,
+In mode k the oscillator moves r_k = omega_0^2 / (omega_0^2 - omega_k^2) times as far as the hull. Released from rest together,
+A_1 + A_2 = A_1 r_1 + A_2 r_2, which gives the third equation:
 
     (omega_0^2 - omega_1^2) / (omega_2^2 - omega_0^2) = (A_1 / A_2) omega_1^2 / omega_2^2
+
+References:
+    Den Hartog 1956, Mechanical Vibrations, section 3.2, the equation for the natural frequencies.
 """
 
 import math
@@ -24,39 +26,62 @@ from jaxhydro.dynamics.statics import equilibrium, linearised, natural_modes, wi
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.linearisations import Place
+    from calibration.discovery.linearisations import Point
     from calibration.discovery.study import Study
 
-Begins = Callable[["Study", "Place", Sequence[int], np.ndarray], tuple[Mapping[str, float], ...]]
+StartingValuesFinder = Callable[["Study", "Point", Sequence[int], np.ndarray], tuple[Mapping[str, float], ...]]
 
-SAMPLES = 16  # in a natural period: those of a decay that are looked at
-FEWEST = 16  # samples for every mode
-WITHIN = 2.0  # times longer or shorter than the natural period: where its two modes are looked for
-APART = 0.03  # of their periods: modes that are closer are one
-RATIOS = (0.002, 0.5)  # damping ratios of a mass that may be
-ROUNDS, STEP, FURTHEST = 4, 1e-3, 3.0  # of the hull's own period; of a direction; standard deviations
+SAMPLES_PER_PERIOD = 16  # samples of a decay in a natural period
+MIN_SAMPLES_PER_MODE = 16  # samples of a decay for every mode
+MAX_PERIOD_RATIO = 2.0  # of the two modes' periods to the natural period
+MIN_PERIOD_SEPARATION = 0.03  # relative: modes that are closer are one
+DAMPING_RATIO_LIMITS = (0.002, 0.5)  # of the oscillator
+PERIOD_ITERATIONS = 4  # iterations to the hull's own period
+DIFFERENCE_STEP = 1e-3  # of a direction, for slopes of the period
+MAX_STEP_DEVIATIONS = 3.0  # standard deviations of the coefficients
 
 
 class Modes(NamedTuple):
-    """Of a decay: eigenvalues (k,; rad/s) above the real axis, complex amplitudes (k,), and the root mean square left."""
+    """Damped oscillations in a decay.
+
+    Attributes:
+        eigenvalue: Eigenvalues above the real axis (rad/s; k,).
+        amplitude: Complex amplitudes (k,).
+        residual_rms: Root mean square that they leave.
+    """
 
     eigenvalue: np.ndarray
     amplitude: np.ndarray
-    left: float
+    residual_rms: float
 
 
-class Swinging(NamedTuple):
-    """Natural period (s) of a hull without what swings in it; that mass's share of the hull's, its period and damping ratio."""
+class OscillatorEstimate(NamedTuple):
+    """An oscillator in a hull.
 
-    hull: float
-    share: float
+    Attributes:
+        hull_period: Natural period of the hull without it (s).
+        mass_ratio: Its mass over the hull's.
+        period: Its own period (s).
+        damping_ratio: Its own damping ratio.
+    """
+
+    hull_period: float
+    mass_ratio: float
     period: float
-    ratio: float
+    damping_ratio: float
 
 
 def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
-    """The `count` strongest singular vectors of a record's Hankel matrix as damped oscillations (Barkhuijsen, De Beer and Van
-    Ormondt 1987, Journal of Magnetic Resonance 73, 553-557, equations 2 to 8); `step` is that of its samples (s)."""
+    """Damped oscillations in a record, from the strongest singular vectors of its Hankel matrix.
+
+    Args:
+        values: The record (n,).
+        step: Time step (s).
+        count: Number of singular vectors.
+
+    References:
+        Barkhuijsen, De Beer and Van Ormondt 1987, Journal of Magnetic Resonance 73, 553-557, equations 2 to 8.
+    """
     hankel = np.lib.stride_tricks.sliding_window_view(values, len(values) // 2).T
     basis = np.linalg.svd(hankel, full_matrices=False)[0][:, :count]
     shift = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
@@ -68,10 +93,14 @@ def modes_of(values: np.ndarray, step: float, count: int) -> Modes:
     return Modes(eigenvalue[upper], 2 * amplitude[upper], left)
 
 
-def swinging(eigenvalue: np.ndarray, amplitude: np.ndarray) -> Swinging | None:
-    """What makes two modes (2,) of a hull's one, released from rest; None where nothing does.
+def oscillator_from_modes(eigenvalue: np.ndarray, amplitude: np.ndarray) -> OscillatorEstimate | None:
+    """The oscillator that splits a hull's mode into two, released from rest; None where none does.
 
     Damping is what each mode loses: 2 sigma_k (1 + mu r_k^2) = b + 2 zeta omega_0 mu (r_k - 1)^2, b the hull's.
+
+    Args:
+        eigenvalue: Eigenvalues of the two modes (rad/s; 2,).
+        amplitude: Their complex amplitudes (2,).
     """
     order = np.argsort(eigenvalue.imag)
     loss, square = -eigenvalue.real[order], np.abs(eigenvalue[order]) ** 2
@@ -87,34 +116,45 @@ def swinging(eigenvalue: np.ndarray, amplitude: np.ndarray) -> Swinging | None:
     both = np.column_stack([np.ones(2), 2 * np.sqrt(own) * share * (moved - 1) ** 2])
     damping = np.linalg.solve(both, 2 * loss * (1 + share * moved**2))[1]
     hull_period, period = (2 * math.pi / math.sqrt(one) for one in (hull, own))
-    return Swinging(hull_period, float(share), period, float(np.clip(damping, *RATIOS)))
+    return OscillatorEstimate(hull_period, float(share), period, float(np.clip(damping, *DAMPING_RATIO_LIMITS)))
 
 
-def split(values: np.ndarray, step: float, period: float, others: Sequence[float], count: int) -> tuple[Swinging | None, float]:
-    """What a decay's two strongest modes near its natural `period` (s) say, and the share of the decay that all modes leave;
-    `others` are periods of other motions, `count` the modes there may be. Nothing, where a record is too short or too
-    coarse."""
-    if len(values) < FEWEST * count or step > 2 * period / SAMPLES:
+def oscillator_in_decay(
+    values: np.ndarray, step: float, period: float, others: Sequence[float], count: int
+) -> tuple[OscillatorEstimate | None, float]:
+    """Estimate an oscillator from the two strongest modes of a decay near its natural period.
+
+    Args:
+        values: The decay (n,).
+        step: Time step (s).
+        period: Natural period (s).
+        others: Natural periods of other motions (s).
+        count: Number of modes that there may be.
+
+    Returns:
+        The oscillator, and the fraction of the decay that all modes leave. It is None without two modes, or where the
+        record is too short or too coarse.
+    """
+    if len(values) < MIN_SAMPLES_PER_MODE * count or step > 2 * period / SAMPLES_PER_PERIOD:
         return None, 1.0
     found = modes_of(values - values.mean(), step, 2 * count + 1)
     here = 2 * np.pi / found.eigenvalue.imag
-    near = (np.abs(np.log(here / period)) < np.log(WITHIN)) & (found.eigenvalue.real < 0)
+    near = (np.abs(np.log(here / period)) < np.log(MAX_PERIOD_RATIO)) & (found.eigenvalue.real < 0)
     for other in others:
-        near &= np.abs(np.log(here / other)) > APART
+        near &= np.abs(np.log(here / other)) > MIN_PERIOD_SEPARATION
     two = np.flatnonzero(near)[np.argsort(-np.abs(found.amplitude[near]))][:2]
-    left = found.left / max(float(np.std(values)), 1e-300)
+    left = found.residual_rms / max(float(np.std(values)), 1e-300)
     if len(two) < 2:
         return None, left
     apart = abs(float(np.diff(found.eigenvalue.imag[two])[0]))
     widths = -float(found.eigenvalue.real[two].sum())
-    if apart < max(widths, APART * float(found.eigenvalue.imag[two].mean())):
+    if apart < max(widths, MIN_PERIOD_SEPARATION * float(found.eigenvalue.imag[two].mean())):
         return None, left  # one mode, whose damping or stiffness is not linear
-    return swinging(found.eigenvalue[two], found.amplitude[two]), left
+    return oscillator_from_modes(found.eigenvalue[two], found.amplitude[two]), left
 
 
-def own_mode(model: Model, dof: str) -> tuple[float, float]:
-    """Natural period (s) of a motion, what has a memory at rest, and the mass (kg, kg m2) of its mode, were all of it in that
-    motion."""
+def natural_mode(model: Model, dof: str) -> tuple[float, float]:
+    """Natural period (s) and modal mass (kg, kg m²) of a motion, loads with a memory at rest."""
     position = equilibrium(model)
     modes, mass = natural_modes(model, position), np.asarray(linearised(model, position)[0])
     i = modes.number(dof) or 0
@@ -122,12 +162,20 @@ def own_mode(model: Model, dof: str) -> tuple[float, float]:
     return float(modes.period[i]), float(shape @ mass @ shape) / float(shape[DOFS.index(dof)]) ** 2
 
 
-def beginnings(
-    dof: str, study: "Study", place: "Place", base: Sequence[int], width: np.ndarray
+def oscillator_starts(
+    dof: str, study: "Study", place: "Point", base: Sequence[int], width: np.ndarray
 ) -> tuple[Mapping[str, float], ...]:
-    """Where a fit of `HiddenOscillator` in a motion may begin: as the two modes of a fitted decay say, with the coefficients
-    as near a place as can be, in standard deviations (d,) along directions, that give the hull its period without what swings
-    in it."""
+    """Starting values for `HiddenOscillator`, from the two modes of a fitted decay.
+
+    Coefficients are moved as little as possible to give the hull its period without the oscillator.
+
+    Args:
+        dof: The motion.
+        study: The study.
+        place: The point that coefficients are moved from.
+        base: Directions of the coefficients.
+        width: Prior standard deviations of the directions (d,).
+    """
     records = [one for one in study.decay_records if one.use == "fit" and one.degree_of_freedom == dof]
     modes = natural_modes(study.space.model(study.model, jnp.asarray(place.x)))
     if not records or not np.isfinite(period := modes.of(dof)):
@@ -135,32 +183,36 @@ def beginnings(
     others = [float(one) for one in modes.period if one != period]
     said = []
     for record in records:
-        step = max(period / SAMPLES, float(np.diff(record.time).max()))
+        step = max(period / SAMPLES_PER_PERIOD, float(np.diff(record.time).max()))
         time = np.arange(record.time[0], record.time[-1], step)
         values = np.interp(time, record.time, record.values[dof])
-        said.append(split(values, step, period, others, 1 + len(record.values)))
+        said.append(oscillator_in_decay(values, step, period, others, 1 + len(record.values)))
     best = min(((left, one) for one, left in said if one is not None), key=lambda each: each[0], default=None)
     if best is None:
         return ()
-    x = with_period(study, place.x, base, width, dof, best[1].hull)
-    mass = own_mode(study.space.model(study.model, jnp.asarray(x)), dof)[1]
+    x = coordinates_with_period(study, place.x, base, width, dof, best[1].hull_period)
+    mass = natural_mode(study.space.model(study.model, jnp.asarray(x)), dof)[1]
     values = {label: study.value(label, x) for label, at, to in zip(study.labels, place.x, x) if at != to}
     of = f"hidden_oscillator.{dof}."
-    about = {f"{of}mass": best[1].share * mass, f"{of}period": best[1].period, f"{of}damping_ratio": best[1].ratio}
+    about = {f"{of}mass": best[1].mass_ratio * mass, f"{of}period": best[1].period, f"{of}damping_ratio": best[1].damping_ratio}
     return (values | about,)
 
 
-def with_period(study: "Study", x: np.ndarray, base: Sequence[int], width: np.ndarray, dof: str, period: float) -> np.ndarray:
-    """Coordinates where a motion has a natural `period` (s): the shortest way there along the `base` directions, in their
-    standard deviations."""
+def coordinates_with_period(
+    study: "Study", x: np.ndarray, base: Sequence[int], width: np.ndarray, dof: str, period: float
+) -> np.ndarray:
+    """Coordinates that give a motion a natural `period` (s).
+
+    The step along the `base` directions is the shortest in standard deviations.
+    """
 
     def off(x: np.ndarray) -> float:
-        return math.log(own_mode(study.space.model(study.model, jnp.asarray(x)), dof)[0] / period)
+        return math.log(natural_mode(study.space.model(study.model, jnp.asarray(x)), dof)[0] / period)
 
     directions, size = study.directions[list(base)], width[list(base)]
-    for _ in range(ROUNDS):
+    for _ in range(PERIOD_ITERATIONS):
         now = off(x)
-        slopes = np.array([(off(x + STEP * one) - now) / STEP for one in directions]) * size
+        slopes = np.array([(off(x + DIFFERENCE_STEP * one) - now) / DIFFERENCE_STEP for one in directions]) * size
         step = -now * slopes / max(float(slopes @ slopes), 1e-300)
-        x = x + (step * size * min(1.0, FURTHEST / max(float(np.abs(step).max()), 1e-300))) @ directions
+        x = x + (step * size * min(1.0, MAX_STEP_DEVIATIONS / max(float(np.abs(step).max()), 1e-300))) @ directions
     return x

@@ -1,4 +1,4 @@
-"""At which periods, and how damped, something may swing in a hull, from a residual and from what it would do at one period."""
+"""Starting point for a hidden oscillator: periods and damping ratios to try."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -6,49 +6,61 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibration.discovery.effects.peaks import TRIED, likeliest
-from calibration.discovery.eliminated_least_squares import beyond
+from calibration.discovery.effects.peaks import MAX_PEAKS, highest_peaks
+from calibration.discovery.eliminated_least_squares import projected_products
 
 if TYPE_CHECKING:
-    from calibration.discovery.linearisations import Look
+    from calibration.discovery.linearisations import Linearisation
     from calibration.discovery.study import Study
 
-Places = Callable[["Study", "Look", np.ndarray], tuple[Mapping[str, float], ...]]
+ShapeFinder = Callable[["Study", "Linearisation", np.ndarray], tuple[Mapping[str, float], ...]]
 
-FINENESS = 1.03  # of one period to the next: half a resonance's width
-RATIO = 0.03  # damping ratio at null
-RATIOS = (RATIO, 0.2)  # that are tried
+PERIOD_SPACING = 1.03  # ratio of one period to the next: half a resonance's width
+NEUTRAL_DAMPING_RATIO = 0.03  # damping ratio at the neutral value
+TRIED_DAMPING_RATIOS = (NEUTRAL_DAMPING_RATIO, 0.2)  # damping ratios that are tried
 
 
 def response(omega: np.ndarray, period: float, ratio: float) -> np.ndarray:
-    """Force (N) of a unit mass on a spring on what accelerates it by 1 m/s2 (Den Hartog 1956, chapter 3), less its sign."""
+    """Force of an oscillator of unit mass per acceleration of its support, with the sign reversed.
+
+    Args:
+        omega: Circular frequencies (rad/s).
+        period: Its own period (s).
+        ratio: Its damping ratio.
+
+    References:
+        Den Hartog 1956, Mechanical Vibrations, chapter 3.
+    """
     own = 2 * math.pi / period
     spring = own**2 + 2j * ratio * own * omega
     return spring / (spring - omega**2)
 
 
-def periods(dof: str, shortest: float, longest: float) -> Places:
-    """A search for the likeliest ones (s) of `HiddenOscillator` in a motion, from the `shortest` to the `longest`.
+def oscillator_period_finder(dof: str, shortest: float, longest: float) -> ShapeFinder:
+    """A search for the likeliest periods of `HiddenOscillator` in a motion, between two periods (s).
 
-    What a mass that swings at T does to a record is, of a linear hull, what one at the shortest does, times the ratio of their
-    responses at every frequency: one look tells of all periods. Each is weighed by how much of the residual lies along it
-    beyond what the fitted directions can do; which is right a refit tells.
+    In a linear hull, slopes scale with the oscillator's response. So one linearisation at the shortest period gives the gain at
+    all periods. What the fitted directions can explain is projected out; a refit decides.
     """
 
-    def found(study: "Study", look: "Look", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
-        tried = shortest * FINENESS ** np.arange(int(math.log(longest / shortest, FINENESS)) + 1)
+    def found(study: "Study", look: "Linearisation", slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+        tried = shortest * PERIOD_SPACING ** np.arange(int(math.log(longest / shortest, PERIOD_SPACING)) + 1)
         omega = 2 * math.pi * study.frequency
-        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest, RATIO)
-        columns = np.stack([there * response(omega, period, ratio) for ratio in RATIOS for period in tried], axis=1)
+        there = slopes.reshape(-1, 2) @ [1, 1j] / response(omega, shortest, NEUTRAL_DAMPING_RATIO)
+        columns = np.stack(
+            [there * response(omega, period, ratio) for ratio in TRIED_DAMPING_RATIOS for period in tried], axis=1
+        )
         rows = np.stack([columns.real, columns.imag], axis=1).reshape(len(slopes), -1)
-        along, size = beyond(study, look, rows)
+        along, size = projected_products(study, look, rows)
         gain = np.where(along < 0, along**2 / np.maximum(size, 1e-300), 0.0)  # a mass is not negative
         best = [
             (float(of_ratio[i]), float(tried[i]), ratio)
-            for ratio, of_ratio in zip(RATIOS, gain.reshape(len(RATIOS), -1))
-            for i in likeliest(np.pad(of_ratio, 1)) - 1
+            for ratio, of_ratio in zip(TRIED_DAMPING_RATIOS, gain.reshape(len(TRIED_DAMPING_RATIOS), -1))
+            for i in highest_peaks(np.pad(of_ratio, 1)) - 1
         ]
         of = f"hidden_oscillator.{dof}."
-        return tuple({f"{of}period": period, f"{of}damping_ratio": ratio} for _, period, ratio in sorted(best)[::-1][:TRIED])
+        return tuple(
+            {f"{of}period": period, f"{of}damping_ratio": ratio} for _, period, ratio in sorted(best)[::-1][:MAX_PEAKS]
+        )
 
     return found

@@ -1,13 +1,13 @@
-"""Where along a shape's values an effect promises the most."""
+"""Highest peaks of a predicted gain."""
 
 import numpy as np
 from scipy.signal import find_peaks
 
-TRIED = 2  # values
-WORTH = 10.0  # of -2 ln L: a value that promises less is not tried
+MAX_PEAKS = 2  # number of values that are tried
+MIN_PEAK_GAIN = 10.0  # decrease of -2 ln L; values that gain less are not tried
 
 
-def likeliest(gain: np.ndarray) -> np.ndarray:
-    """Numbers of the highest peaks of what -2 ln L would gain, the highest first."""
-    peaks = find_peaks(gain, height=WORTH)[0]
-    return peaks[np.argsort(-gain[peaks])][:TRIED]
+def highest_peaks(gain: np.ndarray) -> np.ndarray:
+    """Positions of the highest peaks of a predicted decrease of -2 ln L, the highest first."""
+    peaks = find_peaks(gain, height=MIN_PEAK_GAIN)[0]
+    return peaks[np.argsort(-gain[peaks])][:MAX_PEAKS]

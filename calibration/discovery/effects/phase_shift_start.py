@@ -1,11 +1,11 @@
-"""How far off a gauge or a clock is, where that is further than slopes tell: from a residual and what a little of it does.
+"""Starting point for a phase shift: gauge positions and clock lags too large for slopes.
 
-What turns first-order waves of every rate omega (rad/s) by a phase of c(omega) (rad) a unit, and does nothing else, makes
-X exp(i c d) of a linear platform's motion X, and i c X is its slope where there is none of it. So one look tells of every d:
+A shift d turns first-order waves of circular frequency omega (rad/s) by a phase c(omega) d (rad). A motion X of a linear
+platform becomes X exp(i c d), and its slope at no shift is i c X. So one linearisation gives the change for every d:
 
     motion changes by (exp(i c d) - 1) / (i c) times its slope
 
-A fit that follows slopes does not cross a phase of half a wave: it ends on the wrong side of it, and bends what else is free.
+A fit by slopes does not cross a phase of half a wave. It ends on the wrong side, and other parameters compensate.
 """
 
 import math
@@ -14,30 +14,44 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from calibration.discovery.effects.peaks import likeliest
-from calibration.discovery.eliminated_least_squares import likelihoods
+from calibration.discovery.effects.peaks import highest_peaks
+from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from jaxhydro.environment import Environment
 
 if TYPE_CHECKING:
-    from calibration.discovery.linearisations import Look
+    from calibration.discovery.linearisations import Linearisation
     from calibration.discovery.study import Study
 
-Turns = Callable[[np.ndarray, Environment], np.ndarray]
+PhasePerUnit = Callable[[np.ndarray, Environment], np.ndarray]
 
-FINENESS = 0.2  # rad: phase from one value that is looked at to the next
-NEAR = 0.5  # rad: what is no further is found by slopes
+PHASE_SPACING = 0.2  # rad, between the phase shifts that are compared
+MIN_PHASE_SHIFT = 0.5  # rad: smaller shifts are found by slopes
 
 
-class Afar(NamedTuple):
-    """Values by label where a refit begins, and what -2 ln L of the fitted tests would gain there, nothing else moved."""
+class PhaseShiftStart(NamedTuple):
+    """Starting point of a refit.
+
+    Attributes:
+        values: Values by label.
+        gain: Decrease of -2 ln L of the fitted tests there, nothing else moved.
+    """
 
     values: Mapping[str, float]
     gain: float
 
 
-def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> Afar | None:
-    """The likeliest value of a parameter that turns waves by `turns` (rad a unit, of rates and the water), null where a look
-    is that has its direction's slopes; None where that is near the null, or promises nothing."""
+def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: PhasePerUnit) -> PhaseShiftStart | None:
+    """The likeliest value of a parameter that shifts the phase of waves.
+
+    Args:
+        study: The study.
+        look: Linearisation at the neutral value, with the slopes along the parameter.
+        label: Label of the parameter.
+        turns: Phase per unit (rad) by circular frequency and water.
+
+    Returns:
+        The starting point; None where it is near the neutral value, or gains nothing.
+    """
     (i,) = study.index([label])
     about = study.model.about(label)
     unit = study.value(label, look.place.x + study.directions[i]) - study.value(label, look.place.x)
@@ -49,15 +63,15 @@ def from_afar(study: "Study", look: "Look", label: str, turns: Turns) -> Afar | 
     if motion == 0:
         return None
     usual = math.sqrt(float(weight @ np.abs(along) ** 2) / motion)  # rad a unit
-    tried = np.arange(about.lower, about.upper, FINENESS / usual)
+    tried = np.arange(about.lower, about.upper, PHASE_SPACING / usual)
 
     def left(value: float) -> float:
         residual = look.residual.reshape(-1, 2).copy()
         change = along * np.expm1(1j * phase * value) / (1j * phase)
         residual[waves] += np.stack([change.real, change.imag], axis=1)
-        return float(likelihoods(study, residual.ravel())[study.used].sum())
+        return float(minus_two_log_likelihood(study, residual.ravel())[study.used].sum())
 
     gain = left(0.0) - np.array([left(value) for value in tried])
-    best = likeliest(gain)[:1]
-    far = best[np.abs(tried[best]) * usual > NEAR]
-    return Afar({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None
+    best = highest_peaks(gain)[:1]
+    far = best[np.abs(tried[best]) * usual > MIN_PHASE_SHIFT]
+    return PhaseShiftStart({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None

@@ -1,27 +1,33 @@
-"""When waves come back to the platform, from a residual and from what they would do if they came back at once."""
+"""Starting point for reflected waves: delays to try."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from calibration.discovery.effects.peaks import likeliest
-from calibration.discovery.eliminated_least_squares import weights
-from calibration.discovery.linearisations import Look
+from calibration.discovery.effects.peaks import highest_peaks
+from calibration.discovery.eliminated_least_squares import row_weights
+from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.study import Study
 from jaxhydro.loads.wave_reflection import DELAY, MAX_DELAY, SEEN
 
-STEP = 0.05  # s between those that are looked at
-AT_ONCE: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0))  # the gauge did not, or did
+DELAY_SPACING = 0.05  # s, between the delays that are compared
+# waves that the gauge did not measure, or did
+ZERO_DELAY_GRID: tuple[Mapping[str, float], ...] = tuple({DELAY: 0.0, SEEN: seen} for seen in (0.0, 1.0))
 
 
-def delays(study: Study, look: Look, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
-    """The likeliest ones (s) for `WaveReflection`: where its `slopes` (n,) at no delay, so much later, correlate most with a
-    look's residual, weighed as a fit does, at frequencies of first-order waves.
+def reflection_delays(study: Study, look: Linearisation, slopes: np.ndarray) -> tuple[Mapping[str, float], ...]:
+    """The likeliest delays (s) for `WaveReflection`.
 
-    Were the platform linear that is what it does in waves that come back; which of these delays it is a refit tells.
+    Slopes at no delay, shifted in time, are correlated with the residual at frequencies of first-order waves. In a linear
+    platform these are the slopes at that delay. A refit decides.
+
+    Args:
+        study: The study.
+        look: Linearisation with the residual.
+        slopes: Slopes at no delay, in rows (n,).
     """
-    later = np.arange(0.0, MAX_DELAY, STEP)
-    weight = weights(study, look.residual) * study.used[study.row_series]
+    later = np.arange(0.0, MAX_DELAY, DELAY_SPACING)
+    weight = row_weights(study, look.residual) * study.used[study.row_series]
     product, power, begin = np.zeros(later.size), 0.0, sum(2 * len(cut.take) for cut in study.cuts[: -len(study.seas)])
     for record, cut in zip(study.seas, study.cuts[-len(study.seas) :]):
         rows = slice(begin, begin := begin + 2 * len(cut.take))
@@ -35,4 +41,4 @@ def delays(study: Study, look: Look, slopes: np.ndarray) -> tuple[Mapping[str, f
             product += (both[i] * np.exp(2j * np.pi * i / duration * later)).real
         power += float(share @ np.abs(there) ** 2)
     gain = product**2 / max(power, 1e-300)
-    return tuple({DELAY: float(later[i])} for i in likeliest(gain))
+    return tuple({DELAY: float(later[i])} for i in highest_peaks(gain))

@@ -1,1 +1,1 @@
-"""The force that a model lacks, as a function of time, and a law for it."""
+"""Latent force: the force that a model lacks, in time, and a law for it."""

@@ -1,12 +1,15 @@
-"""A law of few terms for a latent force: which terms, and whether tests that were not fitted follow it too.
+"""Law of few terms for a latent force, by sparse regression checked on other data.
 
-Small sparse regression over a library of terms, as Brunton, Proctor and Kutz 2016, PNAS 113, 3932-3937, eq. 3, but of at
-most three terms; which ones is tried out over all such sets, that orthogonal matching pursuit looks through one by one. The
-terms go through the filter that the force was seen through, so that like is compared with like.
+The library and the regression follow Brunton, Proctor and Kutz, with at most three terms. All sets of terms are tried, which
+orthogonal matching pursuit would look through one by one. Terms pass the filter that the force passed.
 
-A force moves the body: whatever it is, terms of the measured motion follow what it did, though it need not follow them. So
-coefficients are those of instrumental variables, the terms along the motion that was simulated without it (Soderstrom and
-Stoica 1989, System Identification, chapter 8): of a force from elsewhere nothing is left then.
+A force moves the body, so that terms of the measured motion correlate with it whatever its law. Coefficients are therefore
+found by instrumental variables: the terms along the motion simulated without the force. Nothing is left then of a force that
+does not depend on the motion.
+
+References:
+    Brunton, Proctor and Kutz 2016, PNAS 113, 3932-3937, eq. 3.
+    Soderstrom and Stoica 1989, System Identification, chapter 8.
 """
 
 from __future__ import annotations
@@ -20,21 +23,28 @@ import numpy as np
 from scipy.signal import hilbert
 
 from calibration.discovery.diagnosis import Law, LawTerm
-from calibration.discovery.latent_force.recovered_force import Force
+from calibration.discovery.latent_force.recovered_force import RecoveredForce
 from jaxhydro.environment import DOFS
 
-MOST = 3  # terms
-BETTER = 0.03  # by which the held-out share has to rise for another term
-LEAST = 0.2  # of the held-out force, below which there is no law
-NEAR = 0.02  # of what the best set leaves: what leaves as little is as good, and the simplest is taken
-CANCEL = 5.0  # times the force, that a term may be: what all but cancels follows anything
-SLOW = 0.05  # of the rms velocity, at which dry friction turns
-LAGS = (0.3, 1.0, 3.0)  # time constants of lagged velocity over the inverse circular frequency of the motion
-BLOCKS = 4
+MAX_TERMS = 3  # terms of a law
+MIN_SHARE_GAIN = 0.03  # increase of the held-out fraction that another term needs
+MIN_EXPLAINED_SHARE = 0.2  # of the held-out force: with less there is no law
+SIMPLER_LAW_MARGIN = 0.02  # of the smallest remainder: a simpler law may leave so much more
+MAX_TERM_RATIO = 5.0  # of a term to the force: larger terms cancel each other
+FRICTION_SPEED_OVER_RMS = 0.05  # v0 of friction over the rms velocity
+LAG_RATIOS = (0.3, 1.0, 3.0)  # time constants of lagged velocity, times the circular frequency of the motion
+BLOCK_COUNT = 4  # blocks of a test
 
 
-class Kind(NamedTuple):
-    """A term of the library: its name, and the powers of the motion (m, rad), the time (s) and the wave (m) in it."""
+class LibraryTerm(NamedTuple):
+    """A term of the library.
+
+    Attributes:
+        name: Its name.
+        motion: Power of the motion (m, rad).
+        time: Power of the time (s).
+        wave: Power of the wave elevation (m).
+    """
 
     name: str
     motion: int = 0
@@ -42,7 +52,7 @@ class Kind(NamedTuple):
     wave: int = 0
 
     def unit(self, motion: str) -> str:
-        """Unit of its coefficient: SI, rad."""
+        """Unit of its coefficient (SI, rad)."""
         turning = DOFS.index(motion) > 2
         above = ["N", *(["m"] if turning else []), *_powers("s", -self.time)]
         below = [*_powers("rad" if turning else "m", self.motion), *_powers("m", self.wave)]
@@ -53,62 +63,79 @@ def _powers(unit: str, power: int) -> list[str]:
     return [] if power == 0 else [unit if power == 1 else f"{unit}{power}"]
 
 
-IN_STILL_WATER = (  # the simplest first
-    Kind("1"),
-    Kind("x", 1),
-    Kind("v", 1, -1),
-    Kind("|v| v", 2, -2),
-    Kind("x^3", 3),
-    Kind("tanh(v/v0)"),
-    Kind("x |x|", 2),
-    Kind("x^2", 2),
-    Kind("v^3", 3, -3),
-    *(Kind(f"v lagged, {lag:g}/omega", 1, -1) for lag in LAGS),
+STILL_WATER_TERMS = (  # the simplest first
+    LibraryTerm("1"),
+    LibraryTerm("x", 1),
+    LibraryTerm("v", 1, -1),
+    LibraryTerm("|v| v", 2, -2),
+    LibraryTerm("x^3", 3),
+    LibraryTerm("tanh(v/v0)"),
+    LibraryTerm("x |x|", 2),
+    LibraryTerm("x^2", 2),
+    LibraryTerm("v^3", 3, -3),
+    *(LibraryTerm(f"v lagged, {lag:g}/omega", 1, -1) for lag in LAG_RATIOS),
 )
-LAGGED = range(len(IN_STILL_WATER) - len(LAGS), len(IN_STILL_WATER))  # two of them make anything out of next to nothing
-IN_WAVES = (
-    Kind("eta^2 slow", wave=2),
-    Kind("eta^2 slow, a quarter later", wave=2),
-    Kind("eta", wave=1),
-    Kind("eta, a quarter later", wave=1),
+LAGGED_TERMS = range(
+    len(STILL_WATER_TERMS) - len(LAG_RATIOS), len(STILL_WATER_TERMS)
+)  # two of them make anything out of next to nothing
+WAVE_TERMS = (
+    LibraryTerm("eta^2 slow", wave=2),
+    LibraryTerm("eta^2 slow, a quarter later", wave=2),
+    LibraryTerm("eta", wave=1),
+    LibraryTerm("eta, a quarter later", wave=1),
 )
 
 
 def squared_envelope(wave: np.ndarray, step: float) -> np.ndarray:
-    """Squared envelope (m2) of a wave (m): twice the low-passed square, to half the frequency of its highest peak."""
+    """Squared envelope (m²) of a wave (m): twice the low-passed square."""
     lines, frequency = np.abs(np.fft.rfft(wave - wave.mean())), np.fft.rfftfreq(len(wave), step)
     square = np.fft.rfft(2 * (wave - wave.mean()) ** 2)
     fade = 0.5 + 0.5 * np.cos(np.pi * np.clip(2 * frequency / frequency[max(int(lines.argmax()), 1)] - 0.5, 0.0, 1.0))
     return np.fft.irfft(square * fade, len(wave))
 
 
-def later(values: np.ndarray) -> np.ndarray:
-    """A series with every frequency a quarter of its period later (Hilbert transform)."""
+def quarter_period_later(values: np.ndarray) -> np.ndarray:
+    """A series with every frequency shifted by a quarter of its period (Hilbert transform)."""
     return np.imag(hilbert(values - values.mean()))
 
 
 def lagged(velocity: np.ndarray, step: float, constant: float) -> np.ndarray:
-    """A velocity u through a first-order filter (s): constant du/dt = v - u."""
+    """A velocity through a first-order filter: constant (s) du/dt = v - u."""
     omega = 2 * np.pi * np.fft.rfftfreq(len(velocity), step)
     return np.fft.irfft(np.fft.rfft(velocity) / (1 + 1j * omega * constant), len(velocity))
 
 
-def columns_of(one: Force, slow: float, pace: float, without: bool = False) -> np.ndarray:
-    """Terms (n, k) of one test inside it, as seen; zeros of what only waves have. `slow` (m/s, rad/s) is friction's v0, `pace`
-    (rad/s) the motion's. `without`: along the motion that was simulated."""
+def columns_of(one: RecoveredForce, slow: float, pace: float, without: bool = False) -> np.ndarray:
+    """Terms of the library in one test (n, k), through the force's filter.
+
+    Terms of the wave are zero in still water.
+
+    Args:
+        one: The force of the test.
+        slow: Velocity scale of friction (m/s, rad/s).
+        pace: Circular frequency of the motion (rad/s).
+        without: Whether terms follow the simulated motion (instruments) rather than the measured one.
+    """
     (x, v), step = one.simulated if without else (one.position, one.velocity), one.test.step
     rows = [np.ones_like(x), x, v, np.abs(v) * v, x**3, np.tanh(v / slow), x * np.abs(x), x**2, v**3]
-    rows += [lagged(v, step, lag / pace) for lag in LAGS]
+    rows += [lagged(v, step, lag / pace) for lag in LAG_RATIOS]
     if one.test.wave is None:
-        rows += [np.zeros_like(x)] * len(IN_WAVES)
+        rows += [np.zeros_like(x)] * len(WAVE_TERMS)
     else:
         eta, square = one.test.wave - one.test.wave.mean(), squared_envelope(one.test.wave, step)
-        rows += [square, later(square), eta, later(eta)]
-    return np.stack([one.seen(row)[one.inside] for row in rows], axis=1)
+        rows += [square, quarter_period_later(square), eta, quarter_period_later(eta)]
+    return np.stack([one.through_filter(row)[one.inside] for row in rows], axis=1)
 
 
-class Part(NamedTuple):
-    """Force (n,), terms and instruments (n, k) of a test or a block, every one counting alike unless it is mostly noise."""
+class RegressionBlock(NamedTuple):
+    """Data of a test, or of a block of it, for the regression.
+
+    Attributes:
+        force: Force (n,).
+        terms: Terms along the measured motion (n, k).
+        instruments: Terms along the simulated motion (n, k).
+        weight: Weight; the same for all tests except those that are mostly noise.
+    """
 
     force: np.ndarray
     terms: np.ndarray
@@ -116,36 +143,45 @@ class Part(NamedTuple):
     weight: float
 
     def products(self) -> np.ndarray:
-        """[X F]^T [X F], weighed."""
+        """Weighted [X F]^T [X F]."""
         both = np.column_stack([self.terms, self.force])
         return self.weight * both.T @ both
 
     def across(self) -> np.ndarray:
-        """Z^T [X F], weighed, Z the instruments."""
+        """Weighted Z^T [X F], Z the instruments."""
         return self.weight * self.instruments.T @ np.column_stack([self.terms, self.force])
 
 
-def best(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.ndarray]:
-    """The set of `size` terms that leaves least of the force, the simplest of those that leave as little, and its
-    coefficients."""
+def best_terms(products: np.ndarray, size: int) -> tuple[tuple[int, ...], np.ndarray]:
+    """The set of terms that leaves least of the force.
+
+    Of sets that leave nearly as little, the simplest is taken.
+
+    Args:
+        products: Weighted [X F]^T [X F] (k + 1, k + 1).
+        size: Number of terms.
+
+    Returns:
+        Numbers of the terms, and their coefficients.
+    """
     scale = np.sqrt(np.maximum(np.diag(products), 1e-300))
     unit = products / np.outer(scale, scale)
     there = [i for i in range(len(scale) - 1) if scale[i] > 1e-9 * scale[:-1].max()]
-    sets = np.array([some for some in combinations(there, size) if sum(i in LAGGED for i in some) < 2])
+    sets = np.array([some for some in combinations(there, size) if sum(i in LAGGED_TERMS for i in some) < 2])
     if not len(sets):
         return (), np.zeros(0)
     gram = unit[sets[:, :, None], sets[:, None, :]] + 1e-9 * np.eye(size)
     onto = unit[sets, -1]
     found = np.linalg.solve(gram, onto[..., None])[..., 0]
-    left = np.where(np.abs(found).max(axis=1) < CANCEL, 1 - (found * onto).sum(axis=1), np.inf)
+    left = np.where(np.abs(found).max(axis=1) < MAX_TERM_RATIO, 1 - (found * onto).sum(axis=1), np.inf)
     if not np.isfinite(left).any():
         return (), np.zeros(0)
-    i = int(np.flatnonzero(left <= (1 + NEAR) * left.min() + 1e-4)[0])
+    i = int(np.flatnonzero(left <= (1 + SIMPLER_LAW_MARGIN) * left.min() + 1e-4)[0])
     return tuple(int(k) for k in sets[i]), found[i] * scale[-1] / scale[sets[i]]
 
 
-def share_of(parts: Iterable[Part], chosen: Sequence[int], coefficients: np.ndarray) -> float:
-    """Share of the force's mean square that a law explains, below 0 where it makes it larger."""
+def explained_share(parts: Iterable[RegressionBlock], chosen: Sequence[int], coefficients: np.ndarray) -> float:
+    """Fraction of the force's mean square that a law explains; negative where it makes it larger."""
     left = total = 0.0
     for one in parts:
         left += one.weight * float(((one.force - one.terms[:, list(chosen)] @ coefficients) ** 2).sum())
@@ -153,57 +189,63 @@ def share_of(parts: Iterable[Part], chosen: Sequence[int], coefficients: np.ndar
     return 1 - left / total if total > 0 else 0.0
 
 
-def law_of(motion: str, forces: Sequence[Force]) -> Law:
-    """The law that fitted tests give, with as many terms as held-out tests gain by; where none is held out (or has a force that
-    can be seen), blocks of the fitted ones left out in turn."""
+def law_of(motion: str, forces: Sequence[RecoveredForce]) -> Law:
+    """A law of few terms for a latent force.
+
+    Fitted tests give the terms and coefficients, held-out tests the number of terms. Without held-out tests with a visible
+    force, blocks of the fitted ones are left out in turn.
+    """
     fitted = [one for one in forces if one.test.use == "fit" and one.visible]
     waves = any(one.test.wave is not None for one in fitted)
-    kinds = [*IN_STILL_WATER, *(IN_WAVES if waves else ())]
+    kinds = [*STILL_WATER_TERMS, *(WAVE_TERMS if waves else ())]
     if not fitted:
         return Law((), 0.0, 0.0, "")
-    slow = SLOW * float(np.median([np.std(one.velocity[one.inside]) for one in fitted]))
+    slow = FRICTION_SPEED_OVER_RMS * float(np.median([np.std(one.velocity[one.inside]) for one in fitted]))
     moved, moving = (
         sum(float(np.var(values(one)[one.inside])) for one in fitted)
         for values in (lambda one: one.position, lambda one: one.velocity)
     )
     pace = (moving / max(moved, 1e-300)) ** 0.5
 
-    def part(one: Force) -> Part:
+    def part(one: RecoveredForce) -> RegressionBlock:
         force, terms = one.force[one.inside], columns_of(one, slow, pace)[:, : len(kinds)]
         instruments = columns_of(one, slow, pace, without=True)[:, : len(kinds)]
-        return Part(force, terms, instruments, 1 / (len(force) * (one.root_mean_square**2 + 9 * one.noise**2)))
+        return RegressionBlock(force, terms, instruments, 1 / (len(force) * (one.root_mean_square**2 + 9 * one.noise**2)))
 
     whole = [part(one) for one in fitted]
     every, across = (np.sum(some, axis=0) for some in zip(*((one.products(), one.across()) for one in whole)))
     held = [part(one) for one in forces if one.test.use == "holdout" and one.visible]
     folds = [(across, held)] if held else list(_left_out(whole))
     law = Law((), 0.0, 0.0, "held-out tests" if held else "blocks left out in turn")
-    for size in range(1, MOST + 1):
-        chosen, _ = best(every, size)
+    for size in range(1, MAX_TERMS + 1):
+        chosen, _ = best_terms(every, size)
         if not chosen:
             continue
         coefficients = _solved(across, chosen)
-        share = float(np.mean([share_of(asked, chosen, _solved(given, chosen)) for given, asked in folds]))
-        if share >= max(LEAST, law.share + BETTER):
+        share = float(np.mean([explained_share(asked, chosen, _solved(given, chosen)) for given, asked in folds]))
+        if share >= max(MIN_EXPLAINED_SHARE, law.share + MIN_SHARE_GAIN):
             terms = tuple(LawTerm(kinds[i].name, float(c), kinds[i].unit(motion), i) for i, c in zip(chosen, coefficients))
-            law = replace(law, terms=terms, share=share, fitted=share_of(whole, chosen, coefficients))
+            law = replace(law, terms=terms, share=share, fitted=explained_share(whole, chosen, coefficients))
         elif not law.terms:
             law = replace(law, share=max(share, law.share, 0.0))
     return replace(law, v0=slow, pace=pace)
 
 
 def _solved(across: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
-    """Coefficients of some terms by their instruments."""
+    """Coefficients of some terms by instrumental variables."""
     gram, onto = across[np.ix_(chosen, chosen)], across[list(chosen), -1]
     scale = np.sqrt(np.maximum(np.abs(np.diag(gram)), 1e-300))
     return np.linalg.lstsq(gram / np.outer(scale, scale), onto / scale, rcond=1e-9)[0] / scale
 
 
-def _left_out(parts: Sequence[Part]) -> Iterable[tuple[np.ndarray, list[Part]]]:
-    """Products across all blocks but every fourth of the tests, and those."""
-    for k in range(BLOCKS):
+def _left_out(parts: Sequence[RegressionBlock]) -> Iterable[tuple[np.ndarray, list[RegressionBlock]]]:
+    """Products over all blocks but one of every test, and the blocks left out."""
+    for k in range(BLOCK_COUNT):
         blocks = [
-            [Part(f, x, z, one.weight) for f, x, z in zip(*(np.array_split(values, BLOCKS) for values in one[:3]))]
+            [
+                RegressionBlock(f, x, z, one.weight)
+                for f, x, z in zip(*(np.array_split(values, BLOCK_COUNT) for values in one[:3]))
+            ]
             for one in parts
         ]
         given = np.sum([block.across() for rows in blocks for i, block in enumerate(rows) if i != k], axis=0)

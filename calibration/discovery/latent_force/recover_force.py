@@ -1,18 +1,20 @@
-"""The latent force: what would have to act on the model, beside all that it has, for it to follow every record.
+"""Recovery of the latent force from the residual, by the model's equation of motion.
 
-The residual r, measured less simulated, tapered at its ends, is taken through the model's own equation of motion: where that is
-linear, r = H F, r is divided by H. Where it is not, its accelerations a along the path that the record took and along the
-simulated one y are subtracted from each other, which is what an H about a mean motion would approximate:
+The latent force is what would have to act on the model for it to follow every record. The residual r, measured minus simulated
+and tapered at its ends, is put into the model's equation of motion. If that is linear, r = H F, and r is divided by H. If not,
+accelerations a along the recorded path and along the simulated path y are subtracted:
 
     F = M (d2r/dt2 - a(y + r) + a(y)),  M with the added mass at rest.
 
-What noise makes of it grows with the square of the frequency and is filtered out by the gain g = max(0, 1 - 3 N / P), P the
-periodogram of F over neighbouring lines and N that of |1 / H| times the noise: the Wiener deconvolution of Press et al. 1992,
-Numerical Recipes in C, section 13.3, eqs. 13.3.3 and 13.3.6, g = |S|^2 / (|S|^2 + |N|^2), with more than N taken off, as the
-periodogram of noise alone scatters. A gain found from r, not from F, would let through what the tapering of r does.
+Noise in F grows with the square of the frequency and is filtered by the gain g = max(0, 1 - 3 N / P). P is the periodogram of F
+over neighbouring lines, N that of |1 / H| times the noise. This is a Wiener filter, g = |S|^2 / (|S|^2 + |N|^2), with more than
+N taken off, since the periodogram of noise scatters. A gain found from r would let through the effect of tapering r.
 
-What is below the noise, or faster than `highest`, is not reconstructed; the ends are left out. Loads' memories stay at rest,
-motions that were not measured too, and sensors are taken to read the motion.
+A force below the noise, or faster than `highest`, is not recovered; the ends are left out. Loads' memories, and motions that
+were not measured, stay at rest. Sensors are assumed to read the motion.
+
+References:
+    Press et al. 1992, Numerical Recipes in C, section 13.3, eqs. 13.3.3 and 13.3.6.
 """
 
 from __future__ import annotations
@@ -29,10 +31,10 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from calibration.discovery.diagnosis import LatentForce
-from calibration.discovery.gather import highest_of
+from calibration.discovery.gather import highest_frequency
 from calibration.discovery.latent_force.describe_force import described
 from calibration.discovery.latent_force.force_law import law_of
-from calibration.discovery.latent_force.recovered_force import Force, Moved, filtered
+from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest, filtered
 from calibration.result import Calibration
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.statics import equilibrium, linearised
@@ -42,24 +44,27 @@ from jaxhydro.waves.sea import AbstractSea, StillWater
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
 
-LINES = 5  # of the periodogram that are averaged
-HARMONICS = 6.0  # times a decay's own frequency: what is faster moves the body little, and is not looked at
-OVER = 3.0  # times the noise, that is taken off it
-DAMPING = 0.03  # of critical
-TAPERED = 0.1  # of the record at each end, at most
-CHUNK = 512  # instants at a time
+LINES_AVERAGED = 5  # Fourier lines over which the periodogram is averaged
+MAX_HARMONIC = 6.0  # times a decay's own frequency: faster forces are not reconstructed
+NOISE_FACTOR = 3.0  # times the noise, which the filter takes off
+DAMPING_RATIO = 0.03  # of the impedance by which noise becomes force
+MAX_TAPERED_SHARE = 0.1  # of the record, at each end
+INSTANTS_AT_ONCE = 512  # instants in one call
 
 
 def peak_of(values: np.ndarray) -> int:
-    """Cycles of what a series has most of."""
+    """Number of cycles of a series at its highest spectral peak."""
     return max(int(np.abs(np.fft.rfft(values - values.mean())).argmax()), 1)
 
 
 def windows(residual: np.ndarray) -> tuple[np.ndarray, np.ndarray, slice]:
-    """Tapers (n,) of the residual and, where that one is 1, of the force, both over half a period of what the residual has most
-    of at each end; and what is well inside."""
+    """Tapers of residual and force, and the part of the record away from its ends.
+
+    Returns:
+        Taper of the residual (n,), taper of the force (n,), and the slice.
+    """
     n = len(residual)
-    ends = int(min(TAPERED * n, max(0.5 * n / peak_of(residual), LINES)))
+    ends = int(min(MAX_TAPERED_SHARE * n, max(0.5 * n / peak_of(residual), LINES_AVERAGED)))
     ramp = 0.5 - 0.5 * np.cos(np.pi * (np.arange(ends) + 0.5) / ends)
     first, second = (
         np.concatenate([np.zeros(off), ramp, np.ones(n - 2 * ends - 2 * off), ramp[::-1], np.zeros(off)]) for off in (0, ends)
@@ -67,19 +72,24 @@ def windows(residual: np.ndarray) -> tuple[np.ndarray, np.ndarray, slice]:
     return first, second, slice(2 * ends, n - 2 * ends)
 
 
-def level_of(residual: np.ndarray, noise: float) -> float:
-    """Standard deviation of the noise: the sensor's, or what a residual has at its highest frequencies, the larger."""
+def noise_level(residual: np.ndarray, noise: float) -> float:
+    """Standard deviation of noise: the sensor's, or that at the highest frequencies if larger."""
     window = np.hanning(len(residual))
     power = np.abs(np.fft.rfft(residual * window)) ** 2 / (window**2).sum()
     return max(noise, float(np.median(power[3 * len(power) // 4 :]) / np.log(2)) ** 0.5)  # lines of noise are exponential
 
 
-def gain_of(force: np.ndarray, taper: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
-    """The optimal filter's gain by Fourier line, of a force and the variance by line of the noise in it (the largest nearby, as
-    the taper mixes neighbours), and by how much the highest peak is above the noise, in power."""
-    level = maximum_filter1d(noise, LINES, mode="nearest") * float((taper**2).sum())
-    ratio = uniform_filter1d(np.abs(np.fft.rfft(force * taper)) ** 2 / level, LINES, mode="nearest")
-    return np.clip(1 - OVER / np.maximum(ratio, 1e-300), 0.0, None), float(ratio.max())
+def filter_gain(force: np.ndarray, taper: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
+    """Gain of the Wiener filter of a force, and its highest peak over the noise, in power.
+
+    Args:
+        force: The force (n,).
+        taper: Its taper (n,).
+        noise: Variance of its noise by Fourier line.
+    """
+    level = maximum_filter1d(noise, LINES_AVERAGED, mode="nearest") * float((taper**2).sum())
+    ratio = uniform_filter1d(np.abs(np.fft.rfft(force * taper)) ** 2 / level, LINES_AVERAGED, mode="nearest")
+    return np.clip(1 - NOISE_FACTOR / np.maximum(ratio, 1e-300), 0.0, None), float(ratio.max())
 
 
 @eqx.filter_jit
@@ -97,15 +107,23 @@ def _accelerations(
 
 
 def accelerations(model: Model, sea: AbstractSea, time: np.ndarray, position: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Second derivatives (t, 6) of surge ... yaw that the model has at a path's positions and rates (t, 6)."""
+    """Accelerations (t, 6) of surge ... yaw that the model has along a path.
+
+    Args:
+        model: The model.
+        sea: The sea.
+        time: Times (s; t,).
+        position: Positions (m, rad; t, 6).
+        rate: Their rates (m/s, rad/s; t, 6).
+    """
     n = len(time)
-    at = np.minimum(np.arange(-(-n // CHUNK) * CHUNK), n - 1).reshape(-1, CHUNK)
+    at = np.minimum(np.arange(-(-n // INSTANTS_AT_ONCE) * INSTANTS_AT_ONCE), n - 1).reshape(-1, INSTANTS_AT_ONCE)
     found = [_accelerations(model, sea, *(jnp.asarray(one[some]) for one in (time, position, rate))) for some in at]
     return np.concatenate(found)[:n]
 
 
-def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> dict[str, Force]:
-    """The latent force of every motion that a test measured; `base` (6,) is where its motions count from."""
+def forces_of(model: Model, test: ResampledTest, base: np.ndarray, highest: float) -> dict[str, RecoveredForce]:
+    """Latent force of every measured motion of a test; `base` (6,) is where motions count from."""
     n, names = len(test.time), [dof for dof in DOFS if dof in test.measured]
     frequency = np.fft.rfftfreq(n, test.step)
     omega = 2 * np.pi * frequency
@@ -116,8 +134,8 @@ def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> di
     cut, fades, noise = {}, {}, np.zeros(6)
     for name in names:
         j, residual = DOFS.index(name), test.measured[name] - test.simulated[name]
-        cut[name], noise[j] = windows(residual), level_of(residual, test.noise[name])
-        own = HARMONICS * peak_of(test.measured[name]) / (n * test.step) if test.kind == "decay" else highest
+        cut[name], noise[j] = windows(residual), noise_level(residual, test.noise[name])
+        own = MAX_HARMONIC * peak_of(test.measured[name]) / (n * test.step) if test.kind == "decay" else highest
         fades[name] = 0.5 + 0.5 * np.cos(np.pi * np.clip(5 * (frequency / min(own, highest) - 0.8), 0.0, 1.0))
         lines = fades[name] * np.fft.rfft(residual * cut[name][0])
         more[:, j], faster[:, j], pushed[:, j] = (np.fft.irfft(lines * (1j * omega) ** k, n) for k in range(3))
@@ -127,15 +145,17 @@ def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> di
     force = (pushed - there + here) @ mass.T
     path, speed = position + more - np.asarray(rest), rate + faster
     # what noise in the residual makes of the force, line by line: DAMPING stands for a damping that it is not sensitive to
-    impedance = (stiffness - omega[:, None, None] ** 2 * mass) ** 2 + (2 * DAMPING * omega[:, None, None] ** 2 * mass) ** 2
+    impedance = (stiffness - omega[:, None, None] ** 2 * mass) ** 2 + (
+        2 * DAMPING_RATIO * omega[:, None, None] ** 2 * mass
+    ) ** 2
     found = {}
     for name in names:
         j, (_, taper, inside) = DOFS.index(name), cut[name]
         through = impedance[:, j] @ noise**2
-        gain, peak = gain_of(force[:, j], taper, through)
+        gain, peak = filter_gain(force[:, j], taper, through)
         gain = gain * fades[name]
         left = float(np.sqrt(2 * (gain**2 * through).sum() / n))
-        found[name] = Force(
+        found[name] = RecoveredForce(
             test,
             name,
             filtered(force[:, j] * taper, gain),
@@ -152,10 +172,18 @@ def forces_of(model: Model, test: Moved, base: np.ndarray, highest: float) -> di
     return found
 
 
-def latent_forces(model: Model, tests: Sequence[Moved], motions: Sequence[str], from_rest: bool) -> tuple[LatentForce, ...]:
-    """The latent force by motion, described, with the law of few terms that tests which were not fitted follow, too. Motions
-    count from the static equilibrium (`from_rest`) or from the reference position."""
-    base, highest = np.asarray(equilibrium(model)) * from_rest, highest_of(model)
+def latent_forces(
+    model: Model, tests: Sequence[ResampledTest], motions: Sequence[str], from_rest: bool
+) -> tuple[LatentForce, ...]:
+    """Latent force by motion, with its description and a law of few terms.
+
+    Args:
+        model: The model.
+        tests: The tests on even clocks.
+        motions: The motions.
+        from_rest: Whether motions count from the static equilibrium, or from the reference position.
+    """
+    base, highest = np.asarray(equilibrium(model)) * from_rest, highest_frequency(model)
     every = [forces_of(model, test, base, highest) for test in tests]
     found = []
     for motion in motions:
@@ -166,13 +194,13 @@ def latent_forces(model: Model, tests: Sequence[Moved], motions: Sequence[str], 
 
 
 def latent_of(search: Search, fitted: Calibration) -> tuple[LatentForce, ...]:
-    """Of a diagnosis's last model. See `latent_forces`."""
+    """Latent forces of a diagnosis's final model. See `latent_forces`."""
     from_rest = search.campaign.manifest.zero is not None
-    return latent_forces(fitted.model, list(_moved(search, fitted)), search.posed.motions, from_rest)
+    return latent_forces(fitted.model, list(_moved(search, fitted)), search.setup.motions, from_rest)
 
 
-def _moved(search: Search, fitted: Calibration) -> Iterator[Moved]:
-    """Tests on even clocks: in waves on that which their sea was prepared for."""
+def _moved(search: Search, fitted: Calibration) -> Iterator[ResampledTest]:
+    """Tests on even clocks; in waves on the clock of their sea."""
     seas = {name: sea for sea in search.study.seas for name in sea.tests}
     records = {record.id: record for record in search.campaign.records}
     for test in fitted.tests:
@@ -191,4 +219,4 @@ def _moved(search: Search, fitted: Calibration) -> Iterator[Moved]:
             for rows in ([(s, s.measured) for s in test.series], [(s, s.simulated) for s in test.series])
         ]
         noise = {one.channel: one.noise for one in test.series}
-        yield Moved(test.id, test.use, test.kind, time, both[0], both[1], noise, water, wave)
+        yield ResampledTest(test.id, test.use, test.kind, time, both[0], both[1], noise, water, wave)

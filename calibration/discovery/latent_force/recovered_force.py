@@ -1,4 +1,4 @@
-"""The latent force that was recovered from one motion of a test."""
+"""Recovered latent force of one motion of a test."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -7,11 +7,23 @@ import numpy as np
 
 from jaxhydro.waves.sea import AbstractSea
 
-VISIBLE = 20.0  # times the noise, in power, that the highest peak of a force has: without it there is none
+MIN_PEAK_OVER_NOISE = 20.0  # in power, of the highest spectral peak: with less there is no force
 
 
-class Moved(NamedTuple):
-    """A test on an even clock (s): motions (m, rad) measured and simulated, noise, the sea that it was in, and its wave (m)."""
+class ResampledTest(NamedTuple):
+    """A test on an even clock.
+
+    Attributes:
+        id: Its name.
+        use: Its use (fit, holdout).
+        kind: Its kind (decay, regular, irregular).
+        time: Times (s; n,).
+        measured: Measured motions (m, rad).
+        simulated: Simulated motions (m, rad).
+        noise: Sensor noise by motion (m, rad).
+        sea: The sea.
+        wave: Wave elevation (m; n,), or None.
+    """
 
     id: str
     use: str
@@ -25,17 +37,29 @@ class Moved(NamedTuple):
 
     @property
     def step(self) -> float:
-        """s"""
+        """Time step (s)."""
         return float(self.time[1] - self.time[0])
 
 
-class Force(NamedTuple):
-    """The latent force (N, N m) of one motion of a test; motion (m, rad; /s; /s2) and force all along its clock, and the
-    `simulated` motion and its rate without it. Of these `inside` is to be believed. `gain` by Fourier line and `taper` in time
-    are what the force was seen through, `noise` (N, N m) what the sensor's noise leaves in it, `peak` by how much its spectrum
-    is above that at most, in power."""
+class RecoveredForce(NamedTuple):
+    """Latent force of one motion of a test.
 
-    test: Moved
+    Attributes:
+        test: The test.
+        motion: The motion.
+        force: The force (N, N m; n,).
+        position: The motion (m, rad; n,).
+        velocity: Its velocity (m/s, rad/s; n,).
+        acceleration: Its acceleration (m/s², rad/s²; n,).
+        simulated: Simulated motion without the force, and its velocity.
+        gain: Gain of the filter by Fourier line.
+        taper: Taper of the force (n,).
+        inside: The part of the record that is reliable.
+        noise: Noise that is left in the force (N, N m).
+        peak: Highest peak of the spectrum over the noise, in power.
+    """
+
+    test: ResampledTest
     motion: str
     force: np.ndarray
     position: np.ndarray
@@ -48,21 +72,21 @@ class Force(NamedTuple):
     noise: float
     peak: float
 
-    def seen(self, values: np.ndarray) -> np.ndarray:
-        """What the reconstruction would have left of a force."""
+    def through_filter(self, values: np.ndarray) -> np.ndarray:
+        """A force as the recovery would show it."""
         return filtered(values * self.taper, self.gain)
 
     @property
     def root_mean_square(self) -> float:
-        """N, N m"""
+        """Root mean square (N, N m)."""
         return float(np.sqrt(np.mean(self.force[self.inside] ** 2)))
 
     @property
     def visible(self) -> bool:
-        """Whether it is more than noise."""
-        return self.peak > VISIBLE and self.root_mean_square > 0
+        """Whether the force is more than noise."""
+        return self.peak > MIN_PEAK_OVER_NOISE and self.root_mean_square > 0
 
 
 def filtered(values: np.ndarray, gain: np.ndarray) -> np.ndarray:
-    """A series (n,) with its Fourier lines times a gain."""
+    """A series (n,) with its Fourier lines multiplied by a gain."""
     return np.fft.irfft(gain * np.fft.rfft(values), len(values))
