@@ -72,7 +72,7 @@ def study_of(
     if decaying:
         shortest = min([MAX_FREQUENCY_RATIO / highest, *(dominant_period(r) for r in decaying)])
         step = min(shortest / STEPS_PER_PERIOD, memory_step(model))
-        decays, found, own_width, rows = gather_decays(decaying, model, space, from_rest, step, highest)
+        decays, found, own_width, rows = gather_decay_series(decaying, model, space, from_rest, step, highest)
         series += found
         cuts.append(rows)
     seas: list[SeaRecord] = []
@@ -141,7 +141,7 @@ def highest_frequency(model: Model) -> float:
     return MAX_FREQUENCY_RATIO / float(periods.min()) if len(periods) else 1.0
 
 
-def gather_decays(
+def gather_decay_series(
     records: Sequence[Record], model: Model, space: ParameterSpace, from_rest: bool, step: float, highest: float
 ) -> tuple[DecayProblem, list[MotionSeries], np.ndarray, FourierRows]:
     """Decays in arrays, with their series and rows.

@@ -14,7 +14,7 @@ from calibration.campaign.records import Record
 from calibration.discovery.acceptance import FitState, ResidualSummary
 from calibration.discovery.effect_descent import fit
 from calibration.discovery.expected_residuals import expected_rows
-from calibration.discovery.gather import gather_decays, gather_sea, highest_frequency
+from calibration.discovery.gather import gather_decay_series, gather_sea, highest_frequency
 from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.study import Study
 from calibration.residuals.decays import dominant_period, first_guess
@@ -96,7 +96,7 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
     if cut:
         assert study.decays is not None
         step = float(np.asarray(study.decays.data.step).max())
-        decays, found, own_width, rows = gather_decays(cut, study.model, study.space, study.decays.from_rest, step, highest)
+        decays, found, own_width, rows = gather_decay_series(cut, study.model, study.space, study.decays.from_rest, step, highest)
         series += found
         cuts.append(rows)
         numbers += [i % BLOCKS_PER_TEST for i in range(len(cut)) for _ in decays.data.dofs]
