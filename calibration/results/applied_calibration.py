@@ -81,9 +81,8 @@ def apply_calibration(path: str | PathLike[str], model: Model, platform: str, ev
     """
     saved = read_saved(path)
     declared = model if saved.strips is None else saved.strips.applied_to(model)
-    strips = (
-        saved.strips if StripConventions.of(declared) != StripConventions.of(model) else None
-    )  # without drag there is no speed of it
+    # without drag there is no speed of it
+    strips = saved.strips if StripConventions.of(declared) != StripConventions.of(model) else None
     model = with_calibrated_loads(saved, declared, path)
     own = everything or not saved.platform or saved.platform == platform
     values = {k: v for k, v in saved.values().items() if own or not k.startswith(CAMPAIGN_PARAMETERS)}
