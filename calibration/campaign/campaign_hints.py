@@ -47,9 +47,8 @@ def campaign_hints(
         scale: the manifest's.
     """
     times = tuple(_period_hints(records, modes, scale))
-    sizes = tuple(
-        _release_size_hints(records, length, scale, {"length"} if times else set())
-    )  # lengths go with times, by the scale
+    # lengths go with times, by the scale
+    sizes = tuple(_release_size_hints(records, length, scale, {"length"} if times else set()))
     known = {quantity(hint.channel) for hint in (*times, *sizes)}
     return (*times, *sizes, *_coupling_hints(records, modes, widths, length, scale, known))
 

@@ -29,8 +29,10 @@ _LARGEST_VALUE = 1e15  # what is larger stands for a missing value
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """A test's window of its file, nothing converted or repaired; of a decay the free motion in it. `values` has the wave
-    as `wave`."""
+    """Part of a data file that belongs to one test, in the file's own units; of a decay, the free motion.
+
+    Nothing is converted or repaired. `values` has the elevation as `wave`.
+    """
 
     test: Test
     time: np.ndarray  # (n,) in the time channel's unit
@@ -55,7 +57,7 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """What one test measured: SI, full scale, its still water at zero. It starts at its first sample."""
+    """Measured motion of one test, in SI at full scale, zero in still water, from its first sample."""
 
     id: str
     kind: str

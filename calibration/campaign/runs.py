@@ -19,7 +19,17 @@ LONGEST_GAP = 3  # samples of the wave that may be missing in a row, and are dra
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One file, driven by one record: even times (s), elevation (m, still water at 0), gauge (m), heading (rad), tests."""
+    """Record of one file in waves, with even time steps.
+
+    Attributes:
+        file: Path of the file.
+        time: (n,) even times (s).
+        wave: (n,) surface elevation (m), zero in still water.
+        position: Position of the wave gauge (m).
+        heading: Direction that the waves run to (rad).
+        records: Tests that are windows of the file.
+        notes: Remarks in words.
+    """
 
     file: str
     time: np.ndarray

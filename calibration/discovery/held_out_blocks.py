@@ -96,7 +96,9 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
     if cut:
         assert study.decays is not None
         step = float(np.asarray(study.decays.data.step).max())
-        decays, found, own_width, rows = gather_decay_series(cut, study.model, study.space, study.decays.from_rest, step, highest)
+        decays, found, own_width, rows = gather_decay_series(
+            cut, study.model, study.space, study.decays.from_rest, step, highest
+        )
         series += found
         cuts.append(rows)
         numbers += [i % BLOCKS_PER_TEST for i in range(len(cut)) for _ in decays.data.dofs]

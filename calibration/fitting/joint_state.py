@@ -34,7 +34,7 @@ MIN_ERROR = {"waves": 0.02, "offsets": 1e-3}  # error of ln(energy), share of th
 
 
 class Sources(NamedTuple):
-    """What is fitted; None where there is nothing of a kind."""
+    """Data that are fitted together; None where there is nothing of a kind."""
 
     decays: DecayProblem | None
     waves: SeaProblem | None
@@ -43,7 +43,7 @@ class Sources(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """What multiplies the squares of decays, by record and channel, and of the other kinds, by group."""
+    """Factors of squared residuals: of decays by record and channel, else by group."""
 
     decays: Float[Array, "r c"]
     waves: Float[Array, " g"]
@@ -163,7 +163,7 @@ class JointFit:
         return Weights(of_decays, *(found.get(kind, none) for kind in ("waves", "offsets", "periods")))
 
     def run(self) -> None:
-        """All rounds."""
+        """Run all rounds of descent and error estimate."""
         for number in range(MAX_ROUNDS):
             sources = self.sources
             if self.loss == "cauchy":

@@ -30,8 +30,11 @@ def _objective(x, args):
 
 
 class SeaFit:
-    """One calibration in waves under way. The prior of every parameter weighs as one observation beside the tests' own, whose
-    error is that of the model: it is estimated from what is left of them, and the fit made anew, until both agree."""
+    """State of a calibration in waves.
+
+    Every parameter's prior weighs as one observation beside the tests' own. Their error is that of the model. It is
+    estimated from the residuals, and the fit repeated, until both agree.
+    """
 
     def __init__(self, set_up: Callable[[Model], Any], declared: Model, report: Callable[..., None]) -> None:
         self.set_up, self.report = set_up, report
@@ -58,22 +61,22 @@ class SeaFit:
         return ()
 
     def descent(self) -> Iterator[DescentState]:
-        """One round."""
+        """Descend once, with the present error."""
         ridge = jnp.asarray(max(self.error, 1e-6) / self.width)
         return descend(_objective, self.unknowns, (self.problem, self.mean, ridge), TOLERANCE, FIRST_STEP_TRUST)
 
     def squares(self) -> float:
-        """What is left of all observations, from the `products`."""
+        """Sum of squared residuals over all observations, from the `products`."""
         return float(self.products[:, -1, -1].sum())
 
     def residual_rms(self) -> tuple[float, bool]:
-        """Root mean square of what is left of an observation, and whether the sea reaches as far as the hull goes."""
+        """Root mean square residual of an observation, and whether the hull stays within the prepared sea."""
         groups, inside = residuals_and_reach(self.problem, self.x)
         self.groups = [np.asarray(group) for group in groups]
         return math.sqrt(sum(float(np.sum(group**2)) for group in self.groups) / self.problem.observations), bool(inside)
 
     def run(self) -> None:
-        """All rounds."""
+        """Run all rounds of descent and error estimate."""
         for number in range(MAX_ROUNDS):
             for i, now in enumerate(self.descent()):
                 self.unknowns, self.products, self.converged = now.unknowns, np.asarray(now.aux), now.settled

@@ -27,7 +27,7 @@ NOT_FREE_BY_DEFAULT = (
 
 
 class FreeParameter(NamedTuple):
-    """One free parameter: where it starts, how it is transformed, and a Gaussian prior on its coordinate."""
+    """A free parameter: start, transform, and a Gaussian prior on its coordinate."""
 
     label: str
     start: float
@@ -115,11 +115,23 @@ def parameter_space(
     priors: Mapping[str, tuple[float, float]] | None = None,
     source: str = "campaign.yaml",
 ) -> ParameterSpace:
-    """Free parameters with their transforms. `bounds` label -> (lower, upper), `priors` label -> (value, standard deviation).
+    """Set up free parameters with their transforms, bounds and priors.
 
-    A parameter that cannot be negative is on a logarithmic scale, by default within a factor of 1000 of where it starts and
-    within its physical range; what is declared as 0 starts in the middle of that. Raises InputError for bounds or priors that
-    make no sense.
+    A parameter that cannot be negative is on a logarithmic scale, by default within a factor of 1000 of its start and
+    within its physical range. A value of 0 starts in the middle of that range.
+
+    Args:
+        model: The model, whose values are the start.
+        labels: Labels of the free parameters.
+        bounds: Lower and upper bound in the parameter's unit, by label.
+        priors: Mean and standard deviation in the parameter's unit, by label.
+        source: Name of the file that errors refer to.
+
+    Returns:
+        The free parameters.
+
+    Raises:
+        InputError: If bounds or priors are invalid.
     """
     bounds, priors, free, problems = bounds or {}, priors or {}, [], []
     for key, given in (("bounds", bounds), ("priors", priors)):

@@ -27,7 +27,7 @@ from jaxhydro.waves.sea import StillWater
 
 
 class DecayData(eqx.Module):
-    """Decay records in arrays of one shape: record first, then channel or sample. SI."""
+    """Decay records in arrays of one shape: record first, then channel or sample. SI units."""
 
     time: Float[Array, "r t"]  # s; beyond the last sample the last one again
     measured: Float[Array, "r c t"]
@@ -41,7 +41,12 @@ class DecayData(eqx.Module):
 
 
 class Unknowns(NamedTuple):
-    """Coordinates of everything that is fitted: shared parameters, and position, rate and offset by record and channel."""
+    """Coordinates of all unknowns of a fit.
+
+    Attributes:
+        shared: (p,) coordinates of the parameters.
+        own: (r, 3c) position, rate and offset by record and channel.
+    """
 
     shared: Float[Array, " p"]
     own: Float[Array, "r 3*c"]
@@ -118,10 +123,15 @@ def shortened(record: DecayData, until: Float[Array, ""]) -> DecayData:
 
 
 class DecayProblem(eqx.Module):
-    """A calibration's fixed part: the model that starts, its free parameters, and the records.
+    """Decay records against a model with free parameters.
 
-    `from_rest`: measured motion counts from the static equilibrium, otherwise from the reference position. `tail` (m, rad), by
-    record and channel, is where residuals cease to count by their squares (`cauchy_residual`); None: nowhere.
+    Attributes:
+        model: The model at the start of the fit.
+        data: The records.
+        space: The free parameters.
+        from_rest: Whether measured motion counts from the static equilibrium; else from the reference position.
+        rest: (6,) static equilibrium (m, rad); None where free parameters move it.
+        tail: (r, c) residual beyond which `cauchy_residual` is used (m, rad); None: squares everywhere.
     """
 
     model: Model

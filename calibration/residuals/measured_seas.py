@@ -68,7 +68,7 @@ class Options:
 
 
 def options_of(campaign: Campaign) -> Options:
-    """The options of a campaign's seas where a command says nothing: its own band and order."""
+    """Default options of a campaign's seas where a command says nothing: its own band and order."""
     low, cutoff = wave_band(campaign.manifest, campaign.model, campaign.records)
     return Options(order=campaign.manifest.records.order or 2, low=low, cutoff=cutoff)
 
@@ -103,9 +103,15 @@ Seas: TypeAlias = tuple[tuple[Run, RunSea], ...]
 
 @dataclass(frozen=True, eq=False)
 class SeaTest:
-    """A test after its transient: measured and simulated motions and wave, and what its sea was. `peak_period` in s.
+    """Measured and simulated motion of one test in waves, after its transient, with even time steps.
 
-    `fit.start` has nothing; every series is even in time.
+    Attributes:
+        fit: Measured and simulated motions; `fit.start` is empty.
+        wave: (n,) measured elevation (m).
+        simulated_wave: (n,) simulated elevation at the gauge (m).
+        peak_period: Peak period (s).
+        stated_height: Stated significant height, or height of regular waves (m); None where none is stated.
+        heading: Direction that the waves run to (rad).
     """
 
     fit: TestFit
@@ -117,7 +123,14 @@ class SeaTest:
 
 
 class Comparison(NamedTuple):
-    """What `compare` finds: tests, seas by run, and words of warning."""
+    """Comparison of a model with all tests in waves.
+
+    Attributes:
+        tests: Measured and simulated motions, one entry per test.
+        seas: Runs and their seas.
+        notes: Warnings in words.
+        step: Time step of the simulation (s).
+    """
 
     tests: tuple[SeaTest, ...]
     seas: Seas

@@ -17,7 +17,14 @@ from jaxhydro.waves.sea_state import SeaState, peak_period
 
 
 class RunSegment(NamedTuple):
-    """Samples `begin` to `end`, both included, of a run's clock, the tests in it, and their sea state; None: of any."""
+    """Part of a run's clock with one sea state.
+
+    Attributes:
+        records: Tests in the segment.
+        begin: First sample of the run's clock, included.
+        end: Last sample, included.
+        state: Sea state; None where the model does not depend on it.
+    """
 
     records: tuple[Record, ...]
     begin: int
@@ -26,9 +33,15 @@ class RunSegment(NamedTuple):
 
 
 class SimulatedSegment(NamedTuple):
-    """A simulated stretch, and the state that it began in; None: at rest."""
+    """A simulated segment of a run.
 
-    stretch: RunSegment
+    Attributes:
+        segment: The segment.
+        simulation: Its motion.
+        start: State in which it began; None: at rest.
+    """
+
+    segment: RunSegment
     simulation: IrregularSimulation
     start: State | None
 
@@ -41,7 +54,17 @@ def samples_after_transient(run: Run, record: Record) -> np.ndarray:
 
 
 def sea_state(run: Run, record: Record, low: float, cutoff: float) -> SeaState:
-    """The measured sea state of a test after its transient, of waves from `low` to `cutoff` (Hz)."""
+    """Measured sea state of a test after its transient.
+
+    Args:
+        run: The run.
+        record: Record of the test.
+        low: Lowest frequency of the waves (Hz).
+        cutoff: Highest frequency of the waves (Hz).
+
+    Returns:
+        Significant height (m) and peak period (s).
+    """
     whole = samples_after_transient(run, record)
     spectrum = power_spectrum(run.time[whole], run.wave[whole])
     inside = (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
@@ -51,8 +74,21 @@ def sea_state(run: Run, record: Record, low: float, cutoff: float) -> SeaState:
 
 
 def run_segments(run: Run, records: Sequence[Record], model: Model, low: float, cutoff: float) -> tuple[RunSegment, ...]:
-    """One for every test of a run, from its first sample (the first one's from the run's) at least to the next one's; where the
-    model does not depend on the sea state, one for all. Waves are from `low` to `cutoff` (Hz)."""
+    """Cut a run into segments of one sea state, one for each test.
+
+    A segment reaches from its test's first sample (the first one: from the run's) to that of the next test at least. Where
+    the model does not depend on the sea state, there is one segment for all.
+
+    Args:
+        run: The run.
+        records: Records of the tests.
+        model: The model.
+        low: Lowest frequency of the waves (Hz).
+        cutoff: Highest frequency of the waves (Hz).
+
+    Returns:
+        The segments, in order of time.
+    """
     records = sorted(records, key=lambda record: record.time[0])
     ends = [(int(at[0]), int(at[-1])) for at in map(run.samples, records)]
     if model.in_sea(SeaState(1.0, 1.0)) is model:
@@ -68,8 +104,21 @@ def run_segments(run: Run, records: Sequence[Record], model: Model, low: float, 
 def simulate_segments(
     model: Model, run: Run, parts: Sequence[RunSegment], sea: IrregularSea, step: float, margin: float = 0.0
 ) -> Iterator[SimulatedSegment]:
-    """The motion of a platform that starts at rest with a run, stretch by stretch. Each begins where the one before it was; a
-    load's memory begins anew. `step` and `margin` are those of `simulate_irregular`."""
+    """Simulate a run segment by segment, starting at rest.
+
+    Each segment begins where the one before it ended; memories of loads begin anew.
+
+    Args:
+        model: The model.
+        run: The run.
+        parts: Segments of the run.
+        sea: Sea of the whole run.
+        step: Largest time step (s), as of `in_irregular`.
+        margin: Margin of the prepared sea (m), as of `simulate_irregular`.
+
+    Yields:
+        The segments with their motions.
+    """
     rest = State(equilibrium(model), jnp.zeros(6), model.rest().memory)
     start = None
     for i, part in enumerate(parts):

@@ -34,9 +34,20 @@ CAMPAIGN_PARAMETERS = (  # first words of labels of what belongs to the installa
 
 
 class AppliedCalibration(NamedTuple):
-    """A model with values of a calibration, these values, those of them that its records did not determine, those that were
-    left, the sea state (m, s) that exponents among them count from, the campaign and the platform that the calibration is of,
-    whether it converged, how strips are taken with them where that is not as the model had it, and how its seas are."""
+    """A model with the values of a written calibration.
+
+    Attributes:
+        model: The model.
+        values: Calibrated values that are used, by label.
+        undetermined: Labels of used values that the calibration's records did not determine.
+        not_used: Labels of calibrated values that are not used.
+        reference: Sea state that exponents among the values count from (m, s); None without exponents.
+        campaign: Name of the calibration's campaign.
+        platform: Name of the calibration's platform.
+        converged: Whether the calibration converged.
+        strips: Conventions of strip loads, where they differ from the model's; else None.
+        seas: How waves are made and act, where the calibration says so; else None.
+    """
 
     model: Model
     values: dict[str, float]
@@ -51,16 +62,27 @@ class AppliedCalibration(NamedTuple):
 
 
 def apply_calibration(path: str | PathLike[str], model: Model, platform: str, everything: bool = False) -> AppliedCalibration:
-    """Calibrated values used for the model of the platform so named: all of its own, else those of hull and damping, for
-    moorings and the like are each campaign's own; or `everything`. Strips are taken as they were when these were found.
+    """Apply a written calibration to a model.
 
-    Raises InputError for a file that is none, for values that the model has no place for, and for those that cannot be.
+    For the calibration's own platform all values are used. For another platform only those of hull and damping are used,
+    since moorings and the like belong to a campaign. The strip conventions of the calibration are used too.
+
+    Args:
+        path: A calibration.json or diagnosis.json, or a folder with one.
+        model: The model.
+        platform: Name of the model's platform.
+        everything: Whether all values are used in any case.
+
+    Returns:
+        The model with the calibrated values.
+
+    Raises:
+        InputError: If the file is no calibration, or has values that the model lacks or that are out of range.
     """
     saved = read_saved(path)
     declared = model if saved.strips is None else saved.strips.applied_to(model)
-    strips = (
-        saved.strips if StripConventions.of(declared) != StripConventions.of(model) else None
-    )  # without drag there is no speed of it
+    # without drag there is no speed of it
+    strips = saved.strips if StripConventions.of(declared) != StripConventions.of(model) else None
     model = with_calibrated_loads(saved, declared, path)
     own = everything or not saved.platform or saved.platform == platform
     values = {k: v for k, v in saved.values().items() if own or not k.startswith(CAMPAIGN_PARAMETERS)}

@@ -18,6 +18,7 @@ from calibration.parameters.space import default_free, match_free_labels, parame
 from calibration.parameters.transforms import Interval, LogInterval, Scaled
 from calibration.residuals.decays import DecayProblem, Unknowns, condensed_decays, dominant_period, first_guess, square_root
 from calibration.result import Calibration
+from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import linearised
 from jaxhydro.errors import InputError
 
@@ -584,7 +585,7 @@ def test_the_measured_roll_of_kvlcc2() -> None:
     assert result.converged and result.objective("fit") < 0.03
     assert result.parameters["added_mass.A44"].identifiable
     test = result.tests[0]
-    period = float(np.median(jh.response.decay_cycles(test.time, test.main.measured, test.main.noise).period))
+    period = float(np.median(decay_cycles(test.time, test.main.measured, test.main.noise).period))
     assert 2.53 < period < 2.55
     assert jh.natural_modes(result.model).of("roll") == pytest.approx(period, rel=0.005)
 
@@ -597,7 +598,7 @@ def test_the_measured_surge_of_focal_campaign_4() -> None:
     main = result.tests[0].main
     assert main.channel == "surge" and main.relative < 0.04
     assert jh.natural_modes(result.model).of("surge") == pytest.approx(81.5, rel=0.015)
-    cycles = jh.response.decay_cycles(result.tests[0].time, main.measured, main.noise)
+    cycles = decay_cycles(result.tests[0].time, main.measured, main.noise)
     assert np.median(cycles.period) == pytest.approx(81.5, rel=0.015)
 
 

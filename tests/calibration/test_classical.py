@@ -21,6 +21,7 @@ from calibration.decay_analysis.linear_quadratic import (
 )
 from calibration.decay_analysis.model_damping import drag_coefficient, model_damping, motion_shape
 from jaxhydro.dynamics.response import decay_cycles
+from jaxhydro.dynamics.statics import linearised
 from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 
 PERIOD = 20.0
@@ -245,7 +246,7 @@ def test_pitch_in_its_mode_has_the_modes_inertia() -> None:
     """S K S over S M S is the square of the mode's frequency, as the single degree of freedom's is not."""
     model, position = platform(), jh.equilibrium(platform())
     shape = motion_shape(model, "pitch")
-    mass, stiffness = (np.asarray(m) for m in jh.statics.linearised(model, position))
+    mass, stiffness = (np.asarray(m) for m in linearised(model, position))
     damping = model_damping(model, "pitch", shape=shape)
     assert damping.inertia == pytest.approx(shape @ mass @ shape, rel=1e-9)
     period = 2 * math.pi * math.sqrt(damping.inertia / (shape @ stiffness @ shape))
