@@ -132,5 +132,5 @@ def test_a_sweep_says_its_own_band() -> None:
     sweep = {"platform": "p", "scatter": [{"hs": 2.0, "tp": 9.0}], "duration": 600.0, "low": 0.04}
     plan, _ = plan_of(validate(Sweep, sweep, "sweep"), "sweep")
     assert (plan.low, plan.cutoff) == (0.04, CUTOFF)
-    with pytest.raises(jh.problems.InputError, match=r"cutoff: expected a number above low, 0\.4 Hz, found 0\.3"):
+    with pytest.raises(jh.InputError, match=r"cutoff: expected a number above low, 0\.4 Hz, found 0\.3"):
         plan_of(validate(Sweep, sweep | {"low": 0.4}, "sweep"), "sweep")
