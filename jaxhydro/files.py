@@ -107,7 +107,7 @@ def safe_name(name: str) -> str:
 
 
 def _beside(folder: Path) -> Path:
-    """A new name on the file system that `folder` is on: inside it where it is there, else in its nearest ancestor."""
+    """New name on the file system of `folder`, in it or in its nearest existing ancestor."""
     place = folder.absolute()
     while not place.exists():
         place = place.parent

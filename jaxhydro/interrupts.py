@@ -55,13 +55,13 @@ def asked_to_stop() -> bool:
 
 
 def stop_if_asked() -> None:
-    """Raise KeyboardInterrupt where a signal has come and did not stop what was running: for every iteration of a long loop."""
+    """Raise KeyboardInterrupt if a signal came that stopped nothing; for long loops."""
     if _pending.is_set():
         raise KeyboardInterrupt
 
 
 def stopping() -> None:
-    """Say that a stop is being dealt with: the loops that finish up are not stopped again, unless by another signal."""
+    """Shield the end of a stopped loop from being stopped again, except by another signal."""
     _pending.clear()
 
 

@@ -20,7 +20,7 @@ class SchemaLocation:
 
 
 def locate(model: Any, data: Any, detail: Any) -> SchemaLocation:
-    """Follow pydantic's location through the file and through the declared types, past tags and wrapped scalars."""
+    """Location of a pydantic error in the file and in the declared types."""
     loc, lacks = [item for item in detail["loc"] if item != "[key]"], detail["type"] == "missing"
     if lacks and loc and isinstance(loc[-1], int):  # an element of a tuple: the tuple is what is wrong
         loc, lacks = loc[:-1], False

@@ -44,7 +44,7 @@ def observe(
 def motion_behind(
     model: Model, reading: Float[Array, "6"], rate: Float[Array, "6"]
 ) -> tuple[Float[Array, "6"], Float[Array, "6"]]:
-    """Position and rate of the reference point that sensors record as `reading` and `rate`: the inverse of `Model.seen`.
+    """Position and rate of the reference point from recorded ones: the inverse of `Model.seen`.
 
     One step of Newton's method is exact for a tracked point, which adds a displacement that depends on the attitude alone.
 

@@ -15,7 +15,7 @@ def _inverse3(a: Float[Array, "3 3"]) -> Float[Array, "3 3"]:
 
 
 def inverse6(matrix: Float[Array, "6 6"]) -> Float[Array, "6 6"]:
-    """Inverse of a symmetric positive definite matrix, from those of its 3 x 3 blocks and the Schur complement.
+    """Inverse of a symmetric positive definite 6 x 6 matrix from its 3 x 3 blocks.
 
     Golub and Van Loan 2013, Matrix Computations, section 3.2.11. As elementwise arithmetic it compiles and runs several
     times faster inside a time loop than a call of LAPACK, which also makes a Jacobian through it slow to compile.

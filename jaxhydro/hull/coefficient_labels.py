@@ -41,7 +41,7 @@ def sharing(label: str, shares: Shares) -> tuple[str, ...]:
 
 
 def shared_hint(label: str, shares: Shares) -> str:
-    """A hint for the label of a coefficient that is another group's: where it is; nothing for one that is not shared."""
+    """Hint for the label of a shared coefficient: which group has it; empty for others."""
     group, _, parameter = label.rpartition(".")
     symbol, _, kind = parameter.rpartition("_")
     owners = [one.owner for one in shares if (one.group, one.name) == (group, coefficient_of(symbol, kind))]

@@ -58,7 +58,7 @@ class _End(NamedTuple):
 
 
 def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
-    """The two ends of every member, and the faces of tapered strips; what is not in the water is left out by its wetting.
+    """Two ends of every member, and faces of tapered strips, in or out of the water.
 
     Pressure acts on all of them: where members meet, it cancels that on the other's side, which its strips count as exposed.
     Added mass and drag have columns only, on what is free of an end: see `_free`.
@@ -104,7 +104,7 @@ def ends(members: Sequence[Member], strips: Strips, size: float = 1.0) -> Ends:
 
 
 def _free(rows: Sequence[_End]) -> list[_End]:
-    """Ends of columns of which the larger of two that meet on one axis keeps what is free of it, and the smaller nothing.
+    """Free parts of column ends: where two meet on one axis, the larger keeps the difference.
 
     So a step between two members has the added mass and drag of the ring, as OpenFAST HydroDyn and RAFT have it.
     """

@@ -85,7 +85,7 @@ class Member(NamedTuple):
 
     @property
     def directions(self) -> tuple[np.ndarray, np.ndarray]:
-        """The two unit vectors across the axis: for a pontoon horizontal and upward, for a vertical column x and y."""
+        """Unit vectors across the axis: horizontal and upward for a pontoon, x and y for a column."""
         return self._across(self.axis)
 
     def _across(self, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -149,7 +149,7 @@ class Member(NamedTuple):
 
     @property
     def upward(self) -> int | None:
-        """Which of its two directions is near vertical, where it lies level enough to be wet by its local depth; else None."""
+        """Index of the near-vertical direction of a member wet by its local depth, else None."""
         steep = [abs(float(direction[2])) > VERTICAL_COSINE for direction in self._across(self._along)]
         if abs(float(self._along[2])) > math.sqrt(1 - VERTICAL_COSINE**2) or not (any(steep) or self.circular):
             return None
@@ -157,7 +157,7 @@ class Member(NamedTuple):
 
     @property
     def fills(self) -> bool:
-        """Whether it fills from its lower end: a column, or an inclined pontoon that still water cuts through its sides."""
+        """Whether it fills from its lower end: a column, or an inclined pontoon cut by still water."""
         if self.column:
             return True
         low, high = sorted(self._edges(), key=lambda edge: edge[0])

@@ -39,9 +39,10 @@ def chord(x: Float[Array, "..."]) -> Float[Array, "..."]:
 
 
 def wet_section(share: float, circular: bool) -> tuple[float, float, float]:
-    """Of a section wet by a `share` of its height (1): share of its area, centroid above its middle, width at the waterline.
+    """Relative area, centroid height above the middle, and waterline width of a wet section.
 
-    Heights are over the height, the width over the greatest width."""
+    Heights are over the height, the width over the greatest width.
+    """
     if not circular:
         return share, 0.5 * share - 0.5, 1.0
     x = 2 * share - 1
@@ -58,7 +59,7 @@ class Waterplane(eqx.Module):
     up: tuple[int, ...] = eqx.field(static=True)  # the direction of the strip that is near vertical, 0 or 1
 
     def act(self, now: Any) -> tuple[Float[Array, "2 n"], Float[Array, "6"]]:
-        """Force (N) on strips and moment (N, N m; body axes) on the platform: the integral of the pressure over the lid.
+        """Force (N) on strips and moment (N, N m; body axes) from the pressure on the waterplane.
 
         The pressure is that of the strip's point, continued to still water and across the width by its slope, minus density
         times acceleration: for waves longer than the section.
@@ -82,14 +83,14 @@ class Waterplane(eqx.Module):
 
 
 class Leaning(eqx.Module):
-    """Members that lean and that still water cuts through their sides: pressure on their waterplane across the axis.
+    """Wave pressure on the waterplane of inclined members that still water cuts.
 
     The pressure on their ends and the inertia of their strips make up the force on the wet volume and, on the lid that still
-    water makes, the part along the axis. With A the section, p the pressure there, s the axis and k the vertical, what is left
-    is p A (k / (k . s) - s).
+    water makes, the part along the axis. With A the section, p the pressure there, s the axis and k the vertical, what is
+    left is p A (k / (k . s) - s).
 
-    The moment about the lid's middle is that of the pressure's slope over the lid, less what an upright column would have, and
-    that of the wedge by which the wet volume is not symmetrical about the axis.
+    The moment about the lid's middle is that of the pressure's slope over the lid, less what an upright column would have,
+    and that of the wedge by which the wet volume is not symmetrical about the axis.
     """
 
     point: Float[Array, "3 k"]  # m, where still water cuts the axis

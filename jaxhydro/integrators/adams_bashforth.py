@@ -101,7 +101,7 @@ def forward(
     rate: Rate,
     capacity: int,
 ) -> Float[Array, "n s"]:
-    """States after 0, 1 ... `count` steps of dy/dt = rate(driver, t, y), in an array for `capacity` steps, at least three.
+    """States after 0, 1 ... `count` steps of dy/dt = rate(driver, t, y), differentiable forward.
 
     Has forward derivatives with respect to `driver` and `y`, not to times.
     """
@@ -110,7 +110,7 @@ def forward(
 
 @forward.def_jvp
 def _forward_jvp(primals, tangents, *, rate: Rate, capacity: int):
-    """Linearisations at all evaluations, many at once, and then the scheme applied to the linearised equation."""
+    """Tangents by linearisation at all evaluations, many at once, and the scheme applied to them."""
     driver, y, start, step, count = primals
     d_driver, d_y, *_ = tangents
     path, taken = _march(driver, y, start, step, count, rate, capacity, True)

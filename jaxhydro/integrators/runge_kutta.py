@@ -109,7 +109,7 @@ def forward(
 
 @forward.def_jvp
 def _forward_jvp(primals, tangents, *, rate: Rate, scheme: Scheme, capacity: int):
-    """Tangents of a whole simulation from linearisations at every stage, worked out for many stages at once.
+    """Tangents of a whole simulation from linearisations at every stage, many at once.
 
     Once the path is known its linearisations do not depend on each other; what is left in sequence is one product of a
     small matrix per step. The state's part is common to all parameters, so that initial states cost nothing more.

@@ -130,7 +130,7 @@ def _bodies(data: Any) -> list[str]:
 def _reference(
     data: Any, wrong: Any, source: str, several: bool, notes: list[str]
 ) -> tuple[Float[np.ndarray, "2"], Float[np.ndarray, "6 6"]]:
-    """`origin` and `shift` of a `Dataset`, by its centre of rotation (Fossen 2011, Handbook of Marine Craft, section 7.3).
+    """`origin` and `shift` of a `Dataset`, by its centre of rotation (Fossen 2011, section 7.3).
 
     The reference point is the dataset's origin; of one among several bodies it is above or below its own centre.
     """
@@ -154,11 +154,11 @@ def _reference(
 def read_capytaine(
     path: str | PathLike[str], *, body: str | None = None, density: float | None = None, notes: list[str] | None = None
 ) -> RadiationCoefficients:
-    """Read added mass and radiation damping over omega (rad/s), radiating_dof and influenced_dof, as Capytaine writes them.
+    """Read added mass and radiation damping of a Capytaine dataset.
 
     They are dimensional already. Motions are Surge ... Yaw; those left out are zero. Frequencies may include 0 and infinity.
-    Further dimensions (water depth, density) may have one entry only. Frequencies at which nothing was computed, all NaN, are
-    left out with a note: Capytaine skips those it cannot solve, such as k h < 0.1 in finite depth.
+    Further dimensions (water depth, density) may have one entry only. Frequencies at which nothing was computed, all NaN,
+    are left out with a note: Capytaine skips those it cannot solve, such as k h < 0.1 in finite depth.
 
     Args:
         path: The file.
@@ -194,10 +194,10 @@ def read_capytaine(
 
 
 def computed(one: Dataset, variables: dict[str, tuple[np.ndarray, np.ndarray]]) -> Float[np.ndarray, " n"]:
-    """Frequencies (rad/s) at which the variables, each with its frequencies, were computed; a note names the others.
+    """Frequencies (rad/s) at which all variables were computed; a note names the others.
 
-    Entries of motions that the dataset has not are 0, and are no part of this: a variable's NaN are looked for where any other
-    frequency has a number. Raises InputError for frequencies at which a variable is NaN only in part.
+    Entries of motions that the dataset has not are 0, and are no part of this: a variable's NaN are looked for where any
+    other frequency has a number. Raises InputError for frequencies at which a variable is NaN only in part.
     """
     lost: dict[float, None] = {}
     kept: dict[float, None] = {}

@@ -80,7 +80,7 @@ def _offset(zone: str | None) -> float:
 
 
 def _date(day: str) -> float | None:
-    """A date as a number of days; None where day and month may be meant either way, or there is no such day."""
+    """Date as a number of days; None where it is ambiguous or does not exist."""
     if re.fullmatch(r"\d{1,2}/\d{1,2}/\d{4}|\d{1,2}-\d{1,2}-\d{4}", day):
         return None
     order = "%d.%m.%Y" if "." in day else "%Y%m%d" if day.isdigit() else "%Y-%m-%d"

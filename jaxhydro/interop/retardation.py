@@ -41,7 +41,7 @@ class Realisation(NamedTuple):
         return len(self.rates)
 
     def transfer(self, omega: Float[np.ndarray, " w"]) -> Complex[np.ndarray, "w 6 6"]:
-        """Radiation damping B + i omega (A - A of infinite frequency) at frequencies (rad/s): force over velocity."""
+        """Damping and added mass B + i omega (A - A_inf) at frequencies (rad/s), (w, 6, 6)."""
         return _transfer(self.rates, self.drive, self.output, omega)
 
 
@@ -134,7 +134,7 @@ def realise(coefficients: RadiationCoefficients, tolerance: float = 0.01, order:
 
 
 class _Hankel:
-    """The Hankel matrix of a step response sampled every `step` (s), each motion's own of root mean square 1."""
+    """Hankel matrix of a step response sampled every `step` (s), each motion scaled to unit RMS."""
 
     def __init__(self, response: Float[np.ndarray, "t m m"], step: float) -> None:
         self.response, self.step, self.time = response, step, step * np.arange(len(response))
@@ -152,8 +152,7 @@ class _Hankel:
         self.values, self.vectors = every[falling], np.concatenate(vectors, axis=1)[:, falling]
 
     def space(self, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-        """Rates, drive, output and misfit of a state space of `order` states, less those that grow; none where that leaves none
-        to be fitted."""
+        """Rates, drive, output and misfit of a state space of `order` states, without growing ones."""
         size = np.sqrt(np.abs(self.values[:order]))
         vectors = self.vectors[:, :order]
         earlier, later, last = vectors[: -self.motions], vectors[self.motions :], vectors[-self.motions :]

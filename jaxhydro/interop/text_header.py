@@ -63,7 +63,7 @@ def widths(lines: list[str], delimiter: str | None) -> list[int]:
 
 
 def layout(rows: list[Row]) -> Layout:
-    """Find the table in the lines of a file that are not empty, comments among them; one line at least is none."""
+    """Layout of the table in the non-empty lines of a file, of which one at least is no comment."""
     kept = [(number, line) for number, line in rows if not line.lstrip().startswith(COMMENTS)]
     delimiter = _delimiter([line for _, line in kept[len(kept) // 2 :][:_SAMPLE]])
     found = _layout(rows, kept, delimiter)
@@ -128,7 +128,7 @@ def _from_comments(
 
 
 def names_of(line: str, delimiter: str | None, width: int) -> list[str] | None:
-    """Split a line to one name for each column, by the delimiter of the table or another; None where none fits."""
+    """Column names of a line, by the delimiter of the table or another; None where none fits."""
     others = [one for one in ("\t", ";", ",") if one != delimiter and one in line]
     ways = [split(line, one) for one in others]
     own = split(line, delimiter)
@@ -193,7 +193,7 @@ def _numeric_columns(lines: list[str], delimiter: str | None, width: int) -> lis
 
 
 def _delimiter(lines: list[str]) -> str | None:
-    """The delimiter that makes most cells numbers, then most rows alike; None is white space. The first wins a tie."""
+    """Delimiter that makes most cells numbers, then most rows alike; None is white space."""
 
     def score(delimiter: str | None) -> tuple[float, int]:
         cells = [split(line, delimiter) for line in lines]

@@ -28,7 +28,7 @@ def read_transfer(
     body: int | None = None,
     warnings: list[str] | None = None,
 ) -> Transfer:
-    """Read the transfer function in a .12d file (WAMIT user manual, section 4.13), for waves of one heading.
+    """Read the difference-frequency transfer function in a .12d file, for waves of one heading.
 
     T_ij = rho g L^k F_ij, k = 1 for forces and 2 for moments, F_ij for the product of amplitudes A_i conj(A_j) at PER1 and
     PER2. The file may have either half of the Hermitian table or both, which then have to be conjugate.
@@ -46,6 +46,9 @@ def read_transfer(
 
     Raises:
         InputError: With file and row, or with the pair that is given twice and contradicts itself.
+
+    References:
+        WAMIT user manual, section 4.13.
     """
     rows = table_of(path, ".12d", COLUMNS, periods=slice(0, 2), mode=4, by=by, body=body)
     mine = of_heading(path, rows, slice(2, 4), heading)

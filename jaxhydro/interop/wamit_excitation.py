@@ -23,10 +23,10 @@ def read_excitation(
     body: int | None = None,
     warnings: list[str] | None = None,
 ) -> Excitation:
-    """Read the excitation in a .3 file (WAMIT user manual, section 3.3 and 4.13), for waves of one heading.
+    """Read the first-order excitation in a .3 file, for waves of one heading.
 
-    X_i = rho g L^m (RE + i IM), m = 2 for forces and 3 for moments, for waves of amplitude Re A exp(i omega t) at the origin.
-    Modes without a row are zero.
+    X_i = rho g L^m (RE + i IM), m = 2 for forces and 3 for moments, for waves of amplitude Re A exp(i omega t) at the
+    origin. Modes without a row are zero.
 
     Args:
         path: The file.
@@ -40,6 +40,9 @@ def read_excitation(
 
     Raises:
         InputError: With file and row.
+
+    References:
+        WAMIT user manual, sections 3.3 and 4.13.
     """
     rows = table_of(path, ".3", COLUMNS, periods=slice(0, 1), mode=2, by=by, body=body)
     mine = of_heading(path, rows, slice(1, 2), heading)

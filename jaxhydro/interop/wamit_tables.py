@@ -42,7 +42,7 @@ def table_of(
     by: str = "period",
     body: int | None = None,
 ) -> Float[np.ndarray, "r c"]:
-    """Read the rows of a WAMIT file whose `columns` are named; a first line of words (NUMHDR = 1) is passed over.
+    """Read the named columns of a WAMIT file; a first line of words (NUMHDR = 1) is skipped.
 
     Args:
         path: The file.

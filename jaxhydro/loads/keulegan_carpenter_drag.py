@@ -20,7 +20,13 @@ EXPONENT = Parameter("-", "exponent of the {way} drag coefficient of {group} in 
 
 
 class RecentFlow(NamedTuple):
-    """Recent flow past some lines: duration (s), displacement from its mean (m), variance (m²)."""
+    """Recent flow past some lines.
+
+    Attributes:
+        elapsed: Time since the start (s).
+        displacement: Displacement (m) of the water past the lines from its mean, (k,).
+        variance: Variance of that displacement (m²), (k,).
+    """
 
     elapsed: Float[Array, ""]
     displacement: Float[Array, " k"]
@@ -66,8 +72,17 @@ class KeuleganCarpenterDrag(AbstractLoad):
         window: Mapping[str, float],
         coupled: bool = True,
     ) -> "KeuleganCarpenterDrag":
-        """The law on the lines of a hull whose drag coefficients are in `values`; `reference` and `window` (s) by the label of
-        the coefficient. The other direction of a strip is remembered, too, by the longest window."""
+        """Load on the lines of a hull whose drag coefficients are in `values`.
+
+        The other direction of a strip is remembered too, by the longest window.
+
+        Args:
+            hull: The hull.
+            values: Drag coefficients and exponents by label.
+            reference: Keulegan-Carpenter number K0 by label of the coefficient.
+            window: Time W (s) by label of the coefficient.
+            coupled: Whether the amplitude is that of both directions together.
+        """
         lines = lines_of(hull, values, both=coupled)
         constants = np.array([np.ones(len(lines)), np.full(len(lines), max(window.values()))])
         for label in reference:

@@ -168,7 +168,7 @@ class Member(Consistent):
             yield Problem("d", f"{len(self.stations)} sizes, one for each station", f"{np.shape(self.d)[0]}")
 
     def profile(self) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, "n 2"]]:
-        """Stations from 0 at end A to 1 at end B, and width and height there, m (a circle: its diameter twice)."""
+        """Stations from 0 at end A to 1 at end B, and width and height (m) there."""
         sizes = np.array(self.d, dtype=float)
         if self.shape == "circ":
             sizes = np.stack([sizes, sizes], axis=-1)

@@ -89,7 +89,7 @@ def _values(declared: schema.Hydrostatics, found: FileHydrostatics, water: schem
 def with_hydrostatics(
     platform: schema.Platform, members: Buoyancy
 ) -> tuple[schema.Platform, tuple[HydrostaticCoupling, ...], tuple[Remark, ...]]:
-    """The platform with the hydrostatics of their file, couplings beyond those of its members, and what is to be known.
+    """Platform with the hydrostatics of their file, its couplings beyond the members', and remarks.
 
     Raises:
         InputError: Where the file is wrong.
@@ -116,7 +116,7 @@ def _slope(load: Buoyancy, weight_density: Float[Array, ""]) -> Float[Array, "6 
 
 
 def weight_doubt(declared: schema.Hydrostatics, stiffness: np.ndarray, own: np.ndarray, weight: float) -> list[str]:
-    """A warning where the members say that a .hst file has the weight, or has it not, against what was declared.
+    """Warning where a .hst file seems to include the weight, or not, against the declaration.
 
     Args:
         declared: As in the platform file.

@@ -139,7 +139,7 @@ def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer
 
 
 def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[AbstractLoad], list[Remark]]:
-    """Loads of the radiation, excitation and drift that a platform file names, and what is to be known of them.
+    """Radiation, excitation and drift loads that a platform file names, and remarks.
 
     Args:
         platform: The platform.

@@ -338,7 +338,7 @@ class Exponents(Schema):
 
 
 class SeaStateLaws(Schema):
-    """Coefficients by label, such as column.Cd_t, that depend on the sea state (`jaxhydro.loads.SeaStateLaw`)."""
+    """Sea-state laws of coefficients by label, such as column.Cd_t (`loads.SeaStateLaw`)."""
 
     reference: ReferenceSea
     exponents: dict[Text, Exponents]

@@ -12,7 +12,7 @@ def owners(groups: Mapping[str, Coefficients]) -> set[str]:
 
 
 def sharing_faults(groups: Mapping[str, Coefficients], with_members: set[str]) -> Iterator[Problem]:
-    """What is wrong in the coefficients that groups share; `with_members` are the groups that have members."""
+    """Mistakes in shared coefficients; `with_members` are the groups that have members."""
     told: set[tuple[str, str]] = set()  # coefficients that name each other in a circle
     for group, row in groups.items():
         for name, owner in row.shared().items():

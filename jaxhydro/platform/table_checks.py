@@ -116,8 +116,11 @@ def drift_column(curve: Float[np.ndarray, " n"], by: str, source: str) -> list[s
 
 
 def asymmetry(found: RadiationCoefficients, source: str) -> list[str]:
-    """A warning where added mass or damping is far from symmetric, which both are without forward speed (Newman 1977, Marine
-    Hydrodynamics, section 6.17)."""
+    """Warning where added mass or damping is far from symmetric (Newman 1977, section 6.17).
+
+    References:
+        Newman (1977), Marine Hydrodynamics, section 6.17 (symmetric without forward speed).
+    """
     said = []
     for name, cube in (("added mass", found.added_mass), ("damping", found.damping)):
         own = np.sqrt(np.abs(np.einsum("wii->wi", cube)).max(axis=0))
@@ -131,17 +134,19 @@ def asymmetry(found: RadiationCoefficients, source: str) -> list[str]:
 
 
 def radiation_column(found: RadiationCoefficients, space: Realisation, by: str | None, source: str) -> list[str]:
-    """A warning where added mass does not follow from damping by the relations of Kramers and Kronig, as both are of one
-    function of frequency (Ogilvie 1964, 5th Symposium on Naval Hydrodynamics).
+    """Warning where added mass and damping violate the Kramers-Kronig relations (Ogilvie 1964).
 
-    Where it does follow with the first column taken for a frequency in place of a period, or the other way round, that is said.
-    Rad/s and Hz cannot be told apart so: the relations hold at any scale of frequency.
+    Where it does follow with the first column taken for a frequency in place of a period, or the other way round, that is
+    said. Rad/s and Hz cannot be told apart so: the relations hold at any scale of frequency.
 
     Args:
         found: The coefficients.
         space: A state space that follows their damping.
         by: What the first column was declared to be; None: the file says it.
         source: The file.
+
+    References:
+        Ogilvie (1964), 5th Symposium on Naval Hydrodynamics.
     """
     misfit = _misfit(found, space)
     if misfit is None or misfit < MIN_UNRELATED_MISFIT:
@@ -166,8 +171,7 @@ def radiation_column(found: RadiationCoefficients, space: Realisation, by: str |
 
 
 def _misfit(found: RadiationCoefficients, space: Realisation) -> float | None:
-    """What the state space misses of added mass over its variation: the median of the motions whose added mass varies by file
-    or by damping; None: none does."""
+    """Misfit of a state space's added mass, over its variation (median of motions), or None."""
     theirs = np.einsum("wii->wi", found.added_mass)
     ours = np.einsum("wii->wi", space.transfer(found.omega).imag) / found.omega[:, None]
     varies = np.maximum(theirs.std(axis=0), ours.std(axis=0))

@@ -43,7 +43,7 @@ def record_figure(time: np.ndarray, channels: Mapping[str, np.ndarray], start: f
 def window_figure(
     time: np.ndarray, channels: Mapping[str, np.ndarray], first_order: np.ndarray | None, start: float, title: str
 ) -> Figure:
-    """The `WINDOW` about the highest crest after `start` (s), with the wave's second order where its first is given (m)."""
+    """Figure of `WINDOW` (s) about the highest crest after `start` (s), with second-order waves."""
     names = moving(channels)
     later = time >= start
     crest = float(time[later][np.argmax(channels["wave"][later])])
@@ -71,7 +71,7 @@ def spectra_figure(
     target: Callable[[np.ndarray], np.ndarray] | None,
     title: str,
 ) -> Figure:
-    """Densities over frequency up to `highest` (Hz), bands shaded; `target` (Hz -> m2/Hz) is the spectrum asked for."""
+    """Figure of spectra up to `highest` (Hz), bands shaded; `target` (Hz to m²/Hz) as asked for."""
     names = moving(channels)
     figure, axes = stack([0.95] * len(names))
     artists: dict[str, Any] = {}

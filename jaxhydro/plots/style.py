@@ -56,8 +56,7 @@ STYLE: Any = {
 
 
 def stack(heights: list[float], shared: bool = True) -> tuple[Figure, list[Axes]]:
-    """A half-page figure of panels over each other, on one horizontal axis where it is shared; heights in inches. Call within
-    STYLE."""
+    """Half-page figure of stacked panels, heights in inches; call within STYLE."""
     figure = Figure(figsize=(WIDTH, sum(heights) + (0.75 if shared else 0.45 * (len(heights) + 1))), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.subplots(len(heights), 1, sharex=shared, squeeze=False, gridspec_kw={"height_ratios": heights})
@@ -93,7 +92,7 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def motion_figure(time: np.ndarray, motion: dict[str, np.ndarray], wave: np.ndarray | None, title: str) -> Figure:
-    """Motions (m, deg) that are not still, over time (s), the wave elevation (m) on top where there is one."""
+    """Figure of moving motions (m, deg) over time (s), below the wave elevation (m) if given."""
     size = {name: float(np.ptp(values)) for name, values in motion.items()}
     largest = {unit: max(size[n] for n in size if unit_of(n) == unit) for unit in ("m", "deg")}
     moving = [name for name in motion if size[name] > max(1e-3, 1e-4 * largest[unit_of(name)])] or list(motion)[:1]

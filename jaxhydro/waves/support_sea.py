@@ -95,7 +95,7 @@ class SupportSea(AbstractSea):
     apart: bool = eqx.field(static=True, default=False)
 
     def from_step(self, index: Int[Array, ""], steps: int) -> "SupportSea":
-        """The same sea for an integration over `steps` steps that starts `index` steps after the clock's start.
+        """The same sea for an integration that starts `index` steps after the clock's start.
 
         Beyond the clock's end the sea stands still. Values at the middle of its first steps are interpolated between
         `INTERPOLATION_STEPS` steps (Lagrange): to 1e-6 for a wave of 20 steps, to 2e-3 for one of 8.

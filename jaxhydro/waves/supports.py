@@ -148,7 +148,7 @@ def weights(table: Float[Array, "g r"], spacing: float, k: Float[Array, " n"]) -
 
 
 def cosine_sine(x: Float[Array, "..."]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
-    """cos x and sin x to 1e-11 for |x| up to some 1000, in arithmetic that vectorises: XLA's own takes five times as long.
+    """cos x and sin x to 1e-11 for |x| up to about 1000, in vectorisable arithmetic.
 
     Reduction to |r| <= pi/2 by half turns, which only change both signs, and Taylor's series (Abramowitz and Stegun 1964,
     4.3.65 and 4.3.66).

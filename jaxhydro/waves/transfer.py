@@ -13,19 +13,25 @@ MIN_EIGENVALUE = 1e-6  # of the largest eigenvalue: what is less adds nothing
 
 
 class Transfer(eqx.Module):
-    """Second-order force at differences of frequencies: F_i = Re sum_kl A_k conj(A_l) exp(i (w_k - w_l) t) T_i(w_k, w_l).
+    """Second-order force at difference frequencies, from a quadratic transfer function T.
 
-    A_k are the complex amplitudes of first-order waves at the origin, eta = Re sum A_k exp(i w_k t) (Faltinsen 1990, Sea Loads
-    on Ships and Offshore Structures, chapter 5; Pinkster 1980, Low frequency second order wave exciting forces on floating
-    structures, section 2). T is Hermitian, so that T = sum_m e_m u_m conj(u_m)^T and
+    F_i = Re sum_kl A_k conj(A_l) exp(i (w_k - w_l) t) T_i(w_k, w_l), with A_k the complex amplitudes of first-order waves at
+    the origin, eta = Re sum A_k exp(i w_k t). T is Hermitian, so that T = sum_m e_m u_m conj(u_m)^T and
 
-        F_i(t) = sum_m e_im |sum_k u_im(w_k) A_k exp(i w_k t)|^2,
+        F_i(t) = sum_m e_im |sum_k u_im(w_k) A_k exp(i w_k t)|²,
 
-    which costs a Fourier transform per eigenvalue in place of all pairs. Between the frequencies of the table T is bilinear in
-    both, outside them zero.
+    which costs a Fourier transform per eigenvalue in place of all pairs. Between the frequencies of the table T is bilinear
+    in both, outside them zero.
 
-    `omega` (n,) in rad/s, ascending; `eigenvalue` (6, m) in N/m2 and N m/m2, `filters` (6, m, n), of surge, sway, heave, roll,
-    pitch and yaw about the origin, along earth axes.
+    Attributes:
+        omega: Angular frequencies (rad/s), ascending, (n,).
+        eigenvalue: e (N/m², N m/m²) of surge ... yaw about the origin, earth axes, (6, m).
+        filters: u at the frequencies of the table, (6, m, n).
+
+    References:
+        Faltinsen (1990), Sea Loads on Ships and Offshore Structures, chapter 5; Pinkster (1980), Low frequency second order
+            wave
+        exciting forces on floating structures, section 2.
     """
 
     omega: Float[Array, " n"]

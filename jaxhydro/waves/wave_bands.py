@@ -56,7 +56,7 @@ class WaveEnergy(NamedTuple):
 
 
 def wave_energy(elevation: Float[np.ndarray, " n"], step: float) -> WaveEnergy | None:
-    """Return where the energy of a wave record lies, its noise and its drift left out; None where it has no waves.
+    """Distribution of a record's wave energy over frequency; None where it has no waves.
 
     Args:
         elevation: (n,) m, sampled every `step` (s).
