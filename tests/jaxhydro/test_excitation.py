@@ -22,7 +22,7 @@ from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_excitation import read_excitation
 from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia, WaveGaugePosition
 from jaxhydro.sweep import load_sweep
-from jaxhydro.sweep.run_sweep import _platform_text, prepared
+from jaxhydro.sweep.execute import _platform_text, prepared
 from jaxhydro.waves import Clock
 from jaxhydro.waves.excitation import Excitation
 
