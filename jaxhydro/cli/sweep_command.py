@@ -10,8 +10,8 @@ from jaxhydro.cli.simulate_command import print_remarks, print_rest, print_used
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
 from jaxhydro.sweep.cluster import workers_of
-from jaxhydro.sweep.resources import chosen
 from jaxhydro.sweep.execute import PreparedSweep, Progress, SessionResult, opened, prepared, run_all, to_do
+from jaxhydro.sweep.resources import chosen
 from jaxhydro.sweep.store import RESULTS, locked_folder, open_results
 from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.write_sweep import Summary, summary_of, write_outputs

@@ -26,8 +26,8 @@ from jaxhydro.cli import app as cli
 from jaxhydro.sweep import cluster, lifetime_sensitivity, load_sweep, run_sweep
 from jaxhydro.sweep.batch import run_outcome, run_outcomes, setup_in
 from jaxhydro.sweep.cases import Plan
-from jaxhydro.sweep.local import Worker
 from jaxhydro.sweep.execute import opened, prepared
+from jaxhydro.sweep.local import Worker
 from jaxhydro.sweep.store import DONE, FAILED, INPUTS, RESULTS, Store, locked_folder
 from jaxhydro.sweep.sweep_remarks import shares_in_band
 from jaxhydro.waves.sea_state import state_of
