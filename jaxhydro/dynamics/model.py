@@ -208,7 +208,7 @@ class Model(eqx.Module):
         about = {label: load.about for load in self.loads for label in load.values}
         for label, value in values.items():
             if label not in about:
-                raise unknown("parameter", label, sorted(about))
+                raise unknown("parameter", label, sorted(about), shared_hint(label, self.hull.elements.shares))
             if not isinstance(value, jax.core.Tracer):
                 about[label](label).check(label, value)
         return self.at_values(values)

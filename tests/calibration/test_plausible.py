@@ -89,7 +89,8 @@ def test_what_is_odd_is_a_warning(tmp_path):
     told = [one for one in small.findings if "moves by 0.00" in one.message]
     assert {(one.test, one.severity) for one in told} == {(f"heave-{i}", "warning") for i in (1, 2, 3)}
     units = [one for one in small.findings if one not in told]
-    assert {one.message for one in units} == {"the file states m for column 'heave_m', and the manifest mm"}
+    together = "all releases in heave are as if 1000 times too small: millimetres and metres mixed up (`channels.heave.unit`)?"
+    assert {one.message for one in units} == {"the file states m for column 'heave_m', and the manifest mm", together}
     noisy = load_campaign(stated(tmp_path / "noisy", noise={"surge": 3.0}))
     assert ["noise is stated as 3 m" in one.message for one in noisy.findings] == 3 * [True]
 
