@@ -331,6 +331,7 @@ def told_in(campaign, path, stop_at="", **how):
     return found, seen, [str(one.message) for one in caught if issubclass(one.category, CheckpointWarning)]
 
 
+@pytest.mark.slow
 def test_a_diagnosis_that_was_killed_ends_as_one_run_does(tmp_path):
     """All files that it writes are the same, the time that it took aside."""
     campaign = campaign_of(tmp_path, lambda x, v: -500.0 * x**3)

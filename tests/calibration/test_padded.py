@@ -61,6 +61,7 @@ def test_records_of_nearly_the_same_length_are_traced_once(campaign, monkeypatch
     assert counts[0] > 0 and counts[1:] == counts[:1] * 2, traces
 
 
+@pytest.mark.slow
 def test_padding_changes_no_result(campaign, monkeypatch) -> None:
     """The products of residuals and slopes, against those of arrays just as long as the record."""
     ids = (next(record.id for record in campaign.records if record.degree_of_freedom == "heave"),)

@@ -10,6 +10,7 @@ import xarray as xr
 
 from calibration.campaign.load_campaign import load_campaign
 from jaxhydro.cli import sea_options
+from jaxhydro.dynamics.requested_sea import RequestedSea
 from jaxhydro.errors import InputError
 from jaxhydro.interop.data_files import read_table
 from jaxhydro.interop.stated_units import stated_unit
@@ -109,7 +110,7 @@ def test_a_period_that_is_the_root_of_the_scale_away(tmp_path, scale, period, wo
     assert [words in message for message in found] == ([True] if words else [])
 
 
-def record(elevation: np.ndarray, name: str = "wave", stated: dict[str, str] | None = None, **given: str) -> sea_options.Asked:
+def record(elevation: np.ndarray, name: str = "wave", stated: dict[str, str] | None = None, **given: str) -> RequestedSea:
     table = pd.DataFrame({"time_s": T, name: elevation})
     table.attrs["stated"] = stated or {}
     options = {"--wave": "tank.csv", "--wave-column": name, **{f"--wave-{key}": value for key, value in given.items()}}

@@ -180,6 +180,7 @@ def test_masses_keep_their_places_through_jax() -> None:
     assert "along z" in sorted_keys.about("guided_masses.a.mass").meaning
 
 
+@pytest.mark.slow
 def test_a_decay_finds_the_mass(tmp_path: Path) -> None:
     """Calibrated where it is asked for, as any parameter; left alone where it is not."""
     label = "guided_masses.carriage.mass"

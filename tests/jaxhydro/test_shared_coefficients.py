@@ -200,6 +200,7 @@ def test_a_group_without_members_may_hold_what_others_share() -> None:
 TRUE = {"column.Ca_t": 1.3, "column.Cd_t": 2.0}
 
 
+@pytest.mark.slow
 def test_a_calibration_frees_the_shared_one(tmp_path: Path) -> None:
     """Two decays made with other values: the shared coefficients are found back, each a parameter of the fit once."""
     document = moored({"column": OWN, "leg": SHARED})
