@@ -380,7 +380,7 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
 def test_a_coefficient_by_laws_of_drag(fitted, drag) -> None:
     """At the surface's Keulegan-Carpenter number, as the law has it; of fast motion where slow motion is apart."""
     changed, added, name = drag
-    law = LawFit(name, replace(fitted, model=changed.with_values(dict.fromkeys(added, -0.5))), 0.1, 0.1)
+    law = LawFit(name, replace(fitted, model=changed.at_values(dict.fromkeys(added, -0.5))), 0.1, 0.1)
     plain = float(changed.values["column.Cd_t"])
     value, _ = law.coefficient("column.Cd_t", SeaState(4.0, 10.0))
     number = surface_number(changed.hull, "column.Cd_t", 4.0)

@@ -168,7 +168,7 @@ def test_the_command_writes_what_the_life_is(file, whole) -> None:
 @pytest.mark.slow
 def test_a_killed_sweep_goes_on_and_is_bitwise_the_same(file, whole, tmp_path) -> None:
     out = tmp_path / "o"
-    code = "from jaxhydro.cli import main; main()"
+    code = "from jaxhydro.cli.app import main; main()"
     words = ["sweep", str(file), "--out", str(out), "--workers", "1"]
     process = subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 240
@@ -190,7 +190,7 @@ def test_a_killed_sweep_goes_on_and_is_bitwise_the_same(file, whole, tmp_path) -
 def test_a_sweep_that_is_told_to_end_says_that_it_can_go_on(file, tmp_path) -> None:
     """SIGTERM, as SLURM sends it before a job's time is over."""
     words = ["sweep", str(file), "--out", str(tmp_path / "o"), "--workers", "1"]
-    code = "from jaxhydro.cli import main; main()"
+    code = "from jaxhydro.cli.app import main; main()"
     process = subprocess.Popen(
         [sys.executable, "-c", code, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )

@@ -62,7 +62,7 @@ def test_help_and_version() -> None:
 
 
 def test_it_starts_as_a_program_without_what_is_heavy() -> None:
-    code = "import sys, jaxhydro.cli; print([m for m in ('matplotlib', 'xarray', 'calibration') if m in sys.modules])"
+    code = "import sys, jaxhydro.cli.app; print([m for m in ('matplotlib', 'xarray', 'calibration') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
