@@ -25,7 +25,7 @@ CLEAR_AMPLITUDE = 25  # times the noise: an amplitude from which decrement and p
 
 
 def figures(calibration: Calibration) -> Iterator[tuple[str, str, Figure]]:
-    """File name, caption and figure, one after the other. Call within `jaxhydro.plot.style()`."""
+    """File name, caption and figure, one after the other. Call within `plots.style.style()`."""
     yield "parameters.png", _PARAMETERS, parameters_figure(list(calibration.parameters.values()))
     decays = [test for test in calibration.tests if test.kind == "decay"]
     for dof in DOFS:

@@ -29,7 +29,7 @@ BAND_NAMES = {"low_frequency": "low frequency", "wave_frequency": "wave frequenc
 
 def figures(diagnosis: Diagnosis, compared: Calibration) -> Iterator[tuple[str, str, Figure]]:
     """File name, caption and figure, one after the other; `compared` is the augmented calibration with the declared model's
-    motions as those before. Call within `jaxhydro.plot.style()`."""
+    motions as those before. Call within `plots.style.style()`."""
     rows = compared_series(compared)
     if rows:
         yield "before-after.png", _BEFORE_AFTER, before_after_figure(rows)

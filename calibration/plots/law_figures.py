@@ -17,7 +17,7 @@ def coefficient_figure(found: SeaLaws, label: str) -> Figure:
     """A coefficient against significant height: of every sea alone, by the constants, and by the chosen law.
 
     Bars and the band are one standard deviation. Along the height the period goes as in the tests (a line through the
-    logarithms of both). Call within `jaxhydro.plot.style()`.
+    logarithms of both). Call within `plots.style.style()`.
     """
     figure, (ax,) = stack([1.9])
     seas = sorted(found.seas, key=lambda sea: sea.state.significant_height)

@@ -21,7 +21,7 @@ LOW_BAND, WAVE_BAND = "#ece3cf", "#dbe9ee"
 
 
 def figures(tests: Sequence[SeaTest]) -> Iterator[tuple[str, str, Figure]]:
-    """File name, caption and figure, one after the other. Call within `jaxhydro.plot.style()`."""
+    """File name, caption and figure, one after the other. Call within `plots.style.style()`."""
     for test in tests:
         name = safe_name(test.fit.id)
         yield f"spectra-{name}.png", f"Test {test.fit.id}: spectra, measured and simulated; bands shaded.", spectra_figure(test)

@@ -11,6 +11,7 @@ from scipy import signal
 from jaxhydro.cli.options import finite, positive, wrong
 from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transient
 from jaxhydro.errors import InputError, Problem, suggest
+from jaxhydro.units import SI
 from jaxhydro.waves.irregular import sampling_interval
 
 ORDER, SEED = 2, 0
@@ -19,7 +20,7 @@ OF_SPECTRUM = ("--hs", "--tp", "--gamma", "--spectrum", "--seed", "--amplitudes"
 OF_SEA = (*OF_SPECTRUM, "--low", "--cutoff", "--order", "--transient")
 OF_RECORD = ("--wave-column", "--wave-unit", "--wave-time-column", "--wave-position")
 NOT_OF_CAMPAIGNS = ("--wave", "--wave-height", "--wave-period", "--release", "--duration", "--elements", "--step")
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "ft": 0.3048}  # m, of a record
+UNITS = SI["length"]  # of a wave record
 MAX_STEEPNESS = 1 / 7  # height over length: beyond it no wave stands (Michell 1893, Phil. Mag. 36)
 TIME_COLUMN, WAVE_COLUMN = "time_s", "wave_m"  # those of motion.csv
 
