@@ -85,6 +85,7 @@ def test_a_sea_without_the_transfer_function_is_refused() -> None:
         assert model.with_load(DriftTransfer.of(Transfer.of(GRID, table()))).transfer is None
 
 
+@pytest.mark.slow
 def test_a_simulation_drifts_by_it() -> None:
     """The slow surge of a platform on soft springs, share 1 against 0, is the force over the stiffness."""
     mean = np.zeros((6, 9, 9), complex)

@@ -64,6 +64,7 @@ def test_the_force_is_the_sum_over_components(order: int, heading: float) -> Non
                 assert_allclose(found, exact, atol=error * np.abs(exact).max())
 
 
+@pytest.mark.slow
 def test_it_takes_the_place_of_the_strips_own() -> None:
     """Share s: s of the table's, 1 - s of what acceleration and pressure do to strips and ends; added mass is as it was."""
     strips = only(build(COLUMN, PONTOON), StripInertia, EndInertia)
@@ -124,6 +125,7 @@ def test_a_sea_without_it_is_refused() -> None:
         Excitation.of(GRID[::-1], forces())
 
 
+@pytest.mark.slow
 def test_a_simulation_follows_it() -> None:
     """Share 1 of a table that is zero leaves drag alone, and without that nothing; at share 0 nothing changes."""
     model = jh.load_model("volturnus-s-focal")

@@ -69,6 +69,7 @@ def searching(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPath
     return outcome
 
 
+@pytest.mark.slow
 def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path) -> None:
     searching["it"] = result
     text = run("diagnose", DEMO, "--out", tmp_path / "o")

@@ -68,6 +68,7 @@ def motion() -> Grid:
     return Grid(jnp.zeros(()), jnp.asarray(step), jnp.asarray(2000), *map(jnp.asarray, rows))
 
 
+@pytest.mark.slow
 def test_readings_of_a_point_and_of_a_late_clock(body: Model, motion: Grid) -> None:
     """Against the displacement of the point by rotation matrices, and the motion a lag earlier; counted from the origin."""
     sensed, times = with_sensors(body), jnp.arange(5.0, 90.0, 0.37)

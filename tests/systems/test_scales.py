@@ -116,6 +116,7 @@ def moved(model: Model, size: float, sea=None, **start: float) -> np.ndarray:
     return np.asarray(jh.simulate(model, times, sea, position=position).position)
 
 
+@pytest.mark.slow
 def test_a_decay_and_a_regular_wave() -> None:
     found = {}
     for size in (SMALL, 1.0):
@@ -126,6 +127,7 @@ def test_a_decay_and_a_regular_wave() -> None:
         same(small, large, SHARE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2])
 def test_an_irregular_sea(order: int) -> None:
     """The steps and the box that it is prepared for follow the hull."""
@@ -187,6 +189,7 @@ def box(size: float, top: float, bottom: float = -4.0) -> Model:
     return built(validate(Platform, data, "box"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("top", [0.0, 0.05, 0.3])
 @pytest.mark.parametrize("size", [1.0, SMALL])
 def test_a_barge_that_ends_at_still_water(size: float, top: float) -> None:
