@@ -16,8 +16,10 @@ from jaxhydro.start import start as _start
 
 _start()  # before the imports below, which may compute
 
-from jaxhydro.dynamics.model import Model, RigidBody, State
+from jaxhydro.dynamics.conventions import Conventions
+from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.response import Response
+from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.dynamics.simulate import free_decay, simulate
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium, natural_modes
 from jaxhydro.environment import DOFS, Environment
@@ -47,6 +49,7 @@ __all__ = [
     "AbstractSea",
     "Action",
     "Components",
+    "Conventions",
     "Convergence",
     "Environment",
     "EquilibriumError",

@@ -2,66 +2,32 @@
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.choices import check, unknown
+from jaxhydro.choices import unknown
+from jaxhydro.dynamics.conventions import Conventions
+from jaxhydro.dynamics.kinematics import instant as instant_at
+from jaxhydro.dynamics.load_sum import LoadSum, sum_of_loads
+from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.dynamics.solve6 import accelerate
 from jaxhydro.environment import Environment
 from jaxhydro.hull.coefficient_labels import shared_hint, sharing
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.base import AbstractLoad, EndShape, Instant, Lines, Parameter, StripShape
+from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.loads.instant import Instant
 from jaxhydro.remarks import Remark
-from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of, skew, turned
+from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of
 from jaxhydro.scales import pace_of, size_of
 from jaxhydro.waves.excitation import Excitation
-from jaxhydro.waves.flow import Cylinders, EndFlow, StripFlow
+from jaxhydro.waves.flow import Cylinders
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
 from jaxhydro.waves.transfer import Transfer
-
-CONVENTIONS: dict[str, tuple[str | bool, ...]] = {
-    "wetting": ("instantaneous", "mean"),
-    "diffraction": ("maccamy_fuchs", "ramp", "none"),
-    "directions": ("body", "earth"),
-    "waves_at": ("displaced", "mean"),
-    "centripetal": (True, False),
-    "lag": (True, False),
-    "bound": (True, False),
-}
-
-
-class RigidBody(eqx.Module):
-    """Mass and inertia of the platform, body axes.
-
-    Attributes:
-        mass: Mass (kg).
-        centre: Centre of mass (m) from the reference point.
-        inertia: Inertia about the centre of mass (kg m²).
-    """
-
-    mass: Float[Array, ""]
-    centre: Float[Array, "3"]
-    inertia: Float[Array, "3 3"]
-
-    def inertia_at_reference(self) -> Float[Array, "3 3"]:
-        """Inertia about the reference point (kg m²), by the parallel-axis theorem."""
-        s = skew(self.centre)
-        return self.inertia - self.mass * s @ s
-
-    def mass_matrix(self) -> Float[Array, "6 6"]:
-        """Mass matrix about the reference point (kg, kg m, kg m²).
-
-        References:
-            Fossen (2011), section 3.3.
-        """
-        lever = self.mass * skew(self.centre)
-        upper = jnp.concatenate([self.mass * jnp.eye(3), -lever], axis=1)
-        return jnp.concatenate([upper, jnp.concatenate([lever, self.inertia_at_reference()], axis=1)])
 
 
 class State(eqx.Module):
@@ -78,24 +44,6 @@ class State(eqx.Module):
     memory: tuple[Any, ...]
 
 
-class LoadSum(NamedTuple):
-    """Sum of all loads, body axes.
-
-    Attributes:
-        force: Force and moment (N, N m) on the reference point.
-        added_mass: Added mass (kg, kg m, kg m²) of the body.
-        masses: Added masses of `Hull.masses`, (k,).
-        moments: Matrices that multiply `masses`, (6, 6, k).
-        memory_rate: Time derivative of each load's memory.
-    """
-
-    force: Float[Array, "6"]
-    added_mass: Float[Array, "6 6"]
-    masses: Float[Array, " k"]
-    moments: Float[Array, "6 6 k"]
-    memory_rate: tuple[Any, ...]
-
-
 def strongly_typed(tree: Any) -> Any:
     """A model or load without JAX's weak types.
 
@@ -107,27 +55,12 @@ def strongly_typed(tree: Any) -> Any:
 class Model(eqx.Module):
     """Platform model: a rigid body, its strips, and the loads on it.
 
-    The conventions are words; an unknown one raises UnknownName when the model is made. The default of `diffraction`
-    replaces Ca in the wave excitation altogether. That is the theory, for a Ca tuned to the added mass. The step from 1 + Ca
-    to 2 that it makes cannot be determined by a calibration in still water.
-
     Attributes:
         environment: Water and gravity.
         body: Mass and inertia.
         hull: Members cut into strips and ends.
         loads: Loads on the platform.
-        wetting: Which part of the members is loaded. "instantaneous": up to the water surface at the displaced strip.
-            "mean": what is under still water at the upright reference position, in the flow at that depth.
-        diffraction: Wave diffraction by the members that diffract. "maccamy_fuchs"; "ramp", the same but with coefficients
-            tuned away from Ca = 1 kept in long waves (`diffraction.long_waves`); "none".
-        directions: Axes of strips and ends. "body": of the displaced member. "earth": of the undisplaced one, as in
-            OpenFAST.
-        waves_at: Where the waves are evaluated horizontally. "displaced": where the platform is. "mean": at the reference
-            position, as in OpenFAST with WaveDisp = 0 and ExctnDisp = 0.
-        centripetal: Whether strips and ends feel the centripetal part of their acceleration. False is for programs whose
-            added mass takes accelerations alone.
-        lag: As in `Cylinders`.
-        bound: As in `Cylinders`.
+        conventions: Form of the strip model.
         remarks: Remarks on the files that the platform was read from.
     """
 
@@ -135,18 +68,8 @@ class Model(eqx.Module):
     body: RigidBody
     hull: Hull
     loads: tuple[AbstractLoad, ...]
-    wetting: str = eqx.field(static=True, default="instantaneous")
-    diffraction: str = eqx.field(static=True, default="maccamy_fuchs")
-    directions: str = eqx.field(static=True, default="body")
-    waves_at: str = eqx.field(static=True, default="displaced")
-    centripetal: bool = eqx.field(static=True, default=True)
-    lag: bool = eqx.field(static=True, default=True)
-    bound: bool = eqx.field(static=True, default=True)
+    conventions: Conventions = eqx.field(static=True, default=Conventions())
     remarks: tuple[Remark, ...] = eqx.field(static=True, default=())
-
-    def __check_init__(self) -> None:
-        """Raises UnknownName for a word that is none of a convention's."""
-        check(**{name: (getattr(self, name), allowed) for name, allowed in CONVENTIONS.items()})
 
     @property
     def size(self) -> Float[Array, ""]:
@@ -161,10 +84,11 @@ class Model(eqx.Module):
     @property
     def cylinders(self) -> Cylinders | None:
         """Strips, then ends, that diffract the waves; None where none do."""
-        if self.diffraction == "none" or not self.hull.cylinders.radius.size:
+        how = self.conventions
+        if how.diffraction == "none" or not self.hull.cylinders.radius.size:
             return None
-        ramp = self.diffraction == "ramp"
-        return dataclasses.replace(self.hull.cylinders, lag=self.lag, bound=self.bound, ramp=ramp)
+        ramp = how.diffraction == "ramp"
+        return dataclasses.replace(self.hull.cylinders, lag=how.lag, bound=how.bound, ramp=ramp)
 
     @property
     def values(self) -> dict[str, Float[Array, ""]]:
@@ -225,6 +149,19 @@ class Model(eqx.Module):
 
         loads = tuple(changed(load) for load in self.loads)
         return eqx.tree_at(lambda m: m.loads, self, loads)
+
+    def with_conventions(self, **changed: str | bool) -> "Model":
+        """This model with some conventions changed, such as `with_conventions(wetting="mean")`.
+
+        Raises:
+            UnknownName: There is no such convention, or it has no such value.
+        """
+        names = [field.name for field in dataclasses.fields(Conventions)]
+        for name in changed:
+            if name not in names:
+                raise unknown("convention", name, names)
+        changes: dict[str, Any] = dict(changed)
+        return dataclasses.replace(self, conventions=dataclasses.replace(self.conventions, **changes))
 
     def with_load(self, load: AbstractLoad) -> "Model":
         """This model with one more load."""
@@ -307,108 +244,27 @@ class Model(eqx.Module):
         Returns:
             What the loads read.
         """
-        sea = self.through(sea)
-        matrix = rotation(state.position[3:])
-        hull = self.hull if self.directions == "body" else self.hull.turned(matrix.T)
-        strips, ends, place = hull.strips, hull.ends, state.position[:3]
-        n, m, faces = len(strips.element), ends.area.shape[0], jnp.array(ends.strip, dtype=int)
-        whole = m - len(ends.strip)
-        above, follows = (place[:2], matrix[:2]) if self.waves_at == "displaced" else (jnp.zeros(2), jnp.eye(3)[:2])
-        roots = jnp.concatenate([hull.elements.start, ends.position[:, :whole]], axis=1)
-        if self.wetting == "mean":
-            vertical, depth = jnp.array([0.0, 0.0, 1.0]), -roots[2]
-        else:
-            vertical = matrix[2]
-            depth = -(place[2] + vertical @ roots)
-            surface = sea.surface(time, above[:, None] + follows @ hull.gauges)
-            depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
-        wetted = hull.wetted(vertical, depth[: roots.shape[1] - whole])
-        of = jnp.array(strips.element, dtype=int)
-        covered, reach = wetted.length[of] * strips.weight, wetted.reach[of] * strips.fraction
-        away = hull.join(jnp.stack([reach, reach]), jnp.concatenate([jnp.zeros(whole), reach[faces]]))
-        still, turning = (state.velocity @ hull.motion).reshape(2, -1)
-        own, own_end = hull.split(-(still + turning * away))
-        if (stream := self.stream()) is not None:
-            passing = stream @ matrix
-            own = own + (passing[:, None, None] * strips.directions).sum(axis=0)
-            own_end = own_end + passing @ ends.axis
-        extent = strips.size + strips.taper * reach
-        p, q, r = state.velocity[3:]
-        square = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r])
-        inward, outgoing = (square @ hull.inward).reshape(2, -1)
-        inward = inward + away * outgoing if self.centripetal else jnp.zeros_like(away)
-        lines = Lines(away, inward)
-        shape = StripShape(covered * strips.shape * extent[0] * extent[1], covered * extent[::-1])
-        end_wet = jnp.concatenate([hull.ends_wetted(depth[roots.shape[1] - whole :]), jnp.ones(m - whole)])
-        lids = [] if hull.leaning is None else [hull.leaning.point]
-        points = jnp.concatenate([strips.start + reach * strips.axis, ends.position[:, :whole], *lids], axis=1)
-        where = place[:, None] + turned(matrix, points)
-        level = points if self.waves_at == "mean" else where
-        where = jnp.concatenate([level[:2], (where if self.wetting == "instantaneous" else points)[2:]])
-        flow, replaced = sea.flow(time, where, self.cylinders), _sum([load.replaces() for load in self.loads])
-        if flow is not None and replaced is not None:
-            flow = flow.weakened(1 - replaced)
-        if flow is None:
-            past, past_end = StripFlow(own, None), EndFlow(own_end, None, None, end_wet)
-        else:
-            axes = matrix if flow.axes is None else flow.axes.T @ matrix
-            toward = (axes @ strips.directions.reshape(3, 2 * n)).reshape(len(axes), 2, n)
-            toward_end = axes @ ends.axis
-
-            def across(field: Float[Array, "a n+m"]) -> Float[Array, "2 n"]:
-                return (toward * field[:, None, :n]).sum(axis=0)
-
-            diffracted, tuned = (None if field is None else across(field) for field in (flow.diffracted, flow.tuned))
-            moving = (own + across(flow.velocity), across(flow.acceleration))
-            past = StripFlow(*moving, diffracted, tuned, flow.pressure[:n])
-            at = jnp.concatenate([jnp.arange(n, n + whole), faces]) if ends.strip else slice(n, n + whole)
-            at_ends = [(toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration)]
-            past_end = EndFlow(own_end + at_ends[0], at_ends[1], flow.pressure[at], end_wet)
-        return Instant(
+        return instant_at(
             time,
             state.position,
-            matrix,
             state.velocity,
-            self.environment,
-            hull,
-            wetted,
-            shape,
-            EndShape.of(hull, wetted, covered, extent),
-            past,
-            past_end,
-            lines,
-            sea.drift(time),
-            None if replaced is None else sea.excitation(time, above),
-            None if flow is None or not lids else (flow.pressure[n + whole :], axes.T @ flow.acceleration[:, n + whole :]),
+            self.through(sea),
+            environment=self.environment,
+            hull=self.hull,
+            conventions=self.conventions,
+            cylinders=self.cylinders,
+            current=self.stream(),
+            replaced=_sum([load.replaces() for load in self.loads]),
         )
 
-    def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> "LoadSum":
+    def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> LoadSum:
         """Sum of all loads in body axes.
 
         Args:
             now: Motion, geometry and flow at the instant.
             memory: Memory of each load.
         """
-        actions = [load.act(now, remembered) for load, remembered in zip(self.loads, memory, strict=True)]
-
-        def total(name: str, zero: Float[Array, "..."]) -> Float[Array, "..."]:
-            parts = [part for action in actions if (part := getattr(action, name)) is not None]
-            return sum(parts[1:], parts[0]) if parts else zero
-
-        force, earth = total("body_force", jnp.zeros(6)), total("force", jnp.zeros(0))
-        if earth.size:
-            force = force + jnp.concatenate([earth[:3] @ now.rotation, earth[3:] @ now.rotation])
-        hull, on_strips, on_ends = now.hull, jnp.zeros_like(now.strip_flow.relative), jnp.zeros_like(now.end_flow.relative)
-        per_volume, end_mass = total("element_mass", jnp.zeros((2, len(hull.elements.length)))), total("end_mass", on_ends)
-        line_mass = hull.join(now.over_strips(per_volume) * now.strip_shape.volume, end_mass)
-        on_lines = hull.join(total("strip_force", on_strips), total("end_force", on_ends)) - line_mass * now.lines.inward
-        return LoadSum(
-            force + hull.wrench(on_lines, now.lines.away),
-            total("added_mass", jnp.zeros((6, 6))),
-            hull.masses(per_volume, end_mass, now.wetted),
-            hull.moments,
-            tuple(action.memory_rate for action in actions),
-        )
+        return sum_of_loads(self.loads, now, memory)
 
     def rate(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> State:
         """Time derivative of the state: Newton and Euler about the reference point, body axes.
@@ -428,7 +284,7 @@ class Model(eqx.Module):
         gyroscopic = jnp.concatenate([body.mass * cross(spin, cross(spin, body.centre)), cross(spin, inertia @ spin)])
         # the solution is the acceleration of the reference point, not the rate of its body-axes velocity
         mass, masses, moments = body.mass_matrix() + total.added_mass, total.masses, total.moments
-        if self.directions == "earth":  # they turn with the attitude, and `accelerate` takes them for constant
+        if self.conventions.directions == "earth":  # they turn with the attitude, and `accelerate` takes them for constant
             mass, masses, moments = mass + moments @ masses, masses[:0], moments[..., :0]
         acceleration = accelerate(mass, total.force - gyroscopic, masses, moments)
         turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])

@@ -4,7 +4,7 @@ A new effect is one file in this folder and one line in `LOADS`.
 """
 
 from jaxhydro.loads.added_mass import AddedMass
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 from jaxhydro.loads.changing_drag import ChangingDrag
 from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
@@ -22,6 +22,7 @@ from jaxhydro.loads.high_pass_drag import HighPassDrag
 from jaxhydro.loads.hydrostatic_coupling import HydrostaticCoupling
 from jaxhydro.loads.hydrostatics import Buoyancy
 from jaxhydro.loads.hysteresis import Hysteresis
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.keulegan_carpenter_drag import KeuleganCarpenterDrag
 from jaxhydro.loads.linear_damping import LinearDamping
 from jaxhydro.loads.mass_error import MassError

@@ -4,7 +4,8 @@ from typing import Any, ClassVar
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.matrix import assemble, meaning, place, unit
 
 

@@ -1,4 +1,4 @@
-"""Base class of loads, their parameters, and the instant at which they act."""
+"""Base class of loads, and their parameters."""
 
 import abc
 import math
@@ -6,14 +6,11 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
-from jaxhydro.environment import Environment
-from jaxhydro.hull.hull import Hull, Wetted
+from jaxhydro.loads.instant import Instant
 from jaxhydro.waves.excitation import Excitation
-from jaxhydro.waves.flow import EndFlow, StripFlow
 from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.sea_state import SeaState
 from jaxhydro.waves.transfer import Transfer
@@ -74,131 +71,6 @@ class Parameter(NamedTuple):
         factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
         lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
         return self if factor == 1.0 or not self.of_hull else self._replace(lower=lower, upper=upper)
-
-
-class StripShape(NamedTuple):
-    """Submerged part of each strip.
-
-    Attributes:
-        volume: Displaced volume (m³), (n,).
-        facing: Area (m²) normal to the flow along each of the two directions, (2, n).
-    """
-
-    volume: Float[Array, " n"]
-    facing: Float[Array, "2 n"]
-
-
-class EndShape(NamedTuple):
-    """Areas and added-mass volumes of member ends and of the faces of tapered strips.
-
-    A face belongs to the wet part of its strip. An end is weighted by `EndFlow.wet`. The end of a member that lies at the
-    surface has the area of the wet section beside it.
-
-    A face of a strip over which the section A grows by dA has the area dA, against the axis, and the volume r dA, A = pi r².
-    Over a step that makes 2/3 pi (R³ - r³), the difference of two half spheres.
-
-    Attributes:
-        area: Area (m²) on which pressure acts, (m,).
-        facing: Area (m²) normal to the flow along the axis, (m,).
-        volume: Volume (m³) to which added mass refers, (m,).
-
-    References:
-        OpenFAST HydroDyn, Morison module (tapered members); RAFT, raft_member.py, getHydroConstants.
-    """
-
-    area: Float[Array, " m"]
-    facing: Float[Array, " m"]
-    volume: Float[Array, " m"]
-
-    @classmethod
-    def of(cls, hull: Hull, wetted: Wetted, covered: Float[Array, " n"], extent: Float[Array, "2 n"]) -> "EndShape":
-        """Shape of a hull's ends and faces at an instant.
-
-        Args:
-            hull: The hull.
-            wetted: Submerged part of each load element.
-            covered: Wet length of each strip (m), (n,).
-            extent: Size of each strip along its two directions (m), (2, n).
-        """
-        ends, strips, area = hull.ends, hull.strips, hull.ends.area
-        if ends.afloat:
-            at, beside, part = (jnp.array(column) for column in zip(*ends.afloat, strict=True))
-            area = area.at[at].set(area[at] / part * wetted.length[beside] / hull.elements.length[beside])
-        own = cls(area, ends.facing, ends.volume)
-        if not ends.strip:
-            return own
-        of = jnp.array(ends.strip, dtype=int)
-        shape, (width, height), (wider, higher) = strips.shape[of], extent[:, of], strips.taper[:, of]
-        grown = shape * (wider * height + higher * width) * covered[of]
-        faces = slice(len(ends.label) - len(ends.strip), None)
-        facing = jnp.where(ends.radius[faces] > 0, jnp.abs(grown), 0.0)
-        radius = jnp.sqrt(shape * width * height / math.pi)
-        found = (-ends.outward[faces] * grown, facing, radius * facing)
-        return cls(*(one.at[faces].set(face) for one, face in zip(own, found, strict=True)))
-
-
-class Lines(NamedTuple):
-    """Distances and centripetal accelerations of strips, ends and faces.
-
-    Attributes:
-        away: Distance (m) from the start of the load element, (l,).
-        inward: Centripetal acceleration (m/s²) along the line, (l,).
-    """
-
-    away: Float[Array, " l"]
-    inward: Float[Array, " l"]
-
-
-class Instant(eqx.Module):
-    """Motion, submerged geometry and flow at one instant: everything that a load may read.
-
-    It is computed once per evaluation of the equation of motion.
-
-    Attributes:
-        time: Time (s).
-        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
-        rotation: Rotation matrix from body to earth axes.
-        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
-        environment: Water and gravity.
-        hull: The hull.
-        wetted: Submerged part of each load element.
-        strip_shape: Submerged part of each strip.
-        end_shape: Areas of ends and faces.
-        strip_flow: Flow past each strip.
-        end_flow: Flow past each end and face.
-        lines: Distances and centripetal accelerations of strips and ends.
-        drift: Squared wave envelopes (m²) of `AbstractSea.drift`, or None.
-        excitation: First-order force (N, N m) of `AbstractSea.excitation`, or None.
-        lid: Pressure over density (m²/s²) and acceleration (m/s², body axes) of the water at the points of `Hull.leaning`.
-    """
-
-    time: Float[Array, ""]
-    position: Float[Array, "6"]
-    rotation: Float[Array, "3 3"]
-    velocity: Float[Array, "6"]
-    environment: Environment
-    hull: Hull
-    wetted: Wetted
-    strip_shape: StripShape
-    end_shape: EndShape
-    strip_flow: StripFlow
-    end_flow: EndFlow
-    lines: Lines
-    drift: Float[Array, " d"] | None = None
-    excitation: Float[Array, "6"] | None = None
-    lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
-
-    def earth_velocity(self) -> Float[Array, "6"]:
-        """Velocity of the reference point and angular velocity in earth axes (m/s, rad/s)."""
-        return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
-
-    def diffracting(self) -> Bool[Array, " n"]:
-        """Whether each strip diffracts the waves."""
-        return jnp.array(self.hull.strips.diffracts) > 0
-
-    def over_strips(self, elements: Float[Array, "2 e"]) -> Float[Array, "2 n"]:
-        """Values per load element repeated for each of its strips: (2, e) to (2, n)."""
-        return elements[:, jnp.array(self.hull.strips.element, dtype=int)]
 
 
 class Action(NamedTuple):

@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.instant import Instant
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.irregular_sea import IrregularSea
 from jaxhydro.waves.sea import AbstractSea, WaveSea

@@ -5,7 +5,8 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.instant import Instant
 
 LABEL = "covered_ends.share"
 

@@ -10,8 +10,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.base import Instant, Parameter
+from jaxhydro.loads.base import Parameter
 from jaxhydro.loads.end_inertia import spread_ends
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.strip_inertia import spread
 
 MIN_SQUARED_SPEED = (

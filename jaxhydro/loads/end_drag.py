@@ -4,8 +4,9 @@ from typing import Any, ClassVar
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 from jaxhydro.loads.drag import end_area, quadratic
+from jaxhydro.loads.instant import Instant
 
 
 class EndDrag(AbstractLoad):

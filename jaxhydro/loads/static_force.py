@@ -5,7 +5,8 @@ from typing import Any, ClassVar, Self
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.per_dof import about, all_dofs, both_units, entries, nulls
 
 PARAMETERS = {"force": both_units("N", "N m", "constant load on the reference point in {dof}, earth axes")}

@@ -5,8 +5,9 @@ from typing import Any, ClassVar
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 from jaxhydro.loads.drag import quadratic, strip_area
+from jaxhydro.loads.instant import Instant
 
 
 class StripDrag(AbstractLoad):

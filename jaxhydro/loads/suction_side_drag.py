@@ -4,8 +4,9 @@ from typing import Any, ClassVar
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action, Parameter
 from jaxhydro.loads.drag import SUCTION, about, end_area, of_ends, one_sided
+from jaxhydro.loads.instant import Instant
 
 
 class SuctionSideDrag(AbstractLoad):

@@ -374,11 +374,13 @@ def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatc
     asked: list[Campaign] = []
     monkeypatch.setattr(strip_trials, "prepare_fit", lambda one: asked.append(one) or one)
     monkeypatch.setattr(strip_trials, "run_fit", lambda one, near: None)
-    monkeypatch.setattr(strip_trials, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
+    monkeypatch.setattr(
+        strip_trials, "_unlikelihood", lambda one: better if one.model.conventions.directions == "body" else 0.0
+    )
     found = strip_trials.try_strip_conventions(campaign, lambda *_: None)
     model = found.campaign.model
-    assert [one.model.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
-    assert (model.directions, model.centripetal) == (("earth", False) if simpler else ("body", True))
+    assert [one.model.conventions.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
+    assert (model.conventions.directions, model.conventions.centripetal) == (("earth", False) if simpler else ("body", True))
     assert [load.coupled for load in model.loads if isinstance(load, StripDrag)] == [not simpler]
     assert bool(found.notes) is simpler and found.strips == (strip_trials.SIMPLER_STRIPS if simpler else None)
     said = dataclasses.replace(campaign, platform=campaign.platform.model_copy(update={"drag_speed": "vector"}))

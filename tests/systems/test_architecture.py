@@ -20,6 +20,7 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "end_inertia": {"spread_ends"},
     "drag": "*",
     "per_dof": "*",
+    "instant": "*",
 }
 EDGE = {  # third-party or built-in, and the only folders or modules that may use it
     "matplotlib": {"jaxhydro.plots", "jaxhydro.sweep.sweep_figures", "calibration.plots"},
