@@ -1,4 +1,4 @@
-"""Model of a platform: a rigid body and its loads, (M + sum A_k) dv/dt = sum F_k."""
+"""Model of a platform: a rigid body, its loads, water effects and sensor effects, (M + sum A_k) dv/dt = sum F_k."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -9,47 +9,27 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.choices import unknown
+from jaxhydro.choices import UnknownName, unknown
 from jaxhydro.dynamics.conventions import Conventions
 from jaxhydro.dynamics.kinematics import instant as instant_at
-from jaxhydro.dynamics.load_sum import LoadSum, sum_of_loads
+from jaxhydro.dynamics.newton_euler import LoadSum, at_most_one, body_acceleration, optional_sum, sum_of_loads
 from jaxhydro.dynamics.rigid_body import RigidBody
-from jaxhydro.dynamics.solve6 import accelerate
+from jaxhydro.dynamics.state import State, body_velocity, position_rate
 from jaxhydro.environment import Environment
 from jaxhydro.hull.coefficient_labels import shared_hint, sharing
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.loads.base import AbstractLoad
 from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import AbstractEffect, Parameter, strongly_typed
 from jaxhydro.remarks import Remark
-from jaxhydro.rotations import angular_velocity, attitude_rates_of, cosines, cross, rotation, rotation_of
 from jaxhydro.scales import pace_of, size_of
+from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
+from jaxhydro.water.water_effect import AbstractWaterEffect
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
 from jaxhydro.waves.transfer import Transfer
-
-
-class State(eqx.Module):
-    """Position, velocity and memory of the platform.
-
-    Attributes:
-        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
-        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
-        memory: One entry per load; None for a load without memory.
-    """
-
-    position: Float[Array, "6"]
-    velocity: Float[Array, "6"]
-    memory: tuple[Any, ...]
-
-
-def strongly_typed(tree: Any) -> Any:
-    """A model or load without JAX's weak types.
-
-    Programs are compiled by type. Without this, a model whose numbers were changed would compile again.
-    """
-    return jax.tree.map(lambda x: jnp.asarray(x, x.dtype) if eqx.is_array(x) else x, tree)
 
 
 class Model(eqx.Module):
@@ -60,6 +40,8 @@ class Model(eqx.Module):
         body: Mass and inertia.
         hull: Members cut into strips and ends.
         loads: Loads on the platform.
+        water: Effects on the sea that the platform meets.
+        sensors: Effects on what motion sensors record.
         conventions: Form of the strip model.
         remarks: Remarks on the files that the platform was read from.
     """
@@ -68,6 +50,8 @@ class Model(eqx.Module):
     body: RigidBody
     hull: Hull
     loads: tuple[AbstractLoad, ...]
+    water: tuple[AbstractWaterEffect, ...] = ()
+    sensors: tuple[AbstractSensorEffect, ...] = ()
     conventions: Conventions = eqx.field(static=True, default=Conventions())
     remarks: tuple[Remark, ...] = eqx.field(static=True, default=())
 
@@ -91,9 +75,14 @@ class Model(eqx.Module):
         return dataclasses.replace(self.hull.cylinders, lag=how.lag, bound=how.bound, ramp=ramp)
 
     @property
+    def effects(self) -> tuple[AbstractEffect, ...]:
+        """All loads, water effects and sensor effects."""
+        return (*self.loads, *self.water, *self.sensors)
+
+    @property
     def values(self) -> dict[str, Float[Array, ""]]:
-        """Every parameter of every load, by label."""
-        return {label: value for load in self.loads for label, value in load.values.items()}
+        """Every parameter of every effect, by label."""
+        return {label: value for effect in self.effects for label, value in effect.values.items()}
 
     def about(self, label: str) -> Parameter:
         """Unit, meaning, bounds and neutral value of a parameter.
@@ -105,14 +94,17 @@ class Model(eqx.Module):
             The parameter; bounds that are lengths or times are scaled to the platform's size.
 
         Raises:
-            UnknownName: No load has a parameter of that label.
+            UnknownName: No effect has a parameter of that label.
         """
-        for load in self.loads:
-            if label in load.values:
-                found = load.about(label).sized(float(self.size), float(self.pace))
+        for effect in self.effects:
+            if label in effect.values:
+                found = effect.about(label).sized(float(self.size), float(self.pace))
                 others = sharing(label, self.hull.elements.shares)
                 return found._replace(meaning=f"{found.meaning}; shared by {', '.join(others)}") if others else found
-        raise unknown("parameter", label, sorted(self.values), shared_hint(label, self.hull.elements.shares))
+        raise self._unknown(label)
+
+    def _unknown(self, label: str) -> UnknownName:
+        return unknown("parameter", label, sorted(self.values), shared_hint(label, self.hull.elements.shares))
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
         """This model with some parameters changed.
@@ -126,13 +118,13 @@ class Model(eqx.Module):
             A new model.
 
         Raises:
-            UnknownName: No load has a parameter of a label.
+            UnknownName: No effect has a parameter of a label.
             ValueError: A value is not finite, or is negative where physics does not allow it (`Parameter.check`).
         """
-        about = {label: load.about for load in self.loads for label in load.values}
+        about = {label: effect.about for effect in self.effects for label in effect.values}
         for label, value in values.items():
             if label not in about:
-                raise unknown("parameter", label, sorted(about), shared_hint(label, self.hull.elements.shares))
+                raise self._unknown(label)
             if not isinstance(value, jax.core.Tracer):
                 about[label](label).check(label, value)
         return self.at_values(values)
@@ -143,12 +135,10 @@ class Model(eqx.Module):
         It is for fitted values, which may exceed a physical limit by rounding.
         """
 
-        def changed(load: AbstractLoad) -> AbstractLoad:
-            new = {label: jnp.asarray(values.get(label, old), float) for label, old in load.values.items()}
-            return eqx.tree_at(lambda x: x.values, load, new) if new else load
-
-        loads = tuple(changed(load) for load in self.loads)
-        return eqx.tree_at(lambda m: m.loads, self, loads)
+        loads = tuple(load.at_values(values) for load in self.loads)
+        water = tuple(effect.at_values(values) for effect in self.water)
+        sensors = tuple(effect.at_values(values) for effect in self.sensors)
+        return dataclasses.replace(self, loads=loads, water=water, sensors=sensors)
 
     def with_conventions(self, **changed: str | bool) -> "Model":
         """This model with some conventions changed, such as `with_conventions(wetting="mean")`.
@@ -163,9 +153,18 @@ class Model(eqx.Module):
         changes: dict[str, Any] = dict(changed)
         return dataclasses.replace(self, conventions=dataclasses.replace(self.conventions, **changes))
 
-    def with_load(self, load: AbstractLoad) -> "Model":
-        """This model with one more load."""
-        return eqx.tree_at(lambda m: m.loads, self, (*self.loads, strongly_typed(load)))
+    def with_effect(self, effect: AbstractEffect) -> "Model":
+        """This model with one more load, water effect or sensor effect.
+
+        Raises:
+            TypeError: The effect is none of the three.
+        """
+        families = {AbstractLoad: "loads", AbstractWaterEffect: "water", AbstractSensorEffect: "sensors"}
+        for kind, name in families.items():
+            if isinstance(effect, kind):
+                changed: dict[str, Any] = {name: (*getattr(self, name), strongly_typed(effect))}
+                return dataclasses.replace(self, **changed)
+        raise TypeError(f"expected a load, a water effect or a sensor effect, found {type(effect).__name__}")
 
     def in_sea(self, state: SeaState) -> "Model":
         """This model with the coefficients that it has in a sea state."""
@@ -179,10 +178,7 @@ class Model(eqx.Module):
         Raises:
             ValueError: Two loads have one.
         """
-        found = [one for load in self.loads if (one := load.drifts()) is not None]
-        if len(found) > 1:
-            raise ValueError("two loads have a difference-frequency transfer function: expected one")
-        return found[0] if found else None
+        return at_most_one("difference-frequency transfer function", [load.transfer_function() for load in self.loads])
 
     @property
     def excitation(self) -> Excitation | None:
@@ -191,31 +187,30 @@ class Model(eqx.Module):
         Raises:
             ValueError: Two loads have one.
         """
-        found = [one for load in self.loads if (one := load.excites()) is not None]
-        if len(found) > 1:
-            raise ValueError("two loads have a computed excitation: expected one")
-        return found[0] if found else None
+        return at_most_one("computed excitation", [load.excitation_table() for load in self.loads])
 
     def through(self, sea: AbstractSea) -> AbstractSea:
-        """The sea as changed by all loads."""
-        # what belongs to the waves themselves before what becomes of them
-        for load in sorted(self.loads, key=lambda load: (load.drifts() is None and load.excites() is None, load.moves)):
-            sea = load.through(sea)
+        """The sea that the platform meets: with the computed forces of its loads, and all water effects."""
+        exciting, transfer = self.excitation, self.transfer
+        if exciting is not None or transfer is not None:
+            sea = sea.with_tables(exciting, transfer)
+        for effect in sorted(self.water, key=lambda effect: effect.comes_last):
+            sea = effect.through(sea)
         return sea
 
-    def stream(self) -> Float[Array, "3"] | None:
-        """Sum of the loads' steady currents (m/s, earth axes), or None."""
-        return _sum([load.stream() for load in self.loads])
+    def current(self) -> Float[Array, "3"] | None:
+        """Sum of the steady currents (m/s, earth axes), or None."""
+        return optional_sum([effect.current() for effect in self.water])
 
     @property
     def senses(self) -> bool:
-        """Whether any load changes what the motion sensors read."""
-        return any(type(load).seen is not AbstractLoad.seen for load in self.loads)
+        """Whether any effect changes what the motion sensors read at an instant."""
+        return any(type(effect).seen is not AbstractSensorEffect.seen for effect in self.sensors)
 
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
         """Reading of the motion sensors at a position (m, rad), (..., 6)."""
-        for load in self.loads:
-            position = load.seen(position)
+        for effect in self.sensors:
+            position = effect.seen(position)
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:
@@ -223,7 +218,7 @@ class Model(eqx.Module):
 
         The record at t shows the motion at t - lag.
         """
-        return _sum([load.clock_lag() for load in self.loads])
+        return optional_sum([effect.clock_lag() for effect in self.sensors])
 
     def rest(self) -> State:
         """State at the reference position, without motion."""
@@ -239,7 +234,7 @@ class Model(eqx.Module):
         Args:
             time: Time (s).
             state: Position, velocity and memory.
-            sea: The sea, before the loads change it.
+            sea: The sea, before water effects.
 
         Returns:
             What the loads read.
@@ -253,8 +248,8 @@ class Model(eqx.Module):
             hull=self.hull,
             conventions=self.conventions,
             cylinders=self.cylinders,
-            current=self.stream(),
-            replaced=_sum([load.replaces() for load in self.loads]),
+            current=self.current(),
+            replaced=optional_sum([load.replaces() for load in self.loads]),
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> LoadSum:
@@ -277,30 +272,13 @@ class Model(eqx.Module):
         References:
             Fossen (2011), section 3.3.
         """
-        now = self.instant(time, state, sea)
-        total = self.sum_of_loads(now, state.memory)
-        spin, linear, body = state.velocity[3:], state.velocity[:3], self.body
-        inertia = body.inertia_at_reference()
-        gyroscopic = jnp.concatenate([body.mass * cross(spin, cross(spin, body.centre)), cross(spin, inertia @ spin)])
-        # the solution is the acceleration of the reference point, not the rate of its body-axes velocity
-        mass, masses, moments = body.mass_matrix() + total.added_mass, total.masses, total.moments
-        if self.conventions.directions == "earth":  # they turn with the attitude, and `accelerate` takes them for constant
-            mass, masses, moments = mass + moments @ masses, masses[:0], moments[..., :0]
-        acceleration = accelerate(mass, total.force - gyroscopic, masses, moments)
-        turning = jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
-        return State(self.position_rate(state.position, state.velocity), acceleration - turning, total.memory_rate)
+        total = sum_of_loads(self.loads, self.instant(time, state, sea), state.memory)
+        fixed = self.conventions.directions == "earth"
+        acceleration = body_acceleration(self.body, state.velocity, total, fixed)
+        return State(self.position_rate(state.position, state.velocity), acceleration, total.memory_rate)
 
-    @staticmethod
-    def position_rate(position: Float[Array, "6"], velocity: Float[Array, "6"]) -> Float[Array, "6"]:
-        """Rates of surge ... yaw (m/s, rad/s) from a velocity in body axes."""
-        both = cosines(position[3:])
-        return jnp.concatenate([rotation_of(both) @ velocity[:3], attitude_rates_of(both, velocity[3:])])
-
-    @staticmethod
-    def body_velocity(position: Float[Array, "6"], rates: Float[Array, "6"]) -> Float[Array, "6"]:
-        """Velocity in body axes from rates of surge ... yaw: the inverse of `position_rate`."""
-        attitude = position[3:]
-        return jnp.concatenate([rotation(attitude).T @ rates[:3], angular_velocity(attitude, rates[3:])])
+    position_rate = staticmethod(position_rate)
+    body_velocity = staticmethod(body_velocity)
 
     def force_at_rest(self, position: Float[Array, "6"], sea: AbstractSea | None = None) -> Float[Array, "6"]:
         """Force and moment (N, N m, earth axes) on the motionless platform at a position.
@@ -313,9 +291,3 @@ class Model(eqx.Module):
         now = self.instant(jnp.zeros(()), state, StillWater() if sea is None else sea)
         total = self.sum_of_loads(now, state.memory)
         return jnp.concatenate([now.rotation @ total.force[:3], now.rotation @ total.force[3:]])
-
-
-def _sum(parts: list[Array | None]) -> Array | None:
-    """Sum of the terms that are not None; None where there are none."""
-    there = [part for part in parts if part is not None]
-    return sum(there[1:], there[0]) if there else None

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import (
     SUCTION,
     about,
@@ -23,6 +23,7 @@ from jaxhydro.loads.drag import (
     strip_area,
 )
 from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 # A first-order filter faster than this is no filter in waves, and at 0.25 s leaves what Adams-Bashforth can follow (0.19 Hz).
 MAX_CUTOFF = 0.15  # Hz

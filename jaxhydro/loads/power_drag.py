@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import (
     POWER_LABEL,
     REFERENCE_SPEED,
@@ -23,6 +23,7 @@ from jaxhydro.loads.drag import (
     strip_area,
 )
 from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 
 class PowerDrag(AbstractLoad):

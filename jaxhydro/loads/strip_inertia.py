@@ -7,8 +7,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.strips import Elements
-from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 
 def spread(

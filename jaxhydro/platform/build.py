@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.dynamics.conventions import Conventions
-from jaxhydro.dynamics.model import Model, strongly_typed
+from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError, Problem, suggest
@@ -35,6 +35,7 @@ from jaxhydro.loads import (
 )
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
+from jaxhydro.parameters import strongly_typed
 from jaxhydro.platform import schema as schema
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
 from jaxhydro.platform.computed_loads import tables_of

@@ -22,8 +22,8 @@ from jaxhydro.dynamics.simulate import default_step, memory_step
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.interop.wamit_tables import to_omega
 from jaxhydro.loads import LOADS
-from jaxhydro.loads.base import Parameter
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
+from jaxhydro.parameters import Parameter
 from jaxhydro.platform.convergence import with_elements
 from jaxhydro.waves.components import PlaneWaves
 from jaxhydro.waves.irregular import separated_record

@@ -1,13 +1,18 @@
-"""Sum of the loads on a platform at an instant."""
+"""Newton's and Euler's equations of a platform: sum of its loads, and the acceleration that follows."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.dynamics.rigid_body import RigidBody
+from jaxhydro.dynamics.solve6 import accelerate
 from jaxhydro.loads.base import AbstractLoad
 from jaxhydro.loads.instant import Instant
+from jaxhydro.rotations import cross
+
+T = TypeVar("T")
 
 
 class LoadSum(NamedTuple):
@@ -56,3 +61,40 @@ def sum_of_loads(loads: Sequence[AbstractLoad], now: Instant, memory: tuple[Any,
         hull.moments,
         tuple(action.memory_rate for action in actions),
     )
+
+
+def body_acceleration(body: RigidBody, velocity: Float[Array, "6"], total: LoadSum, fixed_lines: bool) -> Float[Array, "6"]:
+    """Rate of the velocity in body axes (m/s², rad/s²), by Newton and Euler about the reference point.
+
+    Args:
+        body: Mass and inertia.
+        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
+        total: Sum of the loads.
+        fixed_lines: Whether strips and ends keep their directions in earth axes, so that `moments` turn with the attitude.
+
+    References:
+        Fossen (2011), section 3.3.
+    """
+    spin, linear = velocity[3:], velocity[:3]
+    inertia = body.inertia_at_reference()
+    gyroscopic = jnp.concatenate([body.mass * cross(spin, cross(spin, body.centre)), cross(spin, inertia @ spin)])
+    # the solution is the acceleration of the reference point, not the rate of its body-axes velocity
+    mass, masses, moments = body.mass_matrix() + total.added_mass, total.masses, total.moments
+    if fixed_lines:  # `accelerate` takes `moments` for constant
+        mass, masses, moments = mass + moments @ masses, masses[:0], moments[..., :0]
+    acceleration = accelerate(mass, total.force - gyroscopic, masses, moments)
+    return acceleration - jnp.concatenate([cross(spin, linear), jnp.zeros(3)])
+
+
+def optional_sum(parts: Sequence[Array | None]) -> Array | None:
+    """Sum of the terms that are not None; None where there are none."""
+    there = [part for part in parts if part is not None]
+    return sum(there[1:], there[0]) if there else None
+
+
+def at_most_one(what: str, parts: Sequence[T | None]) -> T | None:
+    """The term that is not None, or None; ValueError for two."""
+    found = [part for part in parts if part is not None]
+    if len(found) > 1:
+        raise ValueError(f"two loads have a {what}: expected one")
+    return found[0] if found else None
