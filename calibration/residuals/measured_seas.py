@@ -24,7 +24,8 @@ from calibration.residuals.stretches import run_segments, samples_after_transien
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.choices import check
-from jaxhydro.dynamics.model import CONVENTIONS, Model
+from jaxhydro.dynamics.conventions import allowed_values
+from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.requested_sea import share_within
 from jaxhydro.dynamics.simulate import largest_step
@@ -63,7 +64,7 @@ class Options:
     def __post_init__(self) -> None:
         """Raises UnknownName for another order, stretching, diffraction, kind or place of action."""
         check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
-        check(diffraction=(self.diffraction, (*CONVENTIONS["diffraction"], None)), acting=(self.acting, get_args(Acting)))
+        check(diffraction=(self.diffraction, (*allowed_values("diffraction"), None)), acting=(self.acting, get_args(Acting)))
         for kind in self.kinds:
             check(kinds=(kind, KINDS))
 
@@ -188,7 +189,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
 
 def with_diffraction(model: Model, options: Options) -> Model:
     """The model with the diffraction asked for."""
-    return model if options.diffraction is None else dataclasses.replace(model, diffraction=options.diffraction)
+    return model if options.diffraction is None else model.with_conventions(diffraction=options.diffraction)
 
 
 def sea_step(model: Model, options: Options) -> float:

@@ -23,7 +23,8 @@ from calibration.residuals.measured_seas import Options
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.errors import CheckpointWarning
-from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.parameters import Parameter
 
 
 class Killed(Exception):
