@@ -8,8 +8,7 @@ from calibration.campaign.manifest import IN_WAVES
 from calibration.report import tables
 from calibration.report.summary import calibration_sentence, summary_of
 from calibration.report.web_page import UNCONVERGED, figures, folded, framed, images, listed, result_box, table, warning_box
-from calibration.results.read_calibration import SavedCalibration
-from calibration.results.result_folder import RESULT_FILE
+from calibration.results.calibration_file import CalibrationFile
 
 _ERRORS = """<p>RMSE of the simulated motion over the standard deviation of the measured motion, before and after the
 calibration.</p>"""
@@ -18,15 +17,15 @@ _DAMPING = """<p>x'' + p x' + q x'|x'| + w² x = 0, fitted to the decrements of 
 Ships and Offshore Structures, chapter 7). Measured and simulated decays should agree.</p>"""
 
 
-def page(saved: SavedCalibration, folder: Path) -> str:
+def page(saved: CalibrationFile, folder: Path) -> str:
     """The page's text."""
-    parts = _parts(saved, folder, str(folder / RESULT_FILE))
+    parts = _parts(saved, folder)
     return framed(saved.campaign, f"Calibration by jaxhydro {saved.jaxhydro}", parts, saved.jaxhydro)
 
 
-def _parts(saved: SavedCalibration, folder: Path, source: str) -> Iterator[str]:
+def _parts(saved: CalibrationFile, folder: Path) -> Iterator[str]:
     fitted = saved.baseline
-    summary = summary_of(saved, source)
+    summary = summary_of(saved)
     sentence = calibration_sentence(summary)
     yield result_box(sentence) if summary.sound else warning_box(sentence)
     if not fitted.converged:
@@ -41,11 +40,11 @@ def _parts(saved: SavedCalibration, folder: Path, source: str) -> Iterator[str]:
         heads, rows = tables.comparison_with_truth(saved)
         yield table(heads, rows, 1)
     yield f"<h2>Tests</h2>{_ERRORS}"
-    yield table(*tables.errors(saved, source), 5)
-    heads, rows = tables.other_motions(saved, source)
+    yield table(*tables.errors(saved), 5)
+    heads, rows = tables.other_motions(saved)
     if rows:
         yield folded(f"Other motions, which do not count in the fit ({len(rows)})", table(heads, rows, 3))
-    if (found := tables.bands(saved, source))[1]:
+    if (found := tables.bands(saved))[1]:
         yield f"<h2>Errors of energy in bands</h2>{_ENERGIES}{table(*found, 4)}"
     if (found := tables.linear_quadratic(saved))[1]:
         yield f"<h2>Damping by classical analysis</h2>{_DAMPING}{table(*found, 1, 6)}"
@@ -55,7 +54,7 @@ def _parts(saved: SavedCalibration, folder: Path, source: str) -> Iterator[str]:
         yield f"<h2>Figures</h2>{drawn}"
 
 
-def _how(saved: SavedCalibration) -> str:
+def _how(saved: CalibrationFile) -> str:
     """The objective, and how it was reached."""
     said = f"{tables.outcome_sentence(saved)}."
     if any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values()):

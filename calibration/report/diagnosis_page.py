@@ -9,8 +9,7 @@ from calibration.formatting import number
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
 from calibration.report.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
-from calibration.results.read_diagnosis import SavedDiagnosis, SavedEffect
-from calibration.results.result_folder import DIAGNOSIS_FILE
+from calibration.results.diagnosis_file import DiagnosisFile, FoundEffect
 from calibration.vocabulary import KINDS, USE
 
 _ANATOMY = """<p>The residual of the declared model after its coefficients are fitted, the largest first: its root mean
@@ -24,12 +23,12 @@ deviation. Coefficients that move had stood in for these effects. Mass propertie
 is known less well than by <code>jaxhydro calibrate</code>.</p>"""
 
 
-def page(saved: SavedDiagnosis, folder: Path) -> str:
+def page(saved: DiagnosisFile, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
     return framed(saved.campaign, f"Diagnosis by jaxhydro {saved.jaxhydro}", _parts(saved, folder), saved.jaxhydro)
 
 
-def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
+def _parts(saved: DiagnosisFile, folder: Path) -> Iterator[str]:
     drawn = images(saved.figures, folder)
 
     def taken(*starts: str) -> str:
@@ -64,7 +63,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
     yield taken("effect-")
     yield "<h2>Error before and after</h2>"
     yield f"<p>{escape(_objectives(saved))}</p>"
-    yield table(*tables.errors(saved, str(folder / DIAGNOSIS_FILE)), 3)
+    yield table(*tables.errors(saved), 3)
     if (rows := tables.bands(saved))[1]:
         yield _BANDS
         yield table(*rows, 4)
@@ -86,7 +85,7 @@ def _parts(saved: SavedDiagnosis, folder: Path) -> Iterator[str]:
         yield f"<h2>More figures</h2>{rest}"
 
 
-def _measured(saved: SavedDiagnosis) -> str:
+def _measured(saved: DiagnosisFile) -> str:
     """How many tests of which kind, and how long together."""
     each = Counter((KINDS.get(one.kind, one.kind), one.use) for one in saved.tests.values())
     kinds = {kind: [f"{n} {USE.get(use, use)}" for (other, use), n in each.items() if other == kind] for kind, _ in each}
@@ -98,7 +97,7 @@ def _measured(saved: SavedDiagnosis) -> str:
     return f"{tests}{platform}, {number(seconds / span, 2)} {unit} together at the platform file's scale ({said})."
 
 
-def _effect(saved: SavedDiagnosis, one: SavedEffect) -> Iterator[str]:
+def _effect(saved: DiagnosisFile, one: FoundEffect) -> Iterator[str]:
     name = words.effect_in_words(one.effect, one.degree_of_freedom)
     yield f"<h3>{escape(words.capitalised(name))}</h3>"
     sizes = "; ".join(words.describe_parameter(key, value) for key, value in words.sorted_by_certainty(one.parameters))
@@ -110,7 +109,7 @@ def _effect(saved: SavedDiagnosis, one: SavedEffect) -> Iterator[str]:
     yield f"<p><b>What else it could be:</b> {escape(words.describe_alternatives(one))}</p>"
 
 
-def _objectives(saved: SavedDiagnosis) -> str:
+def _objectives(saved: DiagnosisFile) -> str:
     """J before and after, fitted and held out."""
     before, after = saved.baseline.objective, saved.augmented.objective
     said = f"The error of the fitted tests {words.describe_change(before.fit, after.fit)}"

@@ -5,15 +5,12 @@ from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
-from pydantic import Field
-
 from calibration.formatting import counted, number, percent
 from calibration.formatting import listed as joined
 from calibration.report.web_page import embedded, figures, framed, listed, result_box, table, warning_box
-from calibration.results.read_calibration import ReferenceSeaState, ResultModel
 from jaxhydro.environment import DOFS
-from jaxhydro.errors import Number
 from jaxhydro.sweep.cases import runs_in_words
+from jaxhydro.sweep.sweep_results import SweepResults
 
 FIGURES = {
     "scatter.png": (
@@ -29,92 +26,6 @@ from seed to seed; the maximum of a seed is the largest of its runs, averaged ov
 Equivalent ranges do the same damage as all cycles{frequency}, for S-N curves of the exponent m.</p>"""
 
 
-class Runs(ResultModel):
-    """How many there are, and what became of them."""
-
-    total: int
-    done: int
-    failed: int
-
-
-class Life(ResultModel):
-    """Lifetime statistics of a channel, in its unit."""
-
-    unit: str
-    mean: Number | None = None
-    standard_deviation: Number | None = None
-    standard_deviation_spread: Number | None = None
-    maximum_of_seed: Number | None = None
-    maximum_spread: Number | None = None
-    minimum_of_seed: Number | None = None
-    maximum: Number | None = None
-    minimum: Number | None = None
-    damage_equivalent_range: dict[str, Number | None] = Field(default_factory=dict)
-
-
-class Failure(ResultModel):
-    """Runs of a sea state (m, s) that failed alike, from headings (deg) with seeds, and why."""
-
-    hs: Number
-    tp: Number
-    gamma: Number | None = None
-    headings: list[Number]
-    seeds: list[int]
-    runs: int
-    reason: str
-
-
-class Heading(ResultModel):
-    """Where waves run to (deg), and its share of the life."""
-
-    heading: Number
-    probability: Number
-
-
-class Options(ResultModel):
-    """What all runs share: s, Hz."""
-
-    duration: Number
-    start: Number
-    time_step: Number
-    step: Number
-    spectrum: str
-    amplitudes: str
-    low: Number
-    cutoff: Number
-    order: int
-    stretching: str
-    diffraction: str
-    equivalent_frequency: Number
-
-
-class Used(ResultModel):
-    """A calibration's file, and the values that were used of it, by label."""
-
-    file: str
-    values: dict[str, Number]
-    sea_state_reference: ReferenceSeaState | None = None
-
-
-class SavedSweep(ResultModel):
-    """sweep.json."""
-
-    sweep: str
-    platform: str
-    source: str
-    runs: Runs
-    sea_states: int
-    cases: int
-    headings: list[Heading]
-    seeds: list[int]
-    options: Options
-    probability_without_runs: Number = 0.0
-    lifetime: dict[str, Life]
-    failures: list[Failure] = Field(default_factory=list)
-    notes: list[str] = Field(default_factory=list)
-    calibration: Used | None = None
-
-
 class SweepSummary(NamedTuple):
     """What the sentence on a sweep says: runs in all and done, and the extremes of every motion with its unit."""
 
@@ -123,7 +34,7 @@ class SweepSummary(NamedTuple):
     extremes: dict[str, tuple[float, float, str]]
 
 
-def summary_of(saved: SavedSweep) -> SweepSummary:
+def summary_of(saved: SweepResults) -> SweepSummary:
     """The summary of a sweep.json."""
     extremes = {
         channel: (one.minimum, one.maximum, one.unit)
@@ -144,13 +55,13 @@ def sweep_sentence(summary: SweepSummary) -> str:
     return f"{runs}; extremes over the life: {joined(said)}." if said and done else f"{runs}."
 
 
-def page(saved: SavedSweep, folder: Path) -> str:
+def page(saved: SweepResults, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
     version = saved.source.removeprefix("jaxhydro ")
     return framed(f"{saved.platform}: {saved.sweep}", f"Sweep by jaxhydro {version}", _parts(saved, folder), version)
 
 
-def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
+def _parts(saved: SweepResults, folder: Path) -> Iterator[str]:
     runs = saved.runs
     if runs.failed:
         share = percent(saved.probability_without_runs)
@@ -180,7 +91,7 @@ def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
     yield f"<h2>Figures</h2>{drawn}" if drawn else ""
 
 
-def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
+def _run(saved: SweepResults) -> Iterator[tuple[str, str]]:
     how, seeds = saved.options, len(saved.seeds)
     headings = ", ".join(f"{one.heading:g} deg ({percent(one.probability)})" for one in saved.headings)
     yield "Runs", f"{saved.runs.done} of {saved.runs.total} done"
@@ -197,7 +108,7 @@ def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
     yield "Records every, steps of at most", f"{how.time_step:g} s, {number(how.step, 3)} s"
 
 
-def _lifetimes(saved: SavedSweep) -> Iterator[str]:
+def _lifetimes(saved: SweepResults) -> Iterator[str]:
     """Statistics of every channel, then its equivalent ranges: as two tables, since one would be wider than a page."""
     heads = [
         "Channel",

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from calibration.report.web_page import UNCONVERGED, figures, framed, images, listed, result_box, table, warning_box
-from calibration.results.read_uncertainty import (
+from calibration.results.uncertainty_file import (
     INTERVAL_METHODS,
-    SavedUncertainty,
+    UncertaintyFile,
     interval_sentence,
     intervals_table,
     other_intervals_table,
@@ -30,12 +30,12 @@ _FOUND = {
 }
 
 
-def page(saved: SavedUncertainty, folder: Path) -> str:
+def page(saved: UncertaintyFile, folder: Path) -> str:
     """The page's text. Whatever comes from files is escaped; images are part of the page."""
     return framed(saved.campaign, f"Uncertainty by jaxhydro {saved.jaxhydro}", _parts(saved, folder), saved.jaxhydro)
 
 
-def _parts(saved: SavedUncertainty, folder: Path) -> Iterator[str]:
+def _parts(saved: UncertaintyFile, folder: Path) -> Iterator[str]:
     if not saved.converged:
         yield warning_box(UNCONVERGED.format("intervals of a calibration"))
     yield result_box(interval_sentence(summary_of(saved)))
@@ -55,7 +55,7 @@ def _parts(saved: SavedUncertainty, folder: Path) -> Iterator[str]:
         yield f"<h2>Figures</h2>{drawn}"
 
 
-def _calibrated(saved: SavedUncertainty) -> Iterator[str]:
+def _calibrated(saved: UncertaintyFile) -> Iterator[str]:
     number = len(saved.parameters)
     yield f"Campaign: {saved.campaign}"
     if saved.platform:
@@ -63,7 +63,7 @@ def _calibrated(saved: SavedUncertainty) -> Iterator[str]:
     yield f"Calibration: {saved.calibration}, {number} parameter{'s' * (number != 1)} fitted to free decays"
 
 
-def _parameters(saved: SavedUncertainty) -> str:
+def _parameters(saved: UncertaintyFile) -> str:
     (first, *heads, _), found = intervals_table(saved)
     several = list(saved.parameters.values())
     rows = [
@@ -73,7 +73,7 @@ def _parameters(saved: SavedUncertainty) -> str:
     return table([first, "Meaning", *heads], rows, 2, 4, [i for i, one in enumerate(several) if not one.identifiable])
 
 
-def _how(saved: SavedUncertainty, way: str) -> str:
+def _how(saved: UncertaintyFile, way: str) -> str:
     """How a way finds intervals, and from how many draws."""
     drawn = f"{saved.bootstrap[way].draws} times" if way in saved.bootstrap else "many times"
     if way == "nuts":

@@ -10,7 +10,7 @@ from html import escape
 from pathlib import Path
 from string import Template
 
-from calibration.results.read_calibration import Figure
+from calibration.results.calibration_file import Figure
 from calibration.results.result_folder import FIGURES_FOLDER, GENERATOR
 
 _PNG = b"\x89PNG\r\n\x1a\n"

@@ -3,7 +3,7 @@
 from os import PathLike
 from pathlib import Path
 
-from calibration.results.read_calibration import read_as, read_saved
+from calibration.results.calibration_file import read_as, read_saved
 from calibration.results.result_folder import DIAGNOSIS_FILE, REPORT_FILE, RESULT_FILE, UNCERTAINTY_FILE
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import write_whole
@@ -32,19 +32,19 @@ def write_report(folder: str | PathLike[str]) -> Path:
         raise InputError(str(folder), [Problem("", expected, found)])
     if there[0] == DIAGNOSIS_FILE:
         from calibration.report.diagnosis_page import page as diagnosis_page
-        from calibration.results.read_diagnosis import read_diagnosis
+        from calibration.results.diagnosis_file import read_diagnosis
 
         text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS_FILE), folder)
     elif there[0] == UNCERTAINTY_FILE:
         from calibration.report.uncertainty_page import page as uncertainty_page
-        from calibration.results.read_uncertainty import SavedUncertainty
+        from calibration.results.uncertainty_file import UncertaintyFile
 
-        text = uncertainty_page(read_as(SavedUncertainty, folder / UNCERTAINTY_FILE), folder)
+        text = uncertainty_page(read_as(UncertaintyFile, folder / UNCERTAINTY_FILE), folder)
     elif there[0] == SWEEP:
-        from calibration.report.sweep_page import SavedSweep
         from calibration.report.sweep_page import page as sweep_page
+        from jaxhydro.sweep.sweep_results import SweepResults
 
-        text = sweep_page(read_as(SavedSweep, folder / SWEEP), folder)
+        text = sweep_page(read_as(SweepResults, folder / SWEEP), folder)
     else:
         from calibration.report.calibration_page import page as calibration_page
 
