@@ -97,6 +97,15 @@ def describe_change(before: float, after: float) -> str:
     return f"{word} by {percent(abs(share))} (J from {number(before, 3)} to {number(after, 3)})"
 
 
+def objectives_sentence(saved: DiagnosisFile) -> str:
+    """Objective before and after, of the fitted tests and of those held out."""
+    before, after = saved.baseline.objective, saved.augmented.objective
+    said = f"The error of the fitted tests {describe_change(before.fit, after.fit)}"
+    if before.holdout is not None and after.holdout is not None:
+        said += f", that of the held-out tests {describe_change(before.holdout, after.holdout)}"
+    return f"{said}."
+
+
 def evidence_strength(evidence: Evidence) -> str:
     """The evidence's weight by BIC, in the words of Kass and Raftery."""
     if evidence.delta_bic is None:

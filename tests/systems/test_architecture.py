@@ -31,6 +31,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "typer": {"jaxhydro.cli"},
     "rich": {"jaxhydro.cli.console"},
     "filelock": {"jaxhydro.sweep.store"},
+    "jinja2": {"calibration.report.web_page"},
 }
 NUMERICS = ("waves", "hull", "loads", "integrators", "dynamics")
 NOT_PURE = {"jaxhydro.dynamics.requested_sea"}  # tells what is wrong with a sea that was asked for
