@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from calibration.campaign.manifest import Use
 from jaxhydro.dynamics.model import Model
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class TestFit:
     """
 
     id: str
-    use: str
+    use: Use
     kind: str
     degree_of_freedom: str | None
     time: np.ndarray

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self, TypeVar, get_args, get_origin
+from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from ruamel.yaml import YAML
@@ -15,7 +15,7 @@ from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
 from jaxhydro import choices
-from jaxhydro.schema_description import SchemaLocation, arms_of, bare, dotted, locate, tags_of, words
+from jaxhydro.schema_description import SchemaLocation, arms_of, bare, choices_of, dotted, locate, tags_of, words
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
@@ -269,8 +269,8 @@ def _told(detail: Any, at: SchemaLocation) -> Iterator[Problem]:
 
 def _way_out(detail: Any, at: SchemaLocation) -> str:
     kind, value = bare(at.kind, at.notes)[0], at.value
-    if get_origin(kind) is Literal:
-        return suggest(value, map(str, get_args(kind)))
+    if options := choices_of(kind):
+        return suggest(value, options)
     if kind is str and value is not None and not isinstance(value, dict | list | str):
         return "Put it in quotes to make it text."
     if isinstance(value, str) and detail["type"] in ("float_type", "int_type"):

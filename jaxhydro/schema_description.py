@@ -2,6 +2,7 @@
 
 import types
 from dataclasses import dataclass, replace
+from enum import Enum
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, RootModel, Tag
@@ -47,7 +48,8 @@ def locate(model: Any, data: Any, detail: Any) -> SchemaLocation:
         if isinstance(kind, type) and issubclass(kind, BaseModel):
             fields = {field.alias or key: field for key, field in kind.model_fields.items()}
             known, field = tuple(fields), fields.get(str(item))
-            kind, notes = (field.annotation, tuple(field.metadata)) if field else (Any, ())
+            others = get_args(kind.__annotations__.get("__pydantic_extra__")) or (str, Any)  # of keys that are not declared
+            kind, notes = (field.annotation, tuple(field.metadata)) if field else (others[1], ())
             description = field.description if field else None
         elif args := get_args(kind):  # the values of a mapping; the elements of a list are all of one type
             kind, notes = args[1 if get_origin(kind) is dict else 0], ()
@@ -91,6 +93,13 @@ def tags_of(arm: Any) -> tuple[Any, ...]:
     return tuple(tag for literal in literals if get_origin(literal) is Literal for tag in get_args(literal))
 
 
+def choices_of(kind: Any) -> tuple[str, ...]:
+    """The words of a Literal or of an enumeration; empty for other types."""
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return tuple(str(one.value) for one in kind)
+    return tuple(map(str, get_args(kind))) if get_origin(kind) is Literal else ()
+
+
 _SIGNS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 _SCALARS: dict[Any, tuple[str, str]] = {  # one of it, several of it
     float: ("a number", "numbers"),
@@ -109,8 +118,8 @@ def words(kind: Any, notes: tuple[Any, ...], several: bool = False) -> str:
         bounds = " and ".join(f"{sign} {limit:g}" for sign, limit in signs if limit is not None)
         return f"{_SCALARS[kind][several]} {bounds}".strip()
     args, origin = get_args(kind), get_origin(kind)
-    if origin is Literal:
-        return f"one of {', '.join(map(str, args))}"
+    if options := choices_of(kind):
+        return f"one of {', '.join(options)}"
     if origin in (tuple, list):
         count = "" if origin is list or args[-1] is Ellipsis else f"{len(args)} "
         return f"{'lists' if several else 'a list'} of {count}{words(args[0], (), several=True)}"

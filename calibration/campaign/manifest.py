@@ -50,6 +50,7 @@ def _column(value: Any) -> Any:
     return value
 
 
+Use = Literal["fit", "holdout", "ignore"]
 Kind = Literal["decay", "regular", "irregular", "static", "forced"]
 IN_WAVES: tuple[Kind, ...] = ("regular", "irregular")
 Motion = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
@@ -116,7 +117,7 @@ class Test(Schema):
     id: Name
     kind: Kind
     file: Name
-    use: Literal["fit", "holdout", "ignore"] = "fit"
+    use: Use = "fit"
     degree_of_freedom: Motion | None = None
     window: Window | None = None
     channels: dict[str, Override | None] = Field(default_factory=dict)

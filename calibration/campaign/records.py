@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from calibration.campaign.manifest import IN_WAVES, WAVE, Channel, Manifest, Test, quantity
+from calibration.campaign.manifest import IN_WAVES, WAVE, Channel, Manifest, Test, Use, quantity
 from calibration.campaign.release import FreeMotion, free_motion
 from calibration.campaign.signals import missing_code, noise_level, resolution
 from calibration.campaign.tracked_point import move_to_reference, noise_moved_to_reference
@@ -61,7 +61,7 @@ class Record:
 
     id: str
     kind: str
-    use: str
+    use: Use
     degree_of_freedom: str | None
     time: np.ndarray  # (n,) s, on the file's axis
     values: dict[str, np.ndarray]  # motion -> (n,) m, rad

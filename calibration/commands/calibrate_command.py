@@ -22,16 +22,14 @@ from calibration.report import sea_tables, tables
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.report.summary import calibration_sentence, summary_of
 from calibration.report.write_report import write_report
-from calibration.residuals import sea_errors
 from calibration.residuals.measured_seas import Diverged, Options, compare, non_default_options, options_of
 from calibration.residuals.seas import Objective
 from calibration.result import Calibration
-from calibration.results import comparison as seas_results
 from calibration.results.applied_calibration import AppliedCalibration, apply_calibration
-from calibration.results.read_calibration import SavedCalibration, read_saved
+from calibration.results.calibration_file import CalibrationFile, read_saved
 from calibration.results.result_folder import MOTION_FILE, RESULT_FILE
 from calibration.results.write_calibration import NotFinite, write_calibration
-from calibration.results.write_comparison import write_comparison
+from calibration.results.write_comparison import document, write_comparison
 from calibration.results.write_laws import write_laws
 from jaxhydro.cli.console import complain, progress, say, table
 from jaxhydro.dynamics.statics import stable_modes
@@ -156,8 +154,8 @@ def run(
     except NotFinite as error:
         complain(f"not converged: {error}; nothing was written")
         return None
-    saved, source = read_saved(out / RESULT_FILE), str(out / RESULT_FILE)
-    _print_results(saved, source)
+    saved = read_saved(out / RESULT_FILE)
+    _print_results(saved)
     if laws is not None:
         table("Laws over the sea state: error of ln(energy) in bands, root mean square", *laws_table(laws), left=1)
         table("Coefficients of one sea alone | by the chosen law", *states_table(laws), left=1)
@@ -173,19 +171,19 @@ def run(
     say(f"Results are in {out}" if truth is None else f"Open {write_report(out)}")
     if not result.converged:
         complain("not converged: the results are marked so")
-    say(calibration_sentence(summary_of(saved, source)), "bold")
+    say(calibration_sentence(summary_of(saved)), "bold")
     return result
 
 
-def _print_results(saved: SavedCalibration, source: str) -> None:
+def _print_results(saved: CalibrationFile) -> None:
     """Print the tables of a written calibration."""
     heads, rows = tables.parameters(saved)
     table("Parameters", (heads[0], *heads[2:]), [(row[0], *row[2:]) for row in rows])
-    heads, rows = tables.errors(saved, source)
+    heads, rows = tables.errors(saved)
     table("Errors: RMSE over the motion's standard deviation, before and after", heads, rows, left=5)
     if (damping := tables.linear_quadratic(saved))[1]:
         table(tables.CLASSICAL, *damping)
-    if (energies := tables.bands(saved, source))[1]:
+    if (energies := tables.bands(saved))[1]:
         table("Errors of energy in bands", *energies, left=4)
 
 
@@ -244,15 +242,21 @@ def simulate_campaign(
     except Diverged as error:
         complain(f"{error}; nothing was written")
         return False
-    source = None if calibration is None else str(calibration)
-    about = {"campaign": loaded.manifest.name, "platform": loaded.platform.name, "calibration": source}
-    write_comparison(found, seas_results.document(found, options, about, used), out, figures)
-    for note in found.notes:
+    content = document(
+        found,
+        options,
+        campaign=loaded.manifest.name,
+        platform=loaded.platform.name,
+        calibration=None if calibration is None else str(calibration),
+        applied=used,
+    )
+    written = write_comparison(found, content, out, figures)
+    for note in written.warnings:
         complain(f"warning: {note}")
-    table("Waves", *sea_tables.seas_table(found), left=3)
-    table("Motions", *sea_tables.motions_table(found), left=2)
-    say(f"Spectra: {sea_errors.WELCH}")
-    table("Energy in bands", *sea_tables.bands_table(found), left=3)
+    table("Waves", *sea_tables.seas_table(written), left=3)
+    table("Motions", *sea_tables.motions_table(written), left=2)
+    say(f"Spectra: {written.options.spectra}")
+    table("Energy in bands", *sea_tables.bands_table(written), left=3)
     say(f"Results are in {out}, after {clock.monotonic() - begun:.0f} s")
     return True
 

@@ -7,12 +7,12 @@ from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.manifest import IN_WAVES
 from calibration.commands.calibrate_command import load
 from calibration.discovery.checkpoint import CHECKPOINT_FILE
-from calibration.discovery.diagnosis import Diagnosis
+from calibration.discovery.diagnosis import Diagnosis, Outcome
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
 from calibration.report import tables as calibrations
 from calibration.residuals.measured_seas import Diverged
-from calibration.results.read_diagnosis import SavedDiagnosis, read_diagnosis
+from calibration.results.diagnosis_file import DiagnosisFile, read_diagnosis
 from calibration.results.result_folder import DIAGNOSIS_FILE
 from calibration.results.write_calibration import NotFinite
 from calibration.results.write_diagnosis import write_diagnosis
@@ -66,12 +66,12 @@ def mark_unfinished(partial: Diagnosis) -> Diagnosis:
 
     That nothing is missing is for a whole search to say: the verdict of a stopped one is then "unexplained".
     """
-    verdict = "unexplained" if partial.verdict == "nothing_missing" else partial.verdict
+    verdict = Outcome.UNEXPLAINED if partial.verdict == Outcome.NOTHING_MISSING else partial.verdict
     fitted, notes = replace(partial.augmented, converged=False), (words.STOPPED, *partial.notes)
     return replace(partial, augmented=fitted, notes=notes, verdict=verdict, complete=False)
 
 
-def show_diagnosis(saved: SavedDiagnosis, notes: list[str]) -> None:
+def show_diagnosis(saved: DiagnosisFile, notes: list[str]) -> None:
     """Print what was found, errors before and after, what was rejected, and the verdict last, where one looks first."""
     if (rows := tables.anatomy(saved))[1]:
         table("What the declared model, fitted, leaves over", *rows, left=4)

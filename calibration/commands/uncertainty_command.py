@@ -12,15 +12,14 @@ from calibration.commands.calibrate_command import load
 from calibration.fitting.decay_fit import Progress, run_fit
 from calibration.formatting import number
 from calibration.results.applied_calibration import unknown_values_error
-from calibration.results.read_calibration import SavedCalibration, read_as, read_saved
-from calibration.results.read_uncertainty import (
-    SavedUncertainty,
+from calibration.results.calibration_file import CalibrationFile, read_saved
+from calibration.results.result_folder import RESULT_FILE
+from calibration.results.uncertainty_file import (
     interval_sentence,
     intervals_table,
     other_intervals_table,
     summary_of,
 )
-from calibration.results.result_folder import RESULT_FILE, UNCERTAINTY_FILE
 from calibration.results.write_uncertainty import Uncertainty, write_uncertainty
 from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats, repeats
 from calibration.uncertainty.likelihood import Likelihood, likelihood_of, restored_fit
@@ -62,8 +61,7 @@ def quantify(
     bootstraps = {} if draws is None else _run_bootstrap(likely, draws, seed)
     samples = _run_nuts(likely, seed) if nuts else None
     found = Uncertainty(saved, str(calibration), likely, level, seed, along, draws or 0, bootstraps, samples, nuts)
-    write_uncertainty(found, out, figures)
-    written = read_as(SavedUncertainty, out / UNCERTAINTY_FILE)
+    written = write_uncertainty(found, out, figures)
     table(f"Parameters, {written.percent} intervals by Laplace, with coloured errors", *intervals_table(written))
     if (rows := other_intervals_table(written))[1]:
         table(f"{written.percent} intervals in other ways", *rows)
@@ -89,7 +87,7 @@ def _check(draws: int | None, nuts: bool, level: float) -> None:
         raise InputError("--nuts", [Problem("", "numpyro", "that it is not installed", "pip install 'jaxhydro[nuts]'")])
 
 
-def read_finished_calibration(campaign: Campaign, path: Path) -> SavedCalibration:
+def read_finished_calibration(campaign: Campaign, path: Path) -> CalibrationFile:
     """The finished calibration of the campaign's decays in a calibration.json. Raises InputError for what is none."""
     saved = read_saved(path)
     for fault in _faults(saved, campaign):
@@ -100,7 +98,7 @@ def read_finished_calibration(campaign: Campaign, path: Path) -> SavedCalibratio
     return saved
 
 
-def _faults(saved: SavedCalibration, campaign: Campaign) -> Iterator[Problem]:
+def _faults(saved: CalibrationFile, campaign: Campaign) -> Iterator[Problem]:
     if saved.augmented is not None:
         yield Problem("", f"a {RESULT_FILE}, as `jaxhydro calibrate` writes it", "a diagnosis")
     if saved.campaign != campaign.manifest.name:
@@ -125,7 +123,7 @@ def _faults(saved: SavedCalibration, campaign: Campaign) -> Iterator[Problem]:
             yield Problem(f"baseline.parameters.{label}.start", "the value that the fit began from", "nothing")
 
 
-def match_labels(profiles: Sequence[str], saved: SavedCalibration) -> list[str]:
+def match_labels(profiles: Sequence[str], saved: CalibrationFile) -> list[str]:
     """The parameters that labels or patterns (`column.*`) name, each once. Raises InputError for what names none."""
     known = list(saved.values())
     for one in profiles:
@@ -136,7 +134,7 @@ def match_labels(profiles: Sequence[str], saved: SavedCalibration) -> list[str]:
 
 
 def _likelihood(
-    campaign: Campaign, saved: SavedCalibration, path: Path, labels: Sequence[str], level: float
+    campaign: Campaign, saved: CalibrationFile, path: Path, labels: Sequence[str], level: float
 ) -> tuple[Likelihood, dict[str, Profile]]:
     """The calibration's likelihood, and profiles along parameters."""
     share, found = REFIT_TIME_SHARE if labels else 1.0, saved.baseline.parameters
@@ -159,7 +157,7 @@ def _likelihood(
     return likely, along
 
 
-def _check_same_fit(likely: Likelihood, there: np.ndarray, saved: SavedCalibration, path: Path) -> None:
+def _check_same_fit(likely: Likelihood, there: np.ndarray, saved: CalibrationFile, path: Path) -> None:
     """Raises InputError where a fit to the campaign's decays does not end at the file's values."""
     p = len(likely.labels)
     moved = np.abs(likely.estimate[:p] - there) / likely.deviation()

@@ -1,12 +1,28 @@
 """Result of a diagnosis: effects with evidence, scores, residuals, latent forces."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
 from calibration.discovery.acceptance import Verdict
 from calibration.residuals.measured_seas import Options
 from calibration.result import Calibration, Estimate
+
+
+class Outcome(StrEnum):
+    """Outcome of a diagnosis.
+
+    Attributes:
+        FOUND: The declared model lacks effects, which are named.
+        NOTHING_MISSING: The records show nothing that the declared model lacks.
+        UNEXPLAINED: The declared model lacks something that no effect explains; effects, if any, are all in doubt.
+    """
+
+    FOUND = "found"
+    NOTHING_MISSING = "nothing_missing"
+    UNEXPLAINED = "unexplained"
+
 
 # reason for doubt in an effect: the effects increase the held-out error, in all or in the effect's motion
 HELD_OUT_ERROR = "held_out_error"
@@ -238,7 +254,7 @@ class Diagnosis:
 
     Attributes:
         campaign: Name of the campaign.
-        verdict: "found", "nothing_missing" or "unexplained". The last may have effects, all in doubt.
+        verdict: Outcome of the diagnosis.
         baseline: Fit of the declared model.
         augmented: Fit of the model with the effects found.
         effects: The effects found.
@@ -251,13 +267,13 @@ class Diagnosis:
         next_test: The test to do next, in words.
         notes: Notes and doubts, in words.
         seconds: Computing time (s).
-        latent: Missing forces by motion, where the verdict is "unexplained".
+        latent: Missing forces by motion, where something is unexplained.
         seas: How waves are reconstructed and act.
         complete: False where the search was stopped before its end.
     """
 
     campaign: str
-    verdict: str
+    verdict: Outcome
     baseline: Calibration
     augmented: Calibration
     effects: tuple[Effect, ...]

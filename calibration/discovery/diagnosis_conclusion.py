@@ -10,7 +10,7 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
-from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding
+from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding, Outcome
 from calibration.discovery.doubts import doubted_effects, doubts_of
 from calibration.discovery.effects.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.effects.effect_names import effect_in_words
@@ -63,9 +63,9 @@ def conclude(
     left = anatomy(search, after)
     more = unexplained_motions(search, left)
     sure = [one for one in effects if one.in_doubt is None]
-    verdict = "found" if sure else ("unexplained" if effects or more else "nothing_missing")
+    verdict = Outcome.FOUND if sure else (Outcome.UNEXPLAINED if effects or more else Outcome.NOTHING_MISSING)
     lost = records_not_followed([test for test in augmented.tests if test.kind == "decay"], search.setup.declared)
-    latent = latent_of(search, augmented) if verdict == "unexplained" else ()
+    latent = latent_of(search, augmented) if verdict == Outcome.UNEXPLAINED else ()
     return Diagnosis(
         campaign.manifest.name,
         verdict,
@@ -98,9 +98,9 @@ def unexplained_motions(search: Search, left: Sequence[Finding]) -> list[Finding
     return sorted(more, key=lambda one: -one.relative)
 
 
-def next_test(search: Search, after: FitState, verdict: str) -> str:
+def next_test(search: Search, after: FitState, verdict: Outcome) -> str:
     """The test that would tell the effects found from others; without any, that of the best rejected one."""
-    if verdict == "unexplained":
+    if verdict == Outcome.UNEXPLAINED:
         tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
         best = max(tried, key=lambda one: one.verdict.bic if one.verdict else 0.0, default=None)
         name = None if best is None else (best.effect, best.degree_of_freedom)

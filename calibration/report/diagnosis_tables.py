@@ -10,8 +10,8 @@ from calibration.report.diagnosis_words import (
     sorted_by_certainty,
     validation_tests,
 )
-from calibration.results.read_calibration import Parameter
-from calibration.results.read_diagnosis import SavedDiagnosis
+from calibration.results.calibration_file import Parameter
+from calibration.results.diagnosis_file import DiagnosisFile
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
 USE_ORDER = list(USE)
@@ -24,7 +24,7 @@ VARIED = (
 )
 
 
-def tests(saved: SavedDiagnosis) -> Rows:
+def tests(saved: DiagnosisFile) -> Rows:
     """What was measured."""
     rows = []
     for id, one in saved.tests.items():
@@ -34,7 +34,7 @@ def tests(saved: SavedDiagnosis) -> Rows:
     return ("Test", "Kind", "File", "Use", "Length"), rows
 
 
-def effects(saved: SavedDiagnosis) -> Rows:
+def effects(saved: DiagnosisFile) -> Rows:
     """What was found: a row for every parameter."""
     rows = []
     for one in saved.missing.effects:
@@ -49,34 +49,35 @@ def effects(saved: SavedDiagnosis) -> Rows:
     return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", f"Gain over {validation_tests(saved)}"), rows
 
 
-def errors(saved: SavedDiagnosis, source: str = "diagnosis.json") -> Rows:
+def errors(saved: DiagnosisFile) -> Rows:
     """RMSE over the motion's standard deviation, before and after, of what counts in J; fitted tests first."""
-    before, after = saved.errors(source), saved.errors(source, "augmented")
+    before = {id: one.channels for id, one in saved.baseline.error.items()}
     rows = []
-    for id, channels in sorted(after.items(), key=lambda item: _order(saved, item[0])):
+    for id in sorted(saved.augmented.error, key=lambda id: _order(saved, id)):
         use = _use(saved, id)
-        for name, error in channels.items():
+        for name, error in saved.augmented.error[id].channels.items():
             if error.in_objective:
                 was = before.get(id, {}).get(name)
                 both = percent(was.relative if was else None), percent(error.relative)
-                rows.append((id, USE.get(use, use), name, *both, f"{number(error.rmse, 2)} {error.unit}"))
+                rows.append((id, USE[use], name, *both, f"{number(error.rmse, 2)} {error.unit}"))
     return ("Test", "Use", "Motion", "Before", "After", "RMSE after"), rows
 
 
-def bands(saved: SavedDiagnosis) -> Rows:
+def bands(saved: DiagnosisFile) -> Rows:
     """Errors of energy in the bands of tests in irregular waves."""
     rows = []
     for id in sorted(saved.augmented.error, key=lambda id: _order(saved, id)):
-        there, was = (fitted.error.get(id, {}).get("bands") or {} for fitted in (saved.augmented, saved.baseline))
-        for channel, row in there.items():
+        before = saved.baseline.error.get(id)
+        was = before.bands if before else {}
+        for channel, row in saved.augmented.error[id].bands.items():
             for band, value in row.items():
                 then = was.get(channel, {}).get(band)
                 use = _use(saved, id)
-                rows.append((id, USE.get(use, use), channel, BANDS.get(band, band), percent(then), percent(value)))
+                rows.append((id, USE[use], channel, BANDS.get(band, band), percent(then), percent(value)))
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
-def coefficients(saved: SavedDiagnosis) -> Rows:
+def coefficients(saved: DiagnosisFile) -> Rows:
     """Every fitted parameter as declared, before and after, the effects' own among those after."""
     rows = []
     for label, was, now in _parameters(saved, nearly_known=False):
@@ -86,7 +87,7 @@ def coefficients(saved: SavedDiagnosis) -> Rows:
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit", "Moved by"), rows
 
 
-def nearly_known(saved: SavedDiagnosis) -> Rows:
+def nearly_known(saved: DiagnosisFile) -> Rows:
     """The same of those that are let vary though nobody declared them."""
     rows = [_of_parameter(*one) for one in _parameters(saved, nearly_known=True)]
     return ("Parameter", "Declared", "Fitted before", "Fitted after", "Unit"), rows
@@ -96,7 +97,7 @@ def _moved(ratio: float) -> str:
     return f"{100 * ratio:+.2g} %" if abs(ratio) < 0.995 else f"{100 * ratio:+.0f} %"
 
 
-def _parameters(saved: SavedDiagnosis, nearly_known: bool) -> list[tuple[str, Parameter | None, Parameter | None]]:
+def _parameters(saved: DiagnosisFile, nearly_known: bool) -> list[tuple[str, Parameter | None, Parameter | None]]:
     """Labels, and what is fitted of them before and after."""
     before, after = saved.baseline.parameters, saved.augmented.parameters
     labels = [label for label in dict.fromkeys([*before, *after]) if label.startswith(NEARLY_KNOWN) == nearly_known]
@@ -109,7 +110,7 @@ def _of_parameter(label: str, was: Parameter | None, now: Parameter | None) -> t
     return label, number(was.start if was is not None else None, 3), _value(was), _value(now), readable_unit(unit)
 
 
-def rejected(saved: SavedDiagnosis) -> Rows:
+def rejected(saved: DiagnosisFile) -> Rows:
     """What was tried and is not in the model, together where it is for the same reason."""
     reasons: dict[str, list[str]] = {}
     for one in saved.missing.rejected:
@@ -118,7 +119,7 @@ def rejected(saved: SavedDiagnosis) -> Rows:
     return ("Effect", "Why not"), rows
 
 
-def anatomy(saved: SavedDiagnosis) -> Rows:
+def anatomy(saved: DiagnosisFile) -> Rows:
     """The residual before, motion by motion, the largest first, and what became of it."""
     after = {(one.test, one.channel): one for one in saved.anatomy.after}
     rows = []
@@ -146,10 +147,9 @@ def _value(one: Parameter | None) -> str:
     return f"{text}, at its bound" if one.at_bound else text
 
 
-def _use(saved: SavedDiagnosis, id: str) -> str:
-    return str(saved.augmented.error.get(id, {}).get("use", ""))
+def _use(saved: DiagnosisFile, id: str) -> str:
+    return saved.augmented.error[id].use
 
 
-def _order(saved: SavedDiagnosis, id: str) -> int:
-    use = _use(saved, id)
-    return USE_ORDER.index(use) if use in USE_ORDER else len(USE_ORDER)
+def _order(saved: DiagnosisFile, id: str) -> int:
+    return USE_ORDER.index(_use(saved, id))

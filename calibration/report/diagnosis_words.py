@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
-from calibration.discovery.diagnosis import HELD_OUT_ERROR
+from calibration.discovery.diagnosis import HELD_OUT_ERROR, Outcome
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
 from calibration.formatting import listed, number, percent, quantity
-from calibration.results.read_calibration import Parameter
-from calibration.results.read_diagnosis import SavedDiagnosis, SavedEffect, SavedEvidence
+from calibration.results.calibration_file import Parameter
+from calibration.results.diagnosis_file import DiagnosisFile, Evidence, FoundEffect
 from calibration.vocabulary import UNDETERMINED
 
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
@@ -50,32 +50,32 @@ def describe_parameter(name: str, one: Parameter) -> str:
     return f"{plain_name(name)} {text}{more}"
 
 
-def validation_tests(saved: SavedDiagnosis) -> str:
+def validation_tests(saved: DiagnosisFile) -> str:
     """What the gain of an effect was found on: tests that were held out, or blocks of the fitted tests left out in turn."""
-    held = any(row.get("use") == "holdout" for row in saved.augmented.error.values())
+    held = any(row.use == "holdout" for row in saved.augmented.error.values())
     return "held-out tests" if held else "blocks of the fitted tests left out in turn"
 
 
-def verdict_sentence(saved: SavedDiagnosis) -> str:
+def verdict_sentence(saved: DiagnosisFile) -> str:
     """What a project lead has to know, in one sentence."""
     missing = saved.missing
     named = [(effect_in_words(one.effect, one.degree_of_freedom), one.in_doubt is None) for one in missing.effects]
     names, doubted = (listed([name for name, sure in named if sure is kind]) for kind in (True, False))
     if not saved.complete and not named:
         return UNFINISHED
-    if missing.verdict == "found":
+    if missing.verdict == Outcome.FOUND:
         more = f" {capitalised(doubted)} may stand for something else (see below)." if doubted else ""
         until = "" if saved.complete else " This is what was found until the search was stopped."
         return f"The declared model lacks {names}: {error_reduction(saved)}.{more}{until}"
     if not saved.converged and not named:
         return UNFINISHED
-    if missing.verdict == "nothing_missing":
+    if missing.verdict == Outcome.NOTHING_MISSING:
         return "These records show nothing that the declared model lacks: no effect that was tried survives."
     lacks = "The declared model lacks something, and no effect that was tried explains it"
     return f"{lacks}; {doubted} may stand for it: {error_reduction(saved)}." if doubted else f"{lacks}."
 
 
-def error_reduction(saved: SavedDiagnosis) -> str:
+def error_reduction(saved: DiagnosisFile) -> str:
     """How much smaller errors are, of the held-out tests where there are any."""
     before, after = saved.baseline.objective, saved.augmented.objective
     many, doubted = len(saved.missing.effects) > 1, any(one.in_doubt is not None for one in saved.missing.effects)
@@ -98,14 +98,23 @@ def describe_change(before: float, after: float) -> str:
     return f"{word} by {percent(abs(share))} (J from {number(before, 3)} to {number(after, 3)})"
 
 
-def evidence_strength(evidence: SavedEvidence) -> str:
+def objectives_sentence(saved: DiagnosisFile) -> str:
+    """Objective before and after, of the fitted tests and of those held out."""
+    before, after = saved.baseline.objective, saved.augmented.objective
+    said = f"The error of the fitted tests {describe_change(before.fit, after.fit)}"
+    if before.holdout is not None and after.holdout is not None:
+        said += f", that of the held-out tests {describe_change(before.holdout, after.holdout)}"
+    return f"{said}."
+
+
+def evidence_strength(evidence: Evidence) -> str:
     """The evidence's weight by BIC, in the words of Kass and Raftery."""
     if evidence.delta_bic is None:
         return "unknown"
     return next((word for limit, word in EVIDENCE_STRENGTHS if evidence.delta_bic > limit), "none")
 
 
-def describe_certainty(saved: SavedDiagnosis, one: SavedEffect) -> list[str]:
+def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
     """How sure an effect is: sentences with their numbers."""
     evidence = one.evidence
     said = []
@@ -132,7 +141,7 @@ def describe_certainty(saved: SavedDiagnosis, one: SavedEffect) -> list[str]:
     return said
 
 
-def describe_alternatives(one: SavedEffect) -> str:
+def describe_alternatives(one: FoundEffect) -> str:
     """What else it could be, and the test that would tell."""
     names = listed([effect_in_words(other) for other in one.indistinguishable_from])
     said = f"These records cannot tell it from {names}." if names else ""
@@ -158,7 +167,7 @@ def describe_alternatives(one: SavedEffect) -> str:
     return said.strip()
 
 
-def describe_unexplained(saved: SavedDiagnosis) -> str:
+def describe_unexplained(saved: DiagnosisFile) -> str:
     """What nothing explains."""
     left = saved.missing.unexplained
     share = f"{percent(left.share)} of the squared error above the noise, motion by motion, is left unexplained"

@@ -2,17 +2,13 @@
 
 import math
 
-import numpy as np
-
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.campaign.signals import wave_height
 from calibration.formatting import number, percent
-from calibration.residuals.measured_seas import Comparison
-from calibration.residuals.sea_errors import amplitude, channels, in_bands, moving
+from calibration.results.comparison_file import ComparisonFile, Pair
 from calibration.vocabulary import Rows
-from jaxhydro.units import unit_of
 
+MOMENTS = ("mean", "standard_deviation")
 BAND_NAMES = {"low_frequency": "low", "wave_frequency": "wave"}
 
 
@@ -23,47 +19,45 @@ def counted(campaign: Campaign) -> str:
     return f"{waves} {'test' if waves == 1 else 'tests'} in waves" + (f"; left aside: {others}" if others else "")
 
 
-def seas_table(found: Comparison) -> Rows:
+def seas_table(found: ComparisonFile) -> Rows:
     """Height of every sea as stated, measured and simulated at the gauge."""
     rows = []
-    for test in found.tests:
-        irregular = test.fit.kind == "irregular"
-        heights = [number(wave_height(x, irregular), 3) for x in (test.wave, test.simulated_wave)]
-        stated = number(test.stated_height, 3)
-        rows.append((test.fit.id, test.fit.kind, test.fit.use, stated, *heights, number(test.peak_period, 3)))
+    for id, test in found.tests.items():
+        heights = test.significant_wave_height or test.wave_height
+        both = [number(x, 3) for x in (heights.measured, heights.simulated)] if heights else ["–", "–"]
+        stated, period = number(test.stated_height, 3), number(test.peak_period, 3)
+        rows.append((id, test.kind, found.error[id].use, stated, *both, period))
     return ("Test", "Waves", "Use", "Height stated (m)", "Measured (m)", "Simulated (m)", "Period (s)"), rows
 
 
-def motions_table(found: Comparison) -> Rows:
+def motions_table(found: ComparisonFile) -> Rows:
     """Mean, standard deviation and RMSE of the motions that matter."""
     rows = []
-    for test in found.tests:
-        both, relative = channels(test), {s.channel: s.relative for s in test.fit.series}
-        for name in moving(test):
-            cells = [number(float(f(x)), 3) for f in (np.mean, np.std) for x in both[name]]
-            rows.append((test.fit.id, f"{name} ({unit_of(name)})", *cells, percent(relative[name])))
+    for id, test in found.tests.items():
+        for name, error in found.error[id].channels.items():
+            one = test.statistics[name]
+            if one.moving:
+                means, deviations = ([number(getattr(x, key), 3) for x in (one.measured, one.simulated)] for key in MOMENTS)
+                rows.append((id, f"{name} ({one.unit})", *means, *deviations, percent(error.relative)))
     heads = ("Test", "Motion", "Mean measured", "Mean simulated", "SD measured", "SD simulated", "RMSE / SD")
     return heads, rows
 
 
-def bands_table(found: Comparison) -> Rows:
+def bands_table(found: ComparisonFile) -> Rows:
     """Band integrals per sea state and motion; of regular waves amplitudes."""
     rows = []
-    for test in found.tests:
-        if test.fit.kind == "regular":
-            for name, pair in channels(test).items():
-                if name == "wave" or name in moving(test):
-                    a, b = (amplitude(test, x) for x in pair)
-                    rows.append((test.fit.id, f"{name} ({unit_of(name)})", "amplitude", *_cells(a, b)))
-            continue
-        for name, row in in_bands(test).items():
-            if name == "wave" or name in moving(test):
-                for key, band in row.items():
-                    limits = f"{BAND_NAMES[key]}, {band.low:g}-{band.high:g} Hz"
-                    rows.append((test.fit.id, f"{name} ({unit_of(name)}²)", limits, *_cells(band.measured, band.simulated)))
+    for id, test in found.tests.items():
+        units = {name: one.unit for name, one in test.statistics.items() if one.moving}
+        for name, unit in units.items():
+            if name in test.amplitude:
+                rows.append((id, f"{name} ({unit})", "amplitude", *_cells(test.amplitude[name])))
+            for key, one in test.bands.get(name, {}).items():
+                limits = f"{BAND_NAMES[key]}, {one.band[0]:g}-{one.band[1]:g} Hz"
+                rows.append((id, f"{name} ({unit}²)", limits, *_cells(one)))
     return ("Test", "Channel", "Band", "Measured", "Simulated", "Error"), rows
 
 
-def _cells(measured: float, simulated: float) -> tuple[str, str, str]:
-    off = 100 * (simulated / measured - 1) if measured > 0 else math.nan
-    return number(measured, 3), number(simulated, 3), f"{round(off) or 0:+d} %" if math.isfinite(off) else "–"
+def _cells(one: Pair) -> tuple[str, str, str]:
+    off = 100 * (one.simulated / one.measured - 1) if one.measured > 0 else math.nan
+    error = f"{round(off) or 0:+d} %" if math.isfinite(off) else "–"
+    return number(one.measured, 3), number(one.simulated, 3), error

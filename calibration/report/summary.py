@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from calibration.fitting.fit_conclusion import NOT_FOLLOWED_ERROR
 from calibration.formatting import counted, listed, percent, percent_span
-from calibration.results.read_calibration import ChannelError, Parameter, SavedCalibration
+from calibration.results.calibration_file import CalibrationFile, ChannelError, Parameter
 
 KINDS = {"decay": "decay", "regular": "test", "irregular": "test"}
 WAVES_PHRASES = {"regular": " in regular waves", "irregular": " in irregular waves"}
@@ -56,14 +56,14 @@ class CalibrationSummary(NamedTuple):
         return self.converged and not self.not_followed and not self.far_off
 
 
-def summary_of(saved: SavedCalibration, source: str) -> CalibrationSummary:
-    """The summary of a calibration.json. Raises InputError for errors in the file that are none, `source` being its name."""
-    errors, bands = saved.errors(source), saved.bands(source)
+def summary_of(saved: CalibrationFile) -> CalibrationSummary:
+    """Summary of a calibration."""
+    errors, bands = {id: one.channels for id, one in saved.baseline.error.items()}, saved.bands()
     groups: dict[tuple[str, str], list[str]] = {}
     lost: dict[str, float] = {}
     far: dict[str, FarOff] = {}
     for id, channels in errors.items():
-        kind, use = _kind(saved, id), str(saved.baseline.error[id].get("use", ""))
+        kind, use = _kind(saved, id), saved.baseline.error[id].use
         if use in ("fit", "holdout"):
             groups.setdefault((use, kind), []).append(id)
         scored = [one.relative for one in channels.values() if one.in_objective]
@@ -87,7 +87,7 @@ def _is_determined(one: Parameter) -> bool:
     return one.identifiable and not one.at_bound and (one.standard_deviation or 0.0) <= abs(one.value)
 
 
-def _kind(saved: SavedCalibration, id: str) -> str:
+def _kind(saved: CalibrationFile, id: str) -> str:
     return saved.tests[id].kind if id in saved.tests else ""
 
 

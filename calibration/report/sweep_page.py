@@ -1,19 +1,16 @@
 """HTML page of a sweep: extremes, statistics over the life, failed runs."""
 
 from collections.abc import Iterator
-from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
-from pydantic import Field
-
 from calibration.formatting import counted, number, percent
 from calibration.formatting import listed as joined
-from calibration.report.web_page import embedded, figures, framed, listed, result_box, table, warning_box
-from calibration.results.read_calibration import ReferenceSeaState, ResultModel
+from calibration.report.web_page import embedded, render
+from calibration.vocabulary import Rows
 from jaxhydro.environment import DOFS
-from jaxhydro.errors import Number
 from jaxhydro.sweep.cases import runs_in_words
+from jaxhydro.sweep.sweep_results import SweepResults
 
 FIGURES = {
     "scatter.png": (
@@ -24,95 +21,16 @@ FIGURES = {
         "seed's, and of all seeds together."
     ),
 }
-_LIFE = """<p>Over the life every run counts by the probability of its sea state and heading. Spreads are standard deviations
-from seed to seed; the maximum of a seed is the largest of its runs, averaged over seeds, the maximum of all that of all runs.
-Equivalent ranges do the same damage as all cycles{frequency}, for S-N curves of the exponent m.</p>"""
-
-
-class Runs(ResultModel):
-    """How many there are, and what became of them."""
-
-    total: int
-    done: int
-    failed: int
-
-
-class Life(ResultModel):
-    """Lifetime statistics of a channel, in its unit."""
-
-    unit: str
-    mean: Number | None = None
-    standard_deviation: Number | None = None
-    standard_deviation_spread: Number | None = None
-    maximum_of_seed: Number | None = None
-    maximum_spread: Number | None = None
-    minimum_of_seed: Number | None = None
-    maximum: Number | None = None
-    minimum: Number | None = None
-    damage_equivalent_range: dict[str, Number | None] = Field(default_factory=dict)
-
-
-class Failure(ResultModel):
-    """Runs of a sea state (m, s) that failed alike, from headings (deg) with seeds, and why."""
-
-    hs: Number
-    tp: Number
-    gamma: Number | None = None
-    headings: list[Number]
-    seeds: list[int]
-    runs: int
-    reason: str
-
-
-class Heading(ResultModel):
-    """Where waves run to (deg), and its share of the life."""
-
-    heading: Number
-    probability: Number
-
-
-class Options(ResultModel):
-    """What all runs share: s, Hz."""
-
-    duration: Number
-    start: Number
-    time_step: Number
-    step: Number
-    spectrum: str
-    amplitudes: str
-    low: Number
-    cutoff: Number
-    order: int
-    stretching: str
-    diffraction: str
-    equivalent_frequency: Number
-
-
-class Used(ResultModel):
-    """A calibration's file, and the values that were used of it, by label."""
-
-    file: str
-    values: dict[str, Number]
-    sea_state_reference: ReferenceSeaState | None = None
-
-
-class SavedSweep(ResultModel):
-    """sweep.json."""
-
-    sweep: str
-    platform: str
-    source: str
-    runs: Runs
-    sea_states: int
-    cases: int
-    headings: list[Heading]
-    seeds: list[int]
-    options: Options
-    probability_without_runs: Number = 0.0
-    lifetime: dict[str, Life]
-    failures: list[Failure] = Field(default_factory=list)
-    notes: list[str] = Field(default_factory=list)
-    calibration: Used | None = None
+STATISTICS = {
+    "mean": "Mean",
+    "standard_deviation": "Standard deviation",
+    "standard_deviation_spread": "Spread of it",
+    "maximum_of_seed": "Maximum of a seed",
+    "maximum_spread": "Spread of that",
+    "minimum_of_seed": "Minimum of a seed",
+    "maximum": "Maximum of all",
+    "minimum": "Minimum of all",
+}
 
 
 class SweepSummary(NamedTuple):
@@ -123,7 +41,7 @@ class SweepSummary(NamedTuple):
     extremes: dict[str, tuple[float, float, str]]
 
 
-def summary_of(saved: SavedSweep) -> SweepSummary:
+def summary_of(saved: SweepResults) -> SweepSummary:
     """The summary of a sweep.json."""
     extremes = {
         channel: (one.minimum, one.maximum, one.unit)
@@ -144,43 +62,28 @@ def sweep_sentence(summary: SweepSummary) -> str:
     return f"{runs}; extremes over the life: {joined(said)}." if said and done else f"{runs}."
 
 
-def page(saved: SavedSweep, folder: Path) -> str:
-    """The page's text. Whatever comes from files is escaped; images are part of the page."""
-    version = saved.source.removeprefix("jaxhydro ")
-    return framed(f"{saved.platform}: {saved.sweep}", f"Sweep by jaxhydro {version}", _parts(saved, folder), version)
-
-
-def _parts(saved: SavedSweep, folder: Path) -> Iterator[str]:
-    runs = saved.runs
-    if runs.failed:
-        share = percent(saved.probability_without_runs)
-        lost = f"{share} of the life is without a run, and what follows is of the rest"
-        yield warning_box(f"{runs.failed} of {runs.total} runs failed; {lost}.")
-    yield result_box(sweep_sentence(summary_of(saved)))
-    if runs.done:
-        yield f"<h2>Over the life</h2>{_LIFE.format(frequency=f' at {number(saved.options.equivalent_frequency, 3)} Hz')}"
-        yield from _lifetimes(saved)
-    yield "<h2>What was run</h2>"
-    yield table(["Property", "Value"], list(_run(saved)), 2)
-    if saved.calibration is not None:
-        values = ", ".join(f"{label} = {number(value)}" for label, value in saved.calibration.values.items())
-        counted = ""
-        if (reference := saved.calibration.sea_state_reference) is not None:
-            hs, tp = number(reference.significant_height, 3), number(reference.peak_period, 3)
-            counted = f"; exponents count from Hs {hs} m, Tp {tp} s"
-        yield f"<p>With the values of {escape(saved.calibration.file)}: {escape(values)}{counted}.</p>"
-    if saved.notes:
-        yield f"<h2>Notes</h2>{listed(saved.notes)}"
-    if saved.failures:
-        yield "<h2>Failed</h2>"
-        yield listed(
+def page(saved: SweepResults, folder: Path) -> str:
+    """Text of the page of a sweep, whose figures are in a folder."""
+    lost = f"{percent(saved.probability_without_runs)} of the life is without a run, and what follows is of the rest"
+    return render(
+        "sweep",
+        title=f"{saved.platform}: {saved.sweep}",
+        by="Sweep",
+        version=saved.source.removeprefix("jaxhydro "),
+        saved=saved,
+        failed=f"{saved.runs.failed} of {saved.runs.total} runs failed; {lost}.",
+        sentence=sweep_sentence(summary_of(saved)),
+        statistics=_statistics(saved),
+        ranges=_ranges(saved),
+        properties=list(_run(saved)),
+        failures=[
             f"{runs_in_words((one.hs, one.tp, one.gamma), one.headings, one.seeds)}: {one.reason}" for one in saved.failures
-        )
-    drawn = figures(embedded(folder / name, caption) for name, caption in FIGURES.items() if (folder / name).is_file())
-    yield f"<h2>Figures</h2>{drawn}" if drawn else ""
+        ],
+        images=embedded({folder / name: caption for name, caption in FIGURES.items()}).values(),
+    )
 
 
-def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
+def _run(saved: SweepResults) -> Iterator[tuple[str, str]]:
     how, seeds = saved.options, len(saved.seeds)
     headings = ", ".join(f"{one.heading:g} deg ({percent(one.probability)})" for one in saved.headings)
     yield "Runs", f"{saved.runs.done} of {saved.runs.total} done"
@@ -197,27 +100,20 @@ def _run(saved: SavedSweep) -> Iterator[tuple[str, str]]:
     yield "Records every, steps of at most", f"{how.time_step:g} s, {number(how.step, 3)} s"
 
 
-def _lifetimes(saved: SavedSweep) -> Iterator[str]:
-    """Statistics of every channel, then its equivalent ranges: as two tables, since one would be wider than a page."""
-    heads = [
-        "Channel",
-        "Mean",
-        "Standard deviation",
-        "Spread of it",
-        "Maximum of a seed",
-        "Spread of that",
-        "Minimum of a seed",
-        "Maximum of all",
-        "Minimum of all",
+def _statistics(saved: SweepResults) -> Rows:
+    """Statistics of every channel."""
+    rows = [
+        (f"{channel} ({one.unit})", *(number(getattr(one, name)) for name in STATISTICS))
+        for channel, one in saved.lifetime.items()
     ]
-    rows = []
-    for channel, one in saved.lifetime.items():
-        values = [one.mean, one.standard_deviation, one.standard_deviation_spread, one.maximum_of_seed, one.maximum_spread]
-        values += [one.minimum_of_seed, one.maximum, one.minimum]
-        rows.append([f"{channel} ({one.unit})", *map(number, values)])
-    yield table(heads, rows)
+    return ("Channel", *STATISTICS.values()), rows
+
+
+def _ranges(saved: SweepResults) -> Rows:
+    """Equivalent ranges of every channel: a table of its own, since one would be wider than a page."""
     exponents = list(dict.fromkeys(m for one in saved.lifetime.values() for m in one.damage_equivalent_range))
-    if exponents:
-        heads = ["Channel", *(f"Equivalent range, m = {m}" for m in exponents)]
-        ranges = {f"{channel} ({one.unit})": one.damage_equivalent_range for channel, one in saved.lifetime.items()}
-        yield table(heads, [[channel, *(number(by.get(m)) for m in exponents)] for channel, by in ranges.items()])
+    rows = [
+        (f"{channel} ({one.unit})", *(number(one.damage_equivalent_range.get(m)) for m in exponents))
+        for channel, one in saved.lifetime.items()
+    ]
+    return ("Channel", *(f"Equivalent range, m = {m}" for m in exponents)), rows

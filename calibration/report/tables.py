@@ -10,7 +10,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.formatting import LARGEST_PERCENT, counted, number, percent, readable_unit, with_deviation
 from calibration.result import Calibration
-from calibration.results.read_calibration import ChannelError, Parameter, SavedCalibration
+from calibration.results.calibration_file import CalibrationFile, ChannelError, Parameter
 from calibration.vocabulary import BANDS, KINDS, UNDETERMINED, USE, Rows
 
 CLASSICAL = "Classical analysis of the decays: x'' + p x' + q x'|x'| + w² x = 0"
@@ -33,7 +33,7 @@ def findings(found: Iterable[Finding]) -> Rows:
     ]
 
 
-def parameters(saved: SavedCalibration) -> Rows:
+def parameters(saved: CalibrationFile) -> Rows:
     """Meaning, start, value and standard deviation of every coefficient."""
     rows = [
         (label, one.meaning, number(one.start, 3), value_text(one), readable_unit(one.unit))
@@ -48,26 +48,27 @@ def value_text(one: Parameter) -> str:
     return f"{text}, at its bound" if one.at_bound else text
 
 
-def errors(saved: SavedCalibration, source: str) -> Rows:
+def errors(saved: CalibrationFile) -> Rows:
     """Errors of the motions that count in the fit, of every test."""
     rows = []
-    for id, channels in saved.errors(source).items():
-        scored = {name: one for name, one in channels.items() if one.in_objective}
+    for id, error in saved.baseline.error.items():
+        scored = {name: one for name, one in error.channels.items() if one.in_objective}
         rows += [(id, *_test(saved, id), name, *_error(one)) for name, one in scored.items()]
-        if not channels:
+        if not error.channels:
             rows.append((id, *_test(saved, id), "", "–", "not finite", ""))
     return ("Test", "Kind", "Length", "Use", "Motion", "Before", "After", "RMSE"), rows
 
 
-def other_motions(saved: SavedCalibration, source: str) -> Rows:
+def other_motions(saved: CalibrationFile) -> Rows:
     """Errors of the motions beside those that count in the fit."""
     rows = []
-    for id, channels in saved.errors(source).items():
-        rows += [(id, _use(saved, id), name, *_error(one)) for name, one in channels.items() if not one.in_objective]
+    for id, error in saved.baseline.error.items():
+        others = {name: one for name, one in error.channels.items() if not one.in_objective}
+        rows += [(id, _use(saved, id), name, *_error(one)) for name, one in others.items()]
     return ("Test", "Use", "Motion", "Before", "After", "RMSE"), rows
 
 
-def _test(saved: SavedCalibration, id: str) -> tuple[str, str, str]:
+def _test(saved: CalibrationFile, id: str) -> tuple[str, str, str]:
     """Kind, length and use of a test."""
     about = saved.tests.get(id)
     kind = " in ".join(filter(None, (KINDS.get(about.kind, about.kind), about.degree_of_freedom))) if about else ""
@@ -75,9 +76,8 @@ def _test(saved: SavedCalibration, id: str) -> tuple[str, str, str]:
     return kind, length, _use(saved, id)
 
 
-def _use(saved: SavedCalibration, id: str) -> str:
-    use = str(saved.baseline.error[id].get("use", ""))
-    return USE.get(use, use)
+def _use(saved: CalibrationFile, id: str) -> str:
+    return USE[saved.baseline.error[id].use]
 
 
 def _error(error: ChannelError) -> tuple[str, str, str]:
@@ -86,7 +86,7 @@ def _error(error: ChannelError) -> tuple[str, str, str]:
     return before, percent(error.relative), f"{number(error.rmse, 2)} {error.unit}"
 
 
-def linear_quadratic(saved: SavedCalibration) -> Rows:
+def linear_quadratic(saved: CalibrationFile) -> Rows:
     """The classical linear and quadratic damping of every decay with enough cycles, measured and simulated."""
     rows = []
     for id, about in saved.tests.items():
@@ -101,11 +101,11 @@ def linear_quadratic(saved: SavedCalibration) -> Rows:
     return (*heads, "Unit of q"), rows
 
 
-def bands(saved: SavedCalibration, source: str) -> Rows:
+def bands(saved: CalibrationFile) -> Rows:
     """Errors of energy in bands, of tests in irregular waves."""
     rows = [
         (id, _use(saved, id), channel, BANDS.get(band, band.replace("_", " ")), *map(_signed, both))
-        for id, channels in saved.bands(source).items()
+        for id, channels in saved.bands().items()
         for channel, row in channels.items()
         for band, both in row.items()
     ]
@@ -120,7 +120,7 @@ def _signed(ratio: float | None) -> str:
     return f"{whole:+d} %" if (whole := round(100 * ratio)) else "0 %"
 
 
-def outcome_sentence(saved: SavedCalibration) -> str:
+def outcome_sentence(saved: CalibrationFile) -> str:
     """One line: the objective and how it was reached. Of tests in waves J is no objective: they are fitted by others."""
     fitted = saved.baseline
     in_waves = any(test.use == "fit" and test.kind in IN_WAVES for test in saved.tests.values())
@@ -134,7 +134,7 @@ def outcome_sentence(saved: SavedCalibration) -> str:
     return ", ".join(parts)
 
 
-def comparison_with_truth(saved: SavedCalibration) -> Rows:
+def comparison_with_truth(saved: CalibrationFile) -> Rows:
     """Calibrated values beside the true ones."""
     rows = []
     for label, true in saved.truth.items():
@@ -156,7 +156,7 @@ def deviations_away(one: Parameter, true: float) -> float | None:
     return (one.value - true) / sd if one.identifiable and sd is not None and sd > 0 else None
 
 
-def agreement_with_truth(saved: SavedCalibration) -> str:
+def agreement_with_truth(saved: CalibrationFile) -> str:
     """How many coefficients lie near the true values, in a sentence."""
     known = {label: saved.baseline.parameters.get(label) for label in saved.truth}
     away = [None if one is None else deviations_away(one, saved.truth[label]) for label, one in known.items()]

@@ -1,25 +1,33 @@
 """Writing of report.html for the results in a folder."""
 
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
-from calibration.results.read_calibration import read_as, read_saved
+from calibration.report import calibration_page, diagnosis_page, sweep_page, uncertainty_page
+from calibration.results.calibration_file import CalibrationFile, read_as
+from calibration.results.diagnosis_file import DiagnosisFile
 from calibration.results.result_folder import DIAGNOSIS_FILE, REPORT_FILE, RESULT_FILE, UNCERTAINTY_FILE
+from calibration.results.uncertainty_file import UncertaintyFile
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import write_whole
+from jaxhydro.sweep.sweep_results import SweepResults
 
 SWEEP, RESULTS = "sweep.json", "results.zarr"
+PAGES: dict[str, tuple[type[Any], Callable[[Any, Path], str]]] = {  # model and page of a result file
+    DIAGNOSIS_FILE: (DiagnosisFile, diagnosis_page.page),
+    RESULT_FILE: (CalibrationFile, calibration_page.page),
+    UNCERTAINTY_FILE: (UncertaintyFile, uncertainty_page.page),
+    SWEEP: (SweepResults, sweep_page.page),
+}
 
 
 def write_report(folder: str | PathLike[str]) -> Path:
     """Write report.html into a result folder and give its path. Raises InputError where there are no results in it."""
     folder = Path(folder)
     try:
-        there = [
-            name
-            for name in (DIAGNOSIS_FILE, RESULT_FILE, UNCERTAINTY_FILE, SWEEP)
-            if folder.is_dir() and (folder / name).is_file()
-        ]
+        there = [name for name in PAGES if folder.is_dir() and (folder / name).is_file()]
     except (OSError, ValueError):
         there = []
     if not there and (folder / RESULTS).is_dir():
@@ -30,24 +38,6 @@ def write_report(folder: str | PathLike[str]) -> Path:
         found = f"no {RESULT_FILE}, {DIAGNOSIS_FILE}, {UNCERTAINTY_FILE} or {SWEEP}" if folder.is_dir() else found
         expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
         raise InputError(str(folder), [Problem("", expected, found)])
-    if there[0] == DIAGNOSIS_FILE:
-        from calibration.report.diagnosis_page import page as diagnosis_page
-        from calibration.results.read_diagnosis import read_diagnosis
-
-        text = diagnosis_page(read_diagnosis(folder / DIAGNOSIS_FILE), folder)
-    elif there[0] == UNCERTAINTY_FILE:
-        from calibration.report.uncertainty_page import page as uncertainty_page
-        from calibration.results.read_uncertainty import SavedUncertainty
-
-        text = uncertainty_page(read_as(SavedUncertainty, folder / UNCERTAINTY_FILE), folder)
-    elif there[0] == SWEEP:
-        from calibration.report.sweep_page import SavedSweep
-        from calibration.report.sweep_page import page as sweep_page
-
-        text = sweep_page(read_as(SavedSweep, folder / SWEEP), folder)
-    else:
-        from calibration.report.calibration_page import page as calibration_page
-
-        text = calibration_page(read_saved(folder / RESULT_FILE), folder)
-    write_whole(folder / REPORT_FILE, text)
+    model, page = PAGES[there[0]]
+    write_whole(folder / REPORT_FILE, page(read_as(model, folder / there[0]), folder))
     return folder / REPORT_FILE

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from calibration.residuals.measured_seas import Options
-from calibration.results.read_calibration import SavedCalibration, file_error, read_saved
+from calibration.results.calibration_file import CalibrationFile, file_error, read_saved
 from calibration.results.strip_conventions import StripConventions
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, shown, suggest
@@ -106,7 +106,7 @@ def apply_calibration(path: str | PathLike[str], model: Model, platform: str, ev
 
 
 def unknown_values_error(
-    saved: SavedCalibration, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]
+    saved: CalibrationFile, unknown: list[str], model: Model, platform: str, path: str | PathLike[str]
 ) -> InputError:
     """The error of calibrated values that a model has no place for."""
     expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
@@ -114,7 +114,7 @@ def unknown_values_error(
     return file_error(Path(path), expected, found, f"{saved.key}.parameters", hint or suggest(unknown[0], model.values))
 
 
-def with_calibrated_loads(saved: SavedCalibration, model: Model, path: str | PathLike[str]) -> Model:
+def with_calibrated_loads(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
     """The model with what calibrated values need beyond what is declared: laws of drag and over the sea state, and the effects
     that a diagnosis found, at their null."""
     model = _with_laws(saved, _with_drag(saved, model, path), path)
@@ -134,7 +134,7 @@ def with_calibrated_loads(saved: SavedCalibration, model: Model, path: str | Pat
         raise file_error(Path(path), expected, said, "augmented.parameters") from None
 
 
-def _with_drag(saved: SavedCalibration, model: Model, path: str | PathLike[str]) -> Model:
+def _with_drag(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
     """The model with the drag laws that were calibrated. Raises InputError where it declares others, or has no such drag."""
     plain, there, laws = plain_drag(model), drag_laws_of(model), saved.best.drag_laws
     where = f"{saved.key}.drag_laws"
@@ -174,12 +174,12 @@ def _law_in_words(law: DragLaw) -> str:
     return ", ".join(f"{key}: {value}" for key, value in law.model_dump(exclude_none=True).items())
 
 
-def _reference(saved: SavedCalibration) -> SeaState | None:
+def _reference(saved: CalibrationFile) -> SeaState | None:
     stated = saved.best.sea_state_reference
     return None if stated is None else SeaState(stated.significant_height, stated.peak_period)
 
 
-def _with_laws(saved: SavedCalibration, model: Model, path: str | PathLike[str]) -> Model:
+def _with_laws(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
     """The model with the laws over the sea state that the calibrated values have exponents of."""
     labels = [label for label in saved.values() if is_exponent(label) and split(label)[0] in model.values]
     if not labels:

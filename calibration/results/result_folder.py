@@ -1,12 +1,13 @@
 """Names of the files in a result folder, and helpers that write them."""
 
 import json
-import math
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
+
+from jaxhydro.result_model import ResultModel
 
 RESULT_FILE, MOTION_FILE, FIGURES_FOLDER, REPORT_FILE = "calibration.json", "simulated.nc", "figures", "report.html"
 COMPARISON_FILE = "comparison.json"  # of a campaign's seas
@@ -16,33 +17,37 @@ LAWS_FILE, TABLE_FILE = "sea_laws.json", "coefficients.csv"  # of a calibration 
 GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 
 
-def draw(figures: Iterable[tuple[str, str, Any]], folder: Path) -> list[dict[str, str]]:
-    """Save matplotlib figures, each with its file's name and its caption, below a folder, and list them as result files do.
-    `figures` is a generator, which draws when asked to: in the package's style."""
+class Figure(ResultModel):
+    """A figure: its file below the folder, and its caption."""
+
+    file: str
+    caption: str = ""
+
+
+def draw(figures: Iterable[tuple[str, str, Any]], folder: Path) -> list[Figure]:
+    """Save figures in the package's style.
+
+    Args:
+        figures: File name, caption and matplotlib figure of each; a generator, which draws when asked to.
+        folder: Folder of the result.
+
+    Returns:
+        The figures as a result file lists them.
+    """
     from jaxhydro.plots.style import save, style
 
     drawn = []
     with style():
         for name, caption, figure in figures:
             save(figure, folder / FIGURES_FOLDER / name)
-            drawn.append({"file": f"{FIGURES_FOLDER}/{name}", "caption": caption})
+            drawn.append(Figure(file=f"{FIGURES_FOLDER}/{name}", caption=caption))
     return drawn
-
-
-def write_json(content: dict[str, Any], file: Path) -> None:
-    """Write a result file. Raises ValueError for numbers that JSON does not have."""
-    file.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def write_motion(motion: xr.Dataset, folder: Path) -> None:
     """Write the series, packed, as simulated.nc."""
     packed = {name: {"zlib": True, "complevel": 4} for name, one in motion.data_vars.items() if one.ndim > 1 and one.size}
     motion.to_netcdf(folder / MOTION_FILE, engine="h5netcdf", encoding=packed)
-
-
-def finite_or_null(value: float | None) -> float | None:
-    """A number as JSON has it; null for what is none."""
-    return float(value) if value is not None and math.isfinite(value) else None
 
 
 def outdated(folder: Path, temporary: Path, result: str = RESULT_FILE) -> Iterable[str]:

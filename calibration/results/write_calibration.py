@@ -11,13 +11,27 @@ import xarray as xr
 
 import jaxhydro
 from calibration.decay_analysis.linear_quadratic import classical
-from calibration.result import Calibration, Series, TestFit
-from calibration.results.result_folder import RESULT_FILE, draw, finite_or_null, outdated, write_json, write_motion
+from calibration.result import Calibration, Estimate, Series, TestFit
+from calibration.results.calibration_file import (
+    CalibrationFile,
+    ChannelError,
+    DampingTerm,
+    FittedModel,
+    LinearQuadraticDamping,
+    MotionError,
+    Objective,
+    Parameter,
+    ReferenceSeaState,
+    TestDescription,
+    TestErrors,
+)
+from calibration.results.result_folder import RESULT_FILE, draw, outdated, write_motion
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
 from jaxhydro.loads.sea_state_law import reference_of
 from jaxhydro.platform.drag_laws import drag_laws_of
+from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.units import for_people, unit_of
 
 _EVEN = 1e-3  # of a step: times that differ by less are the same
@@ -43,55 +57,66 @@ def write_calibration(
             from calibration.plots import decay_figures as plot
 
             drawn = draw(plot.figures(calibration), temporary)
-        known = {} if truth is None else {"truth": dict(truth)}
-        write_json({**document(calibration), **known, "figures": drawn}, temporary / RESULT_FILE)
+        content = document(calibration).model_copy(update={**stated(truth=truth), "figures": drawn})
+        content.write(temporary / RESULT_FILE)
         write_motion(dataset(calibration), temporary)
     return folder
 
 
-def document(calibration: Calibration) -> dict[str, Any]:
-    """The content of calibration.json. See outputs.schema.json; What goes beyond it is for reports."""
+def document(calibration: Calibration) -> CalibrationFile:
+    """Content of calibration.json without figures.
+
+    Args:
+        calibration: The calibration.
+
+    Raises:
+        NotFinite: A parameter or the objective of the fitted tests is not finite.
+    """
+    return CalibrationFile(
+        campaign=calibration.campaign,
+        platform=calibration.platform,
+        jaxhydro=jaxhydro.__version__,
+        baseline=fitted_model(calibration),
+        tests={test.id: _about(test) for test in calibration.tests},
+    )
+
+
+def fitted_model(calibration: Calibration) -> FittedModel:
+    """Calibrated model as result files have it. Raises NotFinite."""
     # offsets and periods alone have no series
     fit = calibration.objective("fit") if any(test.use == "fit" for test in calibration.tests) else 0.0
     if fit is None or not math.isfinite(fit):
         raise NotFinite("the simulated motion of a fitted test is not finite")
-    parameters = {}
-    for label, one in calibration.parameters.items():
-        if not math.isfinite(one.value):
-            raise NotFinite(f"the parameter {label} is not finite")
-        parameters[label] = {
-            "value": float(one.value),
-            "standard_deviation": finite_or_null(one.standard_deviation),
-            "unit": one.unit,
-            "at_bound": one.at_bound,
-            "identifiable": one.identifiable,
-            "start": finite_or_null(one.start),
-            "meaning": one.meaning,
-        }
-    return {
-        "campaign": calibration.campaign,
-        "platform": calibration.platform,
-        "jaxhydro": jaxhydro.__version__,
-        "baseline": {
-            "parameters": parameters,
-            "error": {test.id: _errors(test) for test in calibration.tests},
-            "objective": {"fit": fit, "holdout": finite_or_null(calibration.objective("holdout"))},
-            "converged": bool(calibration.converged),
-            "iterations": int(calibration.iterations),
-            "seconds": finite_or_null(calibration.seconds),
-            "history": [finite_or_null(value) for value in calibration.history],
-            "notes": list(calibration.notes),
-            **_laws(calibration),
-        },
-        "tests": {test.id: _about(test) for test in calibration.tests},
-    }
+    reference = reference_of(calibration.model.loads)
+    return FittedModel(
+        parameters={label: parameter(one, start=finite_or_null(one.start)) for label, one in calibration.parameters.items()},
+        error={test.id: _errors(test) for test in calibration.tests},
+        objective=Objective(fit=fit, holdout=finite_or_null(calibration.objective("holdout"))),
+        converged=bool(calibration.converged),
+        iterations=int(calibration.iterations),
+        seconds=finite_or_null(calibration.seconds),
+        history=[finite_or_null(value) for value in calibration.history],
+        notes=list(calibration.notes),
+        **stated(
+            sea_state_reference=None if reference is None else ReferenceSeaState(**reference._asdict()),
+            drag_laws=drag_laws(calibration.model),
+        ),
+    )
 
 
-def _laws(calibration: Calibration) -> dict[str, Any]:
-    """The sea state that exponents among the parameters count from (m, s), and laws of drag that is not plain."""
-    reference, drag = reference_of(calibration.model.loads), drag_laws(calibration.model)
-    found: dict[str, Any] = {} if reference is None else {"sea_state_reference": reference._asdict()}
-    return found | ({"drag_laws": drag} if drag else {})
+def parameter(one: Estimate, **more: Any) -> Parameter:
+    """A calibrated parameter as result files have it, with more of its fields. Raises NotFinite."""
+    if not math.isfinite(one.value):
+        raise NotFinite(f"the parameter {one.label} is not finite")
+    return Parameter(
+        value=float(one.value),
+        standard_deviation=finite_or_null(one.standard_deviation),
+        unit=one.unit,
+        at_bound=one.at_bound,
+        identifiable=one.identifiable,
+        meaning=one.meaning,
+        **more,
+    )
 
 
 def drag_laws(model: Model) -> dict[str, dict[str, Any]]:
@@ -99,33 +124,30 @@ def drag_laws(model: Model) -> dict[str, dict[str, Any]]:
     return {label: law.model_dump(exclude_none=True) for label, law in drag_laws_of(model).items()}
 
 
-def _errors(test: TestFit) -> dict[str, Any]:
-    """RMSE by channel; what is not finite (a held-out test's motion that diverged) is left out."""
-    errors: dict[str, Any] = {"use": test.use}
+def _errors(test: TestFit) -> TestErrors:
+    """Errors of a test; what is not finite (a held-out test's motion that diverged) is left out."""
+    channels: dict[str, Any] = {}
     for series in test.series:
         if math.isfinite(series.rmse) and math.isfinite(series.relative):
-            errors[series.channel] = {
-                **_error(series.channel, series.rmse, series.relative),
-                "in_objective": bool(series.scored),
-                "before": _before(test, series),
-            }
-    return errors | _bands(test, "bands", "after")
+            error = _error(series.channel, series.rmse, series.relative).model_dump()
+            channels[series.channel] = ChannelError(**error, in_objective=bool(series.scored), before=_before(test, series))
+    return TestErrors(use=test.use, **channels, **stated(bands=_bands(test, "after")))
 
 
-def _bands(test: TestFit, key: str, name: str) -> dict[str, Any]:
-    """Band errors of one model under `key`, where there are any that are finite."""
+def _bands(test: TestFit, name: str) -> dict[str, dict[str, float]]:
+    """Finite errors of energy of one model, `after` or `before`."""
     each = {
-        channel: {k: v for k, one in row.items() if math.isfinite(v := float(getattr(one, name)))}
+        channel: {band: value for band, one in row.items() if math.isfinite(value := float(getattr(one, name)))}
         for channel, row in test.bands.items()
     }
-    return {key: {channel: row for channel, row in each.items() if row}} if any(each.values()) else {}
+    return {channel: row for channel, row in each.items() if row}
 
 
-def _error(channel: str, rmse: float, relative: float) -> dict[str, Any]:
-    return {"rmse": float(for_people(channel, rmse)), "unit": unit_of(channel), "relative": float(relative)}
+def _error(channel: str, rmse: float, relative: float) -> MotionError:
+    return MotionError(rmse=float(for_people(channel, rmse)), unit=unit_of(channel), relative=float(relative))
 
 
-def _before(test: TestFit, series: Series) -> dict[str, Any] | None:
+def _before(test: TestFit, series: Series) -> MotionError | None:
     start = test.start.get(series.channel)
     if start is None or not np.isfinite(start).all():
         return None
@@ -133,40 +155,38 @@ def _before(test: TestFit, series: Series) -> dict[str, Any] | None:
     return _error(series.channel, rmse, rmse / max(float(np.std(series.measured)), 1e-300))
 
 
-def _about(test: TestFit) -> dict[str, Any]:
-    return {
-        "use": test.use,
-        "kind": test.kind,
-        "degree_of_freedom": test.degree_of_freedom,
-        "file": test.file,
-        "duration": float(test.time[-1] - test.time[0]),
-        "samples": len(test.time),
-        **_bands(test, "bands_before", "before"),  # the contract's `error` has no place for it
-        **_linear_quadratic(test),
-    }
+def _about(test: TestFit) -> TestDescription:
+    return TestDescription(
+        use=test.use,
+        kind=test.kind,
+        degree_of_freedom=test.degree_of_freedom,
+        file=test.file,
+        duration=float(test.time[-1] - test.time[0]),
+        samples=len(test.time),
+        **stated(
+            bands_before=_bands(test, "before"),  # the contract's `error` has no place for it
+            linear_quadratic=_linear_quadratic(test) if test.kind == "decay" else None,
+        ),
+    )
 
 
-def _linear_quadratic(test: TestFit) -> dict[str, Any]:
-    """The classical analysis of a decay, measured and simulated; nothing where it has too few cycles."""
-    if test.kind != "decay":
-        return {}
+def _linear_quadratic(test: TestFit) -> LinearQuadraticDamping | None:
+    """Classical analysis of a decay, measured and simulated; None where it has too few cycles."""
     main = test.main
     try:
         measured, simulated = (classical(test.time, x, main.noise).fit for x in (main.measured, main.simulated))
-    except ValueError:
-        return {}
-    terms = {
-        name: {
-            "measured": float(getattr(measured, name).value),
-            "half_width": 0.5 * float(getattr(measured, name).upper - getattr(measured, name).lower),
-            "simulated": float(getattr(simulated, name).value),
+        terms = {
+            name: DampingTerm(
+                measured=float(getattr(measured, name).value),
+                half_width=0.5 * float(getattr(measured, name).upper - getattr(measured, name).lower),
+                simulated=float(getattr(simulated, name).value),
+            )
+            for name in ("linear", "quadratic")
         }
-        for name in ("linear", "quadratic")
-    }
-    if not all(math.isfinite(x) for term in terms.values() for x in term.values()):
-        return {}
+    except ValueError:  # too few cycles; pydantic's error of what is not finite is one, too
+        return None
     unit = "m" if unit_of(main.channel) == "m" else "rad"
-    return {"linear_quadratic": {"period": measured.period, "unit": unit, **terms}}
+    return LinearQuadraticDamping(period=measured.period, unit=unit, **terms)
 
 
 def dataset(calibration: Calibration) -> xr.Dataset:

@@ -1,5 +1,7 @@
 """Writing of a comparison in waves: comparison.json, simulated.nc, figures."""
 
+import dataclasses
+import math
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -8,18 +10,47 @@ import numpy as np
 import xarray as xr
 
 import jaxhydro
-from calibration.residuals.measured_seas import Comparison, SeaTest
-from calibration.residuals.sea_errors import channels
-from calibration.results.result_folder import COMPARISON_FILE, draw, outdated, write_json, write_motion
+from calibration.campaign.signals import wave_height
+from calibration.residuals.measured_seas import Comparison, Options, SeaTest
+from calibration.residuals.sea_errors import WELCH, amplitude, channels, in_bands, moving
+from calibration.results.applied_calibration import AppliedCalibration
+from calibration.results.calibration_file import ChannelError, TestErrors
+from calibration.results.comparison_file import (
+    BandEnergies,
+    ChannelStatistics,
+    ComparisonFile,
+    Moments,
+    Pair,
+    SeaTestResults,
+    SimulatedOptions,
+    SimulatedSea,
+    UsedCoefficients,
+)
+from calibration.results.result_folder import COMPARISON_FILE, draw, outdated, write_motion
 from calibration.results.write_calibration import common_axis
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
-from jaxhydro.units import unit_of
+from jaxhydro.result_model import stated
+from jaxhydro.units import for_people, unit_of
 
 
-def write_comparison(found: Comparison, content: dict[str, Any], folder: str | PathLike[str], figures: bool = True) -> Path:
-    """Write all results into `folder` (made where absent); gives the folder. Those of an earlier comparison there are replaced
-    when the new ones are complete. Raises InputError where the folder cannot be written."""
+def write_comparison(
+    found: Comparison, content: ComparisonFile, folder: str | PathLike[str], figures: bool = True
+) -> ComparisonFile:
+    """Write all results in place of those of an earlier comparison.
+
+    Args:
+        found: The comparison.
+        content: Content of comparison.json without figures.
+        folder: Folder of the results, made where absent.
+        figures: Whether figures are drawn.
+
+    Returns:
+        The content of comparison.json.
+
+    Raises:
+        InputError: The folder cannot be written.
+    """
     folder = Path(folder)
     with staged(folder, lambda temporary: outdated(folder, temporary, COMPARISON_FILE)) as temporary:
         drawn = []
@@ -27,9 +58,113 @@ def write_comparison(found: Comparison, content: dict[str, Any], folder: str | P
             from calibration.plots import sea_figures as seas_plot
 
             drawn = draw(seas_plot.figures(found.tests), temporary)
-        write_json({**content, "figures": drawn}, temporary / COMPARISON_FILE)
-        write_motion(dataset(found.tests, str(content["campaign"])), temporary)
-    return folder
+        content = content.model_copy(update={"figures": drawn})
+        content.write(temporary / COMPARISON_FILE)
+        write_motion(dataset(found.tests, content.campaign), temporary)
+    return content
+
+
+def document(
+    found: Comparison,
+    options: Options,
+    *,
+    campaign: str,
+    platform: str,
+    calibration: str | None,
+    applied: AppliedCalibration | None,
+) -> ComparisonFile:
+    """Content of comparison.json without figures.
+
+    Args:
+        found: The comparison.
+        options: Options of the waves.
+        campaign: Name of the campaign.
+        platform: Name of the platform.
+        calibration: File of the calibration, or None.
+        applied: The calibration as it was used, or None.
+    """
+    coefficients = UsedCoefficients(source="platform", values={}, not_identifiable=[], left_out=[])
+    if applied is not None:
+        coefficients = UsedCoefficients(
+            source=f"calibration of {applied.campaign}",
+            values=applied.values,
+            not_identifiable=list(applied.undetermined),
+            left_out=list(applied.not_used),
+            **stated(strips=applied.strips and applied.strips.model_dump()),
+        )
+    seas = [
+        SimulatedSea(
+            file=run.file,
+            tests=[record.id for record in run.records],
+            duration=float(run.time[-1] - run.time[0]),
+            components=int(made.sea.components.omega.size),
+            gauge=tuple(map(float, run.position)),
+            heading=math.degrees(run.heading),
+            mismatch=made.mismatch,
+            rounds=made.rounds,
+            variance_in_band=made.inside,
+        )
+        for run, made in found.seas
+    ]
+    return ComparisonFile(
+        campaign=campaign,
+        platform=platform,
+        calibration=calibration,
+        jaxhydro=jaxhydro.__version__,
+        options=SimulatedOptions(**dataclasses.asdict(options), step=found.step, spectra=WELCH),
+        coefficients=coefficients,
+        seas=seas,
+        error={test.fit.id: _errors(test) for test in found.tests},
+        tests={test.fit.id: _about(test) for test in found.tests},
+        warnings=list(found.notes),
+    )
+
+
+def _errors(test: SeaTest) -> TestErrors:
+    errors: dict[str, Any] = {}
+    for s in test.fit.series:
+        rmse = float(for_people(s.channel, s.rmse))
+        errors[s.channel] = ChannelError(rmse=rmse, unit=unit_of(s.channel), relative=s.relative)
+    if test.fit.kind == "irregular":
+        each = {name: {k: b.error for k, b in row.items() if math.isfinite(b.error)} for name, row in in_bands(test).items()}
+        errors["bands"] = {name: row for name, row in each.items() if name in DOFS and row}
+    return TestErrors(use=test.fit.use, **errors)
+
+
+def _about(test: SeaTest) -> SeaTestResults:
+    """What the sea was, and what errors are made of, in m and deg."""
+    both, worth = channels(test), {"wave", *moving(test)}
+    statistics = {
+        name: ChannelStatistics(
+            unit=unit_of(name),
+            moving=name in worth,
+            measured=Moments(mean=float(pair[0].mean()), standard_deviation=float(pair[0].std())),
+            simulated=Moments(mean=float(pair[1].mean()), standard_deviation=float(pair[1].std())),
+        )
+        for name, pair in both.items()
+    }
+    irregular = test.fit.kind == "irregular"
+    heights = Pair(**dict(zip(("measured", "simulated"), (wave_height(x, irregular) for x in both["wave"]))))
+    more: dict[str, Any] = {"significant_wave_height" if irregular else "wave_height": heights}
+    if irregular:
+        more["bands"] = {
+            name: {k: BandEnergies(band=(b.low, b.high), measured=b.measured, simulated=b.simulated) for k, b in row.items()}
+            for name, row in in_bands(test).items()
+        }
+    else:
+        amplitudes = {name: [amplitude(test, x) for x in pair] for name, pair in both.items()}
+        more["amplitude"] = {name: Pair(measured=a, simulated=b) for name, (a, b) in amplitudes.items()}
+    return SeaTestResults(
+        kind=test.fit.kind,
+        file=test.fit.file,
+        start=float(test.fit.time[0]),
+        end=float(test.fit.time[-1]),
+        peak_period=test.peak_period,
+        stated_height=test.stated_height,
+        heading=math.degrees(test.heading),
+        statistics=statistics,
+        **more,
+    )
 
 
 def dataset(tests: tuple[SeaTest, ...], campaign: str) -> xr.Dataset:

@@ -8,10 +8,11 @@ from typing import Any
 
 from calibration.fitting.law_choice import SeaLaws
 from calibration.result import Calibration
-from calibration.results.result_folder import FIGURES_FOLDER, LAWS_FILE, TABLE_FILE, finite_or_null, write_json
+from calibration.results.result_folder import FIGURES_FOLDER, LAWS_FILE, TABLE_FILE
 from calibration.results.write_calibration import drag_laws
 from jaxhydro.files import safe_name, staged
 from jaxhydro.loads.sea_state_law import reference_of
+from jaxhydro.result_model import finite_or_null, write_json
 
 
 def write_laws(found: SeaLaws, folder: str | PathLike[str], figures: bool = True) -> None:

@@ -9,14 +9,22 @@ import numpy as np
 
 import jaxhydro
 from calibration.formatting import interval
-from calibration.results.read_calibration import SavedCalibration
-from calibration.results.read_uncertainty import INTERVAL_METHODS
-from calibration.results.result_folder import UNCERTAINTY_FILE, draw, finite_or_null, outdated, write_json
+from calibration.results.calibration_file import CalibrationFile
+from calibration.results.result_folder import UNCERTAINTY_FILE, draw, outdated
+from calibration.results.uncertainty_file import (
+    INTERVAL_METHODS,
+    BootstrapDraws,
+    ParameterIntervals,
+    PosteriorDraws,
+    ProfileCurve,
+    UncertaintyFile,
+)
 from calibration.uncertainty.bootstrap import Bootstrap
 from calibration.uncertainty.likelihood import Likelihood
 from calibration.uncertainty.nuts import Samples
 from calibration.uncertainty.profile import Profile
 from jaxhydro.files import safe_name, staged
+from jaxhydro.result_model import finite_or_null, stated
 
 MAX_END_DIFFERENCE = 0.25  # of half the width, by which intervals differ
 Interval = tuple[float | None, float | None]
@@ -28,7 +36,7 @@ class Uncertainty:
     """Intervals of a calibration's parameters, found in several ways. `source` is its file, `asked` how many resamplings were
     asked for, `bootstraps` are by method; `sampled`, whether draws from the posterior were."""
 
-    saved: SavedCalibration
+    saved: CalibrationFile
     source: str
     likelihood: Likelihood
     level: float
@@ -97,71 +105,76 @@ def _apart(one: Profile) -> bool:
     return any(a is None or abs(a - b) > MAX_END_DIFFERENCE * half for a, b in zip(one.interval, one.laplace, strict=True))
 
 
-def document(found: Uncertainty) -> dict[str, Any]:
-    """The content of uncertainty.json, figures aside. Values are in the parameters' units, angles in radians."""
-    likely, parameters = found.likelihood, {}
+def document(found: Uncertainty) -> UncertaintyFile:
+    """Content of uncertainty.json without figures."""
+    likely, saved = found.likelihood, found.saved
     excess = likely.excess()
+    parameters = {}
     for label in likely.labels:
-        one = found.saved.best.parameters[label]
-        parameters[label] = {
-            "value": float(one.value),
-            "unit": one.unit,
-            "meaning": one.meaning,
-            "identifiable": one.identifiable,
-            "at_bound": one.at_bound,
-            "laplace": _ends(likely.interval(label, found.level)),
-            "white": _ends(likely.interval(label, found.level, white=True)),
-            "white_too_small_by": finite_or_null(excess[label]),
-            **{way: _ends(ends) for way, ends in found.ways(label).items()},
+        one = saved.best.parameters[label]
+        intervals = {
+            "laplace": likely.interval(label, found.level),
+            "white": likely.interval(label, found.level, white=True),
+            **found.ways(label),
         }
-    return {
-        "campaign": found.saved.campaign,
-        "platform": found.saved.platform,
-        "jaxhydro": jaxhydro.__version__,
-        "calibration": found.source,
-        "level": found.level,
-        "seed": found.seed,
-        "converged": found.converged,
-        "parameters": parameters,
-        "profiles": {label: _profile(one) for label, one in found.profiles.items()},
-        "bootstrap": {method: _bootstrap(one, found.asked) for method, one in found.bootstraps.items()},
-        "nuts": None if found.samples is None else _samples(found.samples),
-        "notes": list(found.notes()),
-    }
+        parameters[label] = ParameterIntervals(
+            **one.model_dump(include={"value", "unit", "meaning", "identifiable", "at_bound"}),
+            white_too_small_by=finite_or_null(excess[label]),
+            **stated(**{way: tuple(map(finite_or_null, ends)) for way, ends in intervals.items()}),
+        )
+    return UncertaintyFile(
+        campaign=saved.campaign,
+        platform=saved.platform,
+        jaxhydro=jaxhydro.__version__,
+        calibration=found.source,
+        level=found.level,
+        seed=found.seed,
+        converged=found.converged,
+        parameters=parameters,
+        profiles={label: _profile(one) for label, one in found.profiles.items()},
+        bootstrap={method: _bootstrap(one, found.asked) for method, one in found.bootstraps.items()},
+        nuts=None if found.samples is None else _samples(found.samples),
+        notes=list(found.notes()),
+    )
 
 
-def _ends(ends: Interval) -> list[float | None]:
-    return [finite_or_null(end) for end in ends]
+def _profile(one: Profile) -> ProfileCurve:
+    values, drop = ([finite_or_null(x) for x in column] for column in (one.grid, one.drop))
+    return ProfileCurve(values=values, drop=drop, nu=finite_or_null(one.nu))
 
 
-def _profile(one: Profile) -> dict[str, Any]:
-    return {
-        "values": [finite_or_null(x) for x in one.grid],
-        "drop": [finite_or_null(x) for x in one.drop],
-        "nu": finite_or_null(one.nu),
-    }
-
-
-def _bootstrap(one: Bootstrap, asked: int) -> dict[str, Any]:
+def _bootstrap(one: Bootstrap, asked: int) -> BootstrapDraws:
     groups = {name: list(of) if isinstance(of, tuple) else float(of) for name, of in one.groups.items()}
-    return {"asked": asked, "draws": len(one.value), "unsettled": one.unsettled, "groups": groups}
+    return BootstrapDraws(asked=asked, draws=len(one.value), unsettled=one.unsettled, groups=groups)
 
 
-def _samples(one: Samples) -> dict[str, Any]:
+def _samples(one: Samples) -> PosteriorDraws:
     chains, draws = one.value.shape[:2]
-    by_label = {
-        name: {label: finite_or_null(x) for label, x in zip(one.labels, values, strict=True)}
-        for name, values in (("r_hat", one.r_hat), ("effective", one.effective))
-    }
-    return {"chains": chains, "draws": draws, "divergences": one.divergences, **by_label}
+    r_hat, effective = (
+        {label: finite_or_null(x) for label, x in zip(one.labels, values, strict=True)} for values in (one.r_hat, one.effective)
+    )
+    return PosteriorDraws(chains=chains, draws=draws, divergences=one.divergences, r_hat=r_hat, effective=effective)
 
 
-def write_uncertainty(found: Uncertainty, folder: Path, figures: bool = True) -> None:
-    """Write uncertainty.json and figures into `folder` (made where absent), in place of earlier ones. Raises InputError where
-    the folder cannot be written."""
+def write_uncertainty(found: Uncertainty, folder: Path, figures: bool = True) -> UncertaintyFile:
+    """Write uncertainty.json and figures in place of earlier ones.
+
+    Args:
+        found: The intervals.
+        folder: Folder of the results, made where absent.
+        figures: Whether figures are drawn.
+
+    Returns:
+        The content of uncertainty.json.
+
+    Raises:
+        InputError: The folder cannot be written.
+    """
     with staged(folder, lambda temporary: outdated(folder, temporary, UNCERTAINTY_FILE)) as temporary:
         drawn = draw(_figures(found), temporary) if figures else []
-        write_json({**document(found), "figures": drawn}, temporary / UNCERTAINTY_FILE)
+        content = document(found).model_copy(update={"figures": drawn})
+        content.write(temporary / UNCERTAINTY_FILE)
+    return content
 
 
 def _figures(found: Uncertainty) -> Iterator[tuple[str, str, Any]]:

@@ -38,6 +38,6 @@ def with_calibration(model: Model, asked: str, name: str, source: Path) -> tuple
 
 def calibration_file(path: str) -> Path:
     """The diagnosis.json or calibration.json of a folder, or the file itself."""
-    from calibration.results.read_calibration import file_of
+    from calibration.results.calibration_file import file_of
 
     return file_of(path)

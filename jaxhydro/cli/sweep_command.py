@@ -9,12 +9,14 @@ from jaxhydro.cli.console import complain, counting, say, table
 from jaxhydro.cli.simulate_command import print_remarks, print_rest, print_used
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import asked_to_stop, finished, stop_if_asked
+from jaxhydro.sweep.cases import runs_in_words
 from jaxhydro.sweep.cluster import workers_of
 from jaxhydro.sweep.execute import PreparedSweep, Progress, SessionResult, opened, prepared, run_all, to_do
 from jaxhydro.sweep.resources import chosen
 from jaxhydro.sweep.store import RESULTS, locked_folder, open_results
 from jaxhydro.sweep.sweep_file import load_sweep
-from jaxhydro.sweep.write_sweep import Summary, summary_of, write_outputs
+from jaxhydro.sweep.sweep_results import SweepResults
+from jaxhydro.sweep.write_sweep import results_of, write_outputs
 
 MAX_PRINTED_FAILURES = 5  # failures that are printed, of runs that failed alike
 
@@ -90,12 +92,12 @@ def _sweep(
         many = f"{ran.runs} run{'s' * (ran.runs != 1)}"
         say(f"{many} in {ran.seconds:.1f} s, {ran.simulated / ran.seconds:.0f} times real time", stderr=True)
     data = open_results(out)
-    summary = summary_of(data)
-    write_outputs(out, data, summary, made.about)
+    found = results_of(data, made.about)
+    write_outputs(out, data, found)
     finished()
-    _print_results(summary, data.exponent.values)
+    _print_results(found)
     say(f"Results are in {out}")
-    return not summary.failed
+    return not found.runs.failed
 
 
 def _cluster(scheduler: str, workers: int, batch: int) -> str:
@@ -133,21 +135,24 @@ def _print_plan(made: PreparedSweep) -> None:
         print_used(made.setup.calibrated)
 
 
-def _print_results(summary: Summary, exponents) -> None:
+def _print_results(found: SweepResults) -> None:
     rows = []
-    for channel, one in summary.lifetimes.items():
-        numbers = (one.mean, one.standard_deviation, one.standard_deviation_spread, one.minimum, one.maximum)
-        shown = ("-" if value != value else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in (*numbers, *one.ranges))
-        rows.append((f"{channel} ({summary.units[channel]})", *shown))
-    heads = ("Channel", "Mean", "Standard deviation", "Spread over seeds", "Minimum", "Maximum")
-    if summary.done:
-        ranges = (f"Equivalent range m = {m:g}" for m in exponents)
-        table("Over the life", (*heads, *ranges), rows)
-    if summary.failed:
-        share = f"; cases of which no run is left have {summary.missing:.2%} of the life" if summary.missing else ""
-        complain(f"{summary.failed} of {summary.total} runs failed{share}")
-        listed, others = summary.failures[:MAX_PRINTED_FAILURES], summary.failures[MAX_PRINTED_FAILURES:]
+    for channel, one in found.lifetime.items():
+        values = [one.mean, one.standard_deviation, one.standard_deviation_spread, one.minimum, one.maximum]
+        values += one.damage_equivalent_range.values()
+        shown = ("-" if value is None else f"{value:.4g}" if abs(value) > 1e-9 else "0" for value in values)
+        rows.append((f"{channel} ({one.unit})", *shown))
+    if found.runs.done:
+        heads = ("Channel", "Mean", "Standard deviation", "Spread over seeds", "Minimum", "Maximum")
+        exponents = next(iter(found.lifetime.values())).damage_equivalent_range
+        table("Over the life", (*heads, *(f"Equivalent range m = {m}" for m in exponents)), rows)
+    if found.runs.failed:
+        missing = found.probability_without_runs
+        share = f"; cases of which no run is left have {missing:.2%} of the life" if missing else ""
+        complain(f"{found.runs.failed} of {found.runs.total} runs failed{share}")
+        listed, others = found.failures[:MAX_PRINTED_FAILURES], found.failures[MAX_PRINTED_FAILURES:]
         for failure in listed:
-            complain(f"{failure.where}: {failure.reason}")
+            state = failure.hs, failure.tp, failure.gamma
+            complain(f"{runs_in_words(state, failure.headings, failure.seeds)}: {failure.reason}")
         if others:
             complain(f"and {sum(failure.runs for failure in others)} more: see sweep.json")

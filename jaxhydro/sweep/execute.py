@@ -41,7 +41,7 @@ from jaxhydro.sweep.sweep_file import load_sweep
 from jaxhydro.sweep.sweep_remarks import impossible, notes, outside, shares_in_band
 from jaxhydro.sweep.sweep_schema import Sweep
 from jaxhydro.sweep.worker import RunsDone
-from jaxhydro.sweep.write_sweep import summary_of, write_outputs
+from jaxhydro.sweep.write_sweep import results_of, write_outputs
 
 
 class PreparedSweep(NamedTuple):
@@ -265,7 +265,7 @@ def run_sweep(
         if numbers := to_do(folder, retry_failed):
             run_all(folder, made, numbers, chosen(made.setup, len(numbers), workers, batch), scheduler, progress)
         data = open_results(folder)
-        write_outputs(folder, data, summary_of(data), made.about)
+        write_outputs(folder, data, results_of(data, made.about))
     return data
 
 

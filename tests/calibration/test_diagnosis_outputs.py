@@ -19,8 +19,8 @@ from calibration.plots import diagnosis_figures as plots
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
 from calibration.report.write_report import write_report
-from calibration.results.read_calibration import Parameter
-from calibration.results.read_diagnosis import read_diagnosis
+from calibration.results.calibration_file import Parameter
+from calibration.results.diagnosis_file import read_diagnosis
 from calibration.results.write_calibration import NotFinite
 from calibration.results.write_diagnosis import document, paired, write_diagnosis
 from jaxhydro.errors import InputError
@@ -197,7 +197,7 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
 
 def test_what_is_not_finite_is_refused(result: Diagnosis) -> None:
     force = {FORCE: replace(result.effects[0].parameters[FORCE], value=np.nan)}
-    with pytest.raises(NotFinite, match="force of what was found"):
+    with pytest.raises(NotFinite, match=r"coulomb_friction\.surge\.force is not finite"):
         document(replace(result, effects=(replace(result.effects[0], parameters=force),)))
     with pytest.raises(NotFinite, match="fitted test"):
         document(replace(result, augmented=changed(result.augmented, 0, simulated=np.full(2400, np.nan))))

@@ -24,7 +24,7 @@ from calibration.discovery.latent_force.recover_force import forces_of, latent_f
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest
 from calibration.report.write_report import write_report
 from calibration.result import Series, TestFit
-from calibration.results.read_diagnosis import read_diagnosis
+from calibration.results.diagnosis_file import read_diagnosis
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro.dynamics.simulate import free_decay
 from jaxhydro.platform.build import load_model

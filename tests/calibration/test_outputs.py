@@ -1,17 +1,20 @@
 """What a calibration leaves behind: files that are whole or absent, valid, escaped and readable without a network."""
 
+import copy
 import json
 import os
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
 import xarray as xr
 from fake_calibration import small
+from fake_diagnosis import fake_diagnosis
 from PIL import Image
 
 import calibration
@@ -21,9 +24,11 @@ from calibration.formatting import number, percent, with_deviation
 from calibration.plots import decay_figures as plot
 from calibration.report.write_report import write_report
 from calibration.result import BandError, Calibration, Estimate
+from calibration.results import schema
 from calibration.results import write_calibration as outputs
-from calibration.results.read_calibration import read_saved, read_values
+from calibration.results.calibration_file import read_saved, read_values
 from calibration.results.write_calibration import NotFinite, dataset, document, write_calibration
+from calibration.results.write_diagnosis import document as document_of_diagnosis
 from jaxhydro.errors import InputError
 from jaxhydro.files import check_folder, staged
 
@@ -43,6 +48,12 @@ def written(result: Calibration, tmp_path_factory: pytest.TempPathFactory) -> Pa
     return write_calibration(result, tmp_path_factory.mktemp("results") / "new" / "deep")
 
 
+def follows(document: Any, model: str) -> None:
+    """Raises unless a document is as outputs.schema.json says of a file, by the name of its model."""
+    whole = json.loads(SCHEMAS[0].read_text())
+    jsonschema.Draft202012Validator({"$ref": f"#/$defs/{model}", "$defs": whole["$defs"]}).validate(document)
+
+
 def contents(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
@@ -58,16 +69,61 @@ def changed(result: Calibration, test: int, **series) -> Calibration:
 # --- calibration.json
 
 
-@pytest.mark.parametrize("schema", SCHEMAS, ids=["own", "shared"])
-def test_the_document_follows_the_schema(written: Path, schema: Path) -> None:
-    if not schema.exists():
+@pytest.mark.parametrize("contract", SCHEMAS, ids=["own", "shared"])
+def test_the_document_follows_the_schema(written: Path, contract: Path) -> None:
+    if not contract.exists():
         pytest.skip("no shared schema here")
 
     def refuse(name: str) -> None:
         raise AssertionError(f"{name} is no JSON")
 
     read = json.loads((written / "calibration.json").read_text(), parse_constant=refuse)
-    jsonschema.Draft202012Validator(json.loads(schema.read_text())).validate(read)
+    jsonschema.Draft202012Validator(json.loads(contract.read_text())).validate(read)
+
+
+def test_the_schema_is_that_of_the_models() -> None:
+    """Renewed by `python -m calibration.results.schema`."""
+    assert SCHEMAS[0].read_text(encoding="utf-8") == schema.text()
+
+
+def required_keys(part: dict[str, Any], whole: dict[str, Any], document: Any, path: tuple[str | int, ...] = ()):
+    """Paths of the keys that a schema requires of a document."""
+    part = whole["$defs"][part["$ref"].rsplit("/", 1)[1]] if "$ref" in part else part
+    if isinstance(document, list):
+        for i, value in enumerate(document):
+            yield from required_keys(part.get("items", {}), whole, value, (*path, i))
+    if isinstance(document, dict):
+        yield from ((*path, name) for name in part.get("required", ()))
+        for name, value in document.items():
+            other = part.get("additionalProperties", {})
+            yield from required_keys(part.get("properties", {}).get(name, other), whole, value, (*path, name))
+
+
+def test_a_document_without_a_key_of_the_contract_is_refused() -> None:
+    """By the shared contract, and by the schema of the models: what is promised there is promised here."""
+    if not SCHEMAS[1].exists():
+        pytest.skip("no shared schema here")
+    own, shared = (json.loads(path.read_text()) for path in SCHEMAS)
+    document = document_of_diagnosis(fake_diagnosis()).model_dump(mode="json", exclude_unset=True)
+    paths = list(required_keys(shared, shared, document))
+    assert len(paths) > 100 and ("missing", "effects", 0, "evidence", "delta_bic") in paths
+    for path in paths:
+        lacking = copy.deepcopy(document)
+        at: Any = lacking
+        for step in path[:-1]:
+            at = at[step]
+        del at[path[-1]]
+        # without `missing` it is a calibration.json
+        assert not jsonschema.Draft202012Validator(shared).is_valid(lacking)
+        assert not jsonschema.Draft202012Validator(own).is_valid(lacking) or path == ("missing",)
+
+
+def test_keys_of_later_versions_are_taken(written: Path, tmp_path: Path) -> None:
+    data = json.loads((written / "calibration.json").read_text())
+    data["later"] = data["baseline"]["later"] = data["baseline"]["parameters"]["column.Ca_t"]["later"] = {"a": 1}
+    (tmp_path / "calibration.json").write_text(json.dumps(data))
+    assert read_saved(tmp_path) == read_saved(written)
+    jsonschema.validate(data, json.loads(SCHEMAS[0].read_text()))
 
 
 def test_the_document_says_what_the_contract_says(result: Calibration, written: Path) -> None:
@@ -93,7 +149,7 @@ def test_the_document_says_what_the_contract_says(result: Calibration, written: 
 
 def test_what_is_not_finite_is_null_or_left_out_or_refused(result: Calibration) -> None:
     lost = changed(result, 2, simulated=np.full_like(result.tests[2].main.simulated, np.nan))
-    read = document(lost)
+    read = document(lost).model_dump(mode="json", exclude_unset=True)
     assert read["baseline"]["objective"]["holdout"] is None
     assert set(read["baseline"]["error"]["pitch-1"]) == {"use", "surge", "heave"}
     json.dumps(read, allow_nan=False)
@@ -104,13 +160,13 @@ def test_what_is_not_finite_is_null_or_left_out_or_refused(result: Calibration) 
         parameters = {**result.parameters, "column.Ca_t": replace(result.parameters["column.Ca_t"], value=np.nan)}
         document(replace(result, parameters=parameters))
     only = replace(result, tests=result.tests[:2])
-    assert document(only)["baseline"]["objective"]["holdout"] is None
+    assert document(only).baseline.objective.holdout is None
 
 
 def test_a_written_result_is_read_back(result: Calibration, written: Path) -> None:
     values = read_values(written / "calibration.json")
     assert values == {label: one.value for label, one in result.parameters.items()} == read_values(written)
-    assert read_saved(written).errors("x")["surge-1"]["surge"].unit == "m"
+    assert read_saved(written).baseline.error["surge-1"].channels["surge"].unit == "m"
 
 
 @pytest.mark.parametrize(
@@ -355,9 +411,9 @@ def test_the_page_has_the_classical_damping_and_the_truth_of_the_file(result: Ca
     """Measured and simulated, as the analysis of the motions has them; schema and older files are none the worse for it."""
     folder = write_calibration(result, tmp_path / "out", figures=False, truth={"column.Ca_t": 1.5})
     read = json.loads((folder / "calibration.json").read_text())
-    for schema in SCHEMAS:
-        if schema.exists():
-            jsonschema.Draft202012Validator(json.loads(schema.read_text())).validate(read)
+    for path in SCHEMAS:
+        if path.exists():
+            jsonschema.Draft202012Validator(json.loads(path.read_text())).validate(read)
     test = result.tests[2]
     fits = [classical(test.time, x, test.main.noise).fit for x in (test.main.measured, test.main.simulated)]
     found = read["tests"]["pitch-1"]["linear_quadratic"]

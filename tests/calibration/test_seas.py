@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from ruamel.yaml import YAML
+from test_outputs import follows
 
 from benchmarks.reference_waves import WaveModel, Waves, march
 from calibration.campaign.load_campaign import load_campaign
@@ -112,6 +113,7 @@ def results(made, tmp_path_factory):
 def test_a_made_run_comes_back(results):
     """Scale, gauge off the origin, sensors' offsets, an axis turned round, rounded times, windows of one run."""
     found = json.loads((results / "comparison.json").read_text())
+    follows(found, "ComparisonFile")
     assert set(found["error"]) == {"sea-a", "sea-b", "wave"}
     for id, errors in found["error"].items():
         assert max(errors[dof]["relative"] for dof in ("surge", "heave", "pitch")) < 0.02, id

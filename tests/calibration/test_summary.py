@@ -11,8 +11,8 @@ from calibration.formatting import counted, percent_span, readable_unit
 from calibration.report import tables
 from calibration.report.summary import CalibrationSummary, calibration_sentence, summary_of
 from calibration.report.sweep_page import SweepSummary, sweep_sentence
-from calibration.results.read_calibration import SavedCalibration
-from calibration.results.read_uncertainty import IntervalSummary, interval_sentence
+from calibration.results.calibration_file import CalibrationFile
+from calibration.results.uncertainty_file import IntervalSummary, interval_sentence
 
 
 def error(relative: float, scored: bool = True) -> dict[str, Any]:
@@ -28,9 +28,9 @@ def saved(
     parameters: dict[str, dict[str, Any]],
     converged: bool = True,
     **more: Any,
-) -> SavedCalibration:
+) -> CalibrationFile:
     """A calibration.json: tests by id as (kind, use, error)."""
-    return SavedCalibration.model_validate(
+    return CalibrationFile.model_validate(
         {
             "campaign": "basin",
             "jaxhydro": "0",
@@ -46,8 +46,8 @@ def saved(
     )
 
 
-def said(one: SavedCalibration) -> str:
-    return calibration_sentence(summary_of(one, "calibration.json"))
+def said(one: CalibrationFile) -> str:
+    return calibration_sentence(summary_of(one))
 
 
 SURE = {"a": coefficient(), "b": coefficient()}

@@ -9,11 +9,12 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 from test_cli import cache, run  # noqa: F401
-from test_outputs import Page
+from test_outputs import Page, follows
 
 from calibration.report.write_report import write_report
 from calibration.results import write_uncertainty as uncertainty_outputs
 from calibration.results.result_folder import DIAGNOSIS_FILE, UNCERTAINTY_FILE
+from calibration.results.uncertainty_file import UncertaintyFile
 from calibration.results.write_uncertainty import write_uncertainty
 from jaxhydro.errors import InputError
 
@@ -70,6 +71,11 @@ def page_of(folder: Path, **changes: Any) -> Page:
 
 def words(page: Page) -> str:
     return " ".join(page.text.split())
+
+
+def test_the_content_follows_the_schema() -> None:
+    follows(CONTENT, "UncertaintyFile")
+    assert UncertaintyFile.model_validate(CONTENT).model_dump(mode="json", exclude_unset=True) == CONTENT
 
 
 def test_the_page_tells_it_in_order_and_needs_nothing_else(tmp_path: Path) -> None:
@@ -183,7 +189,7 @@ def test_a_broken_file_is_told(tmp_path: Path, content: Any, said: str) -> None:
 
 def test_the_command_makes_the_page_and_a_new_result_takes_it_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     found: Any = SimpleNamespace()
-    monkeypatch.setattr(uncertainty_outputs, "document", lambda _: CONTENT)
+    monkeypatch.setattr(uncertainty_outputs, "document", lambda _: UncertaintyFile.model_validate(CONTENT))
     write_uncertainty(found, tmp_path / "out", figures=False)
     assert "report.html" in run("report", tmp_path / "out") and (tmp_path / "out" / "report.html").exists()
     (tmp_path / "out" / "notes.txt").write_text("keep")

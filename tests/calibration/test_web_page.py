@@ -5,15 +5,17 @@ import json
 import re
 import shutil
 import subprocess
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fake_calibration import small
 from fake_diagnosis import fake_diagnosis
 from test_uncertainty_page import CONTENT
 
-from calibration.report.web_page import SHORT_CELL, breakable, framed, result_box, table
+from calibration.report.web_page import PAGES, breakable
 from calibration.report.write_report import write_report
 from calibration.results.write_calibration import write_calibration
 from calibration.results.write_diagnosis import write_diagnosis
@@ -29,9 +31,18 @@ document.getElementById('o').textContent = 'RESULT' + JSON.stringify({client: ro
   wide: wide.map(x => x.rows[0].innerText)}) + 'END'; }</script>"""
 
 
+def macro(name: str, *given: Any, **options: Any) -> str:
+    """HTML of a macro of the pages."""
+    return getattr(PAGES.get_template("macros.html.jinja").module, name)(*given, **options)
+
+
+def table(heads: list[str], rows: list[list[str]], *numbers: int, muted: Sequence[int] = ()) -> str:
+    return macro("table", (heads, rows), *numbers, muted=muted)
+
+
 def test_only_numbers_and_short_cells_stay_on_one_line() -> None:
     """Free text in any column wraps."""
-    text = table(["Effect", "Size", "Why not"], [[LONG, "1.5 ± 0.1", LONG], ["short", "2", "x" * SHORT_CELL]], 1, 2)
+    text = table(["Effect", "Size", "Why not"], [[LONG, "1.5 ± 0.1", LONG], ["short", "2", "x" * 20]], 1, 2)
     assert re.findall(r"<td([^>]*)>", text) == [
         ' data-label="Effect"',
         ' class=number data-label="Size"',
@@ -40,7 +51,10 @@ def test_only_numbers_and_short_cells_stay_on_one_line() -> None:
         ' class=number data-label="Size"',
         ' class=short data-label="Why not"',
     ]
-    rules = re.findall(r"([^{}]*)\{[^{}]*white-space: nowrap[^{}]*\}", framed("a", "b", [], "0"))
+    rules = re.findall(
+        r"([^{}]*)\{[^{}]*white-space: nowrap[^{}]*\}",
+        PAGES.get_template("base.html.jinja").render(title="a", by="b", version="0"),
+    )
     assert [selector.strip() for rule in rules for selector in rule.split(",")] == ["td.number", ".short"]
 
 
@@ -48,11 +62,11 @@ def test_a_table_of_many_columns_is_made_for_a_narrow_screen() -> None:
     """There each cell needs the heading of its column. One of two columns stays a table. Grey rows are as asked."""
     two, three = table(["A", "B"], [["a", "b"]]), table(["A", "B", "C"], [["a", "b", "c"], ["d", "e", "f"]], muted=[1])
     assert "class=many" not in two and "<table class=many>" in three and three.count("<tr class=muted>") == 1
-    assert '"A&quot;<"' not in table(['A"<'], [["a"]]) and 'data-label="A&quot;&lt;"' in table(['A"<'], [["a"]])
+    assert '"A&#34;<"' not in table(['A"<'], [["a"]]) and 'data-label="A&#34;&lt;"' in table(['A"<'], [["a"]])
 
 
 def test_spans_of_numbers_stay_on_one_line() -> None:
-    assert result_box("2 to 0.4-1.7 %; a <b>") == (
+    assert macro("result", "2 to 0.4-1.7 %; a <b>") == (
         '<p class="verdict">2 to <span class=short>0.4-1.7 %</span>; a &lt;b&gt;</p>'
     )
 

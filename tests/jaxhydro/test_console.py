@@ -8,7 +8,7 @@ from test_cli import RUNNER, run, small_campaign
 
 import jaxhydro as jh
 from calibration.report import tables
-from calibration.results.read_calibration import read_saved
+from calibration.results.calibration_file import read_saved
 from calibration.results.write_calibration import write_calibration
 from jaxhydro.cli import app as cli
 from jaxhydro.cli import console

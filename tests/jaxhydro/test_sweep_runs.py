@@ -18,6 +18,7 @@ import pytest
 import xarray as xr
 import zarr
 from fake_sweep import BREAKING, PLATFORM, SWEEP, written
+from test_outputs import follows
 from typer.testing import CliRunner
 
 import jaxhydro as jh
@@ -148,6 +149,7 @@ def test_the_command_writes_what_the_life_is(file, whole) -> None:
     assert text.count("break above") == 2  # noted before, and one line for all runs that failed alike
     assert "Hs 20 m, Tp 9 s, heading 0 deg, 8 seeds: expected a sea that does not break" in text
     document = json.loads((whole / "sweep.json").read_text())
+    follows(document, "SweepResults")
     assert document["runs"] == {"total": 24, "done": 16, "failed": 8}
     (failure,) = document["failures"]
     assert "break" in failure["reason"] and failure["runs"] == 8 and failure["seeds"] == list(range(8))
@@ -220,7 +222,7 @@ def test_a_stop_at_any_time_says_what_is_there(file, whole, tmp_path, monkeypatc
     with monkeypatch.context() as late:  # all is written: it is done
         late.setattr("jaxhydro.cli.sweep_command._print_results", stop)
         assert f"Results are in {whole}" in command("sweep", file, "--out", whole, status=3)
-    monkeypatch.setattr("jaxhydro.cli.sweep_command.summary_of", stop)
+    monkeypatch.setattr("jaxhydro.cli.sweep_command.results_of", stop)
     assert f"stopped; what is done is in {whole / RESULTS}" in command("sweep", file, "--out", whole, status=130)
     before = signal.getsignal(signal.SIGINT)
     monkeypatch.setattr("jaxhydro.sweep.execute.impossible", swallowed)

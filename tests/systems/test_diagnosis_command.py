@@ -20,8 +20,8 @@ from calibration.fitting.decay_fit import Interrupted, Progress
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import Diverged, Options
 from calibration.results.applied_calibration import apply_calibration
-from calibration.results.read_calibration import read_saved
-from calibration.results.read_diagnosis import read_diagnosis
+from calibration.results.calibration_file import read_saved
+from calibration.results.diagnosis_file import read_diagnosis
 from calibration.results.strip_conventions import DEFAULT_STRIPS, StripConventions
 from calibration.results.write_calibration import write_calibration
 from calibration.results.write_diagnosis import write_diagnosis

@@ -1,23 +1,35 @@
-"""Schema and reading of uncertainty.json, and its tables."""
+"""Model of uncertainty.json, and its tables."""
 
 from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
 from calibration.formatting import counted, interval, listed, number, percent_span, readable_unit, to_width
-from calibration.results.read_calibration import Figure, Parameter, ResultModel
+from calibration.results.calibration_file import Parameter
+from calibration.results.result_folder import Figure
 from calibration.vocabulary import UNDETERMINED, Rows
 from jaxhydro.errors import Number
+from jaxhydro.result_model import ResultModel
 
 INTERVAL_METHODS = {"profile": "Profile", "blocks": "Bootstrap, blocks", "repeats": "Bootstrap, repeats", "nuts": "NUTS"}
 Interval = tuple[Number | None, Number | None]
 
 
 class ParameterIntervals(Parameter):
-    """One calibrated parameter and its intervals, None on a side that is open: that of the covariance, and those found in the
-    ways that were asked for."""
+    """A calibrated parameter and its intervals; an end is None where the interval is open.
+
+    Attributes:
+        laplace: Interval of the covariance, with coloured errors.
+        white: The same as if errors were white.
+        white_too_small_by: Width of `laplace` over that of `white`.
+        profile: Interval of the profile likelihood.
+        blocks: Interval of a bootstrap over blocks of the residuals.
+        repeats: Interval of a bootstrap over repeated tests.
+        nuts: Interval of draws from the posterior.
+    """
 
     laplace: Interval
+    white: Interval = (None, None)
     white_too_small_by: Number | None = None
     profile: Interval | None = None
     blocks: Interval | None = None
@@ -30,31 +42,84 @@ class ParameterIntervals(Parameter):
         return {way: ends for way, ends in found.items() if ends is not None}
 
 
-class SavedBootstrap(ResultModel):
-    """A bootstrap: how many resamplings are in its intervals."""
+class ProfileCurve(ResultModel):
+    """Profile likelihood of a parameter.
 
+    Attributes:
+        values: Values of the parameter.
+        drop: Rise of -2 ln L there.
+        nu: Degrees of freedom of Student's t.
+    """
+
+    values: list[Number | None]
+    drop: list[Number | None]
+    nu: Number | None = None
+
+
+class BootstrapDraws(ResultModel):
+    """A bootstrap.
+
+    Attributes:
+        asked: Number of resamplings asked for.
+        draws: Number of resamplings in the intervals.
+        unsettled: Number of refits that did not converge.
+        groups: Length of blocks (s) by test; or repeated tests by the first of them.
+    """
+
+    asked: int | None = None
     draws: int
+    unsettled: int = 0
+    groups: dict[str, Number | list[str]] = Field(default_factory=dict)
 
 
-class SavedDraws(ResultModel):
-    """NUTS: its chains, and the draws of each."""
+class PosteriorDraws(ResultModel):
+    """Draws by NUTS.
+
+    Attributes:
+        chains: Number of chains.
+        draws: Number of draws of each chain.
+        divergences: Number of divergent steps.
+        r_hat: Convergence diagnostic, by parameter.
+        effective: Effective number of draws, by parameter.
+    """
 
     chains: int
     draws: int
+    divergences: int = 0
+    r_hat: dict[str, Number | None] = Field(default_factory=dict)
+    effective: dict[str, Number | None] = Field(default_factory=dict)
 
 
-class SavedUncertainty(ResultModel):
-    """uncertainty.json."""
+class UncertaintyFile(ResultModel):
+    """Content of uncertainty.json. Values are in the parameters' units, angles in rad.
+
+    Attributes:
+        campaign: Name of the campaign.
+        platform: Name of the platform.
+        jaxhydro: Version of jaxhydro.
+        calibration: File of the calibration.
+        level: Probability of the intervals.
+        seed: Seed of the draws.
+        converged: Whether the refit of the records converged.
+        parameters: Intervals by label.
+        profiles: Profile likelihoods by label.
+        bootstrap: Bootstraps by method.
+        nuts: Draws from the posterior.
+        notes: What is to be known before an interval is used, as sentences.
+        figures: Figures.
+    """
 
     campaign: str
     platform: str
     jaxhydro: str
     calibration: str
     level: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, lt=1)]
+    seed: int = 0
     converged: bool
     parameters: dict[str, ParameterIntervals]
-    bootstrap: dict[str, SavedBootstrap] = Field(default_factory=dict)
-    nuts: SavedDraws | None = None
+    profiles: dict[str, ProfileCurve] = Field(default_factory=dict)
+    bootstrap: dict[str, BootstrapDraws] = Field(default_factory=dict)
+    nuts: PosteriorDraws | None = None
     notes: list[str] = Field(default_factory=list)
     figures: list[Figure] = Field(default_factory=list)
 
@@ -77,7 +142,7 @@ class IntervalSummary(NamedTuple):
     undetermined: tuple[str, ...]
 
 
-def summary_of(saved: SavedUncertainty) -> IntervalSummary:
+def summary_of(saved: UncertaintyFile) -> IntervalSummary:
     """The summary of the Laplace intervals."""
     widths = {}
     for label, one in saved.parameters.items():
@@ -104,7 +169,7 @@ def interval_sentence(summary: IntervalSummary) -> str:
     return f"{said}; {UNDETERMINED}: {listed(rest)}." if rest else f"{said}."
 
 
-def intervals_table(saved: SavedUncertainty) -> Rows:
+def intervals_table(saved: UncertaintyFile) -> Rows:
     """Value, Laplace interval, and how much too small it would be as if errors were white."""
     rows = []
     for label, one in saved.parameters.items():
@@ -116,7 +181,7 @@ def intervals_table(saved: SavedUncertainty) -> Rows:
     return ("Parameter", "Value", f"{saved.percent} interval", "Unit", "Width over white-noise width", "Remark"), rows
 
 
-def other_intervals_table(saved: SavedUncertainty) -> Rows:
+def other_intervals_table(saved: UncertaintyFile) -> Rows:
     """The Laplace interval beside those found in other ways; no rows where none was asked for."""
     there = saved.ways()
     rows = []

@@ -1,82 +1,123 @@
-"""Schema and reading of calibration.json."""
+"""Model and reading of calibration.json."""
 
 import json
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
+from calibration.campaign.manifest import Use
 from calibration.residuals.measured_seas import Options
-from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE
+from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE, Figure
 from calibration.results.strip_conventions import StripConventions
 from jaxhydro.errors import InputError, NonNegative, Number, Positive, Problem, suggest_path, validate
 from jaxhydro.platform.body import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
+from jaxhydro.result_model import ReferenceSeaState, ResultModel
 from jaxhydro.waves.irregular_sea import Acting
 from jaxhydro.waves.sea import Stretching
 from jaxhydro.waves.second_order import Kind
 
-
-class ResultModel(BaseModel):
-    """Keys that are not known are taken and left alone: results may grow."""
-
-    model_config = ConfigDict(frozen=True, extra="ignore")
+EnergyErrors = dict[str, dict[str, Number]]  # relative error of the energy, by motion and band
 
 
 class Parameter(ResultModel):
-    """One calibrated parameter."""
+    """A calibrated parameter.
+
+    Attributes:
+        value: Value, in `unit`.
+        standard_deviation: Standard deviation, in `unit`; None where the records do not determine the parameter.
+        unit: SI unit; angles in rad.
+        at_bound: Whether the value is at one of its bounds.
+        identifiable: Whether the records determine the parameter.
+        start: Value where the fit began.
+        label: Label in the model, where the key is shorter than that.
+        meaning: Description of the parameter.
+    """
 
     value: Number
-    unit: str
     standard_deviation: Number | None = None
+    unit: str
     at_bound: bool = False
     identifiable: bool = True
     start: Number | None = None
+    label: str = ""
     meaning: str = ""
 
 
-class ChannelError(ResultModel):
-    """RMSE of one channel, in m or deg, and over the standard deviation of what was measured."""
+class MotionError(ResultModel):
+    """RMSE of a simulated motion, in `unit` (m or deg), and over the standard deviation of the measured motion."""
 
     rmse: Number
     unit: str
     relative: Number
+
+
+class ChannelError(MotionError):
+    """Error of a motion after calibration and before it.
+
+    Attributes:
+        in_objective: Whether the motion counts in the objective.
+        before: Error of the model that the calibration started from.
+    """
+
     in_objective: bool = True
-    before: "ChannelError | None" = None
+    before: MotionError | None = None
 
 
-class EnergyErrors(ResultModel):
-    """Errors of energy of one test, by motion and band."""
+class TestErrors(ResultModel):
+    """Errors of a test: of its motions, each by the name of its channel, and of energies.
 
-    bands: dict[str, dict[str, Number]]
+    Attributes:
+        use: Use of the test.
+        bands: (simulated - measured) / measured energy, by motion and band; of tests in irregular waves only.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="allow")
+    __pydantic_extra__: dict[str, ChannelError] = Field(init=False)
+
+    use: Use
+    bands: EnergyErrors = Field(default_factory=dict)
+
+    @property
+    def channels(self) -> dict[str, ChannelError]:
+        """Errors of the motions, by channel."""
+        return self.__pydantic_extra__
 
 
 class Objective(ResultModel):
-    """J over the fitted and over the held-out tests."""
+    """Sum of RMSE over standard deviation, over the fitted and over the held-out tests."""
 
     fit: Number
     holdout: Number | None = None
-
-
-class ReferenceSeaState(ResultModel):
-    """The sea state (m, s) that exponents count from."""
-
-    significant_height: Positive
-    peak_period: Positive
 
 
 Law = Annotated[ConstantDrag | HighPassAtEnds | KeuleganCarpenter | SuctionSide, Field(discriminator="law")]
 
 
 class FittedModel(ResultModel):
-    """A model as it was calibrated. `error` has `use`, and channels, by test."""
+    """A calibrated model.
+
+    Attributes:
+        parameters: Calibrated parameters, by label.
+        error: Errors by test.
+        objective: Objective J.
+        converged: Whether the fit converged and follows its records.
+        iterations: Number of iterations.
+        seconds: Duration of the calibration (s).
+        history: Objective at each accepted iteration.
+        notes: Findings, as sentences.
+        sea_state_reference: Sea state that exponents refer to.
+        drag_laws: Laws of drag that is not plain, by coefficient.
+    """
 
     parameters: dict[str, Parameter]
-    error: dict[str, dict[str, Any]]
+    error: dict[str, TestErrors]
     objective: Objective
     converged: bool
     iterations: int | None = None
     seconds: Number | None = None
+    history: list[Number | None] = Field(default_factory=list)
     notes: list[str] = Field(default_factory=list)
     sea_state_reference: ReferenceSeaState | None = None
     drag_laws: dict[str, Law] = Field(default_factory=dict)
@@ -100,7 +141,18 @@ class LinearQuadraticDamping(ResultModel):
 
 
 class TestDescription(ResultModel):
-    """What a test was."""
+    """Description of a test.
+
+    Attributes:
+        use: Use of the test.
+        kind: Kind of the test, such as `decay`.
+        degree_of_freedom: Degree of freedom that was released; None for tests in waves.
+        file: Path of the data file.
+        duration: Duration (s).
+        samples: Number of samples.
+        bands_before: Errors of energy before the calibration.
+        linear_quadratic: Classical analysis of a decay.
+    """
 
     use: str = ""
     kind: str = ""
@@ -108,15 +160,8 @@ class TestDescription(ResultModel):
     file: str = ""
     duration: Number | None = None
     samples: int | None = None
-    bands_before: dict[str, dict[str, Number]] = Field(default_factory=dict)
+    bands_before: EnergyErrors = Field(default_factory=dict)
     linear_quadratic: LinearQuadraticDamping | None = None
-
-
-class Figure(ResultModel):
-    """A figure, its file below the folder, and its caption."""
-
-    file: str
-    caption: str = ""
 
 
 class SeaOptions(ResultModel):
@@ -142,18 +187,29 @@ class SeaOptions(ResultModel):
         return Options(**self.model_dump())
 
 
-class SavedCalibration(ResultModel):
-    """calibration.json; of a diagnosis.json the models before and after, `augmented` the one with what was missing; `strips` is
-    how these are taken where a platform file does not say so, `seas` how waves are. `truth`
-    are the coefficients that a synthetic campaign was made with, by label."""
+class CalibrationFile(ResultModel):
+    """Content of calibration.json; of a diagnosis.json, what both files have.
+
+    Attributes:
+        campaign: Name of the campaign.
+        platform: Name of the platform.
+        strips: Conventions of strip loads, where the platform file does not state them.
+        seas: Options of the waves, where they are not the campaign's.
+        jaxhydro: Version of jaxhydro.
+        baseline: The calibrated model.
+        augmented: In a diagnosis.json, the calibrated model with the effects that were found.
+        tests: Descriptions of the tests.
+        truth: True coefficients of a synthetic campaign, by label.
+        figures: Figures.
+    """
 
     campaign: str
-    jaxhydro: str
-    baseline: FittedModel
-    augmented: FittedModel | None = None
     platform: str = ""
     strips: StripConventions | None = None
     seas: SeaOptions | None = None
+    jaxhydro: str
+    baseline: FittedModel
+    augmented: FittedModel | None = None
     tests: dict[str, TestDescription] = Field(default_factory=dict)
     truth: dict[str, Number] = Field(default_factory=dict)
     figures: list[Figure] = Field(default_factory=list)
@@ -172,27 +228,14 @@ class SavedCalibration(ResultModel):
         """Its calibrated values by label."""
         return {label: one.value for label, one in self.best.parameters.items()}
 
-    def errors(self, source: str, key: str = "baseline") -> dict[str, dict[str, ChannelError]]:
-        """Test -> channel -> error of the baseline or the augmented model. Raises InputError for what is none."""
-        fitted: FittedModel = getattr(self, key)
-        return {
-            id: {
-                name: validate(ChannelError, value, f"{source}: {key}.error.{id}.{name}")
-                for name, value in row.items()
-                if name not in ("use", "bands", "bands_before")
-            }
-            for id, row in fitted.error.items()
-        }
-
-    def bands(self, source: str) -> dict[str, dict[str, dict[str, tuple[float | None, float]]]]:
-        """Test -> motion -> band -> error of its energy before and after. Raises InputError for what is none."""
+    def bands(self) -> dict[str, dict[str, dict[str, tuple[float | None, float]]]]:
+        """Errors of energy of the baseline before and after the calibration, by test, motion and band."""
         found = {}
         for id, row in self.baseline.error.items():
-            after = validate(EnergyErrors, {"bands": row.get("bands", {})}, f"{source}: baseline.error.{id}").bands
             before = self.tests[id].bands_before if id in self.tests else {}
             found[id] = {
                 channel: {band: (before.get(channel, {}).get(band), value) for band, value in bands.items()}
-                for channel, bands in after.items()
+                for channel, bands in row.bands.items()
             }
         return found
 
@@ -200,10 +243,10 @@ class SavedCalibration(ResultModel):
 S = TypeVar("S", bound=ResultModel)
 
 
-def read_saved(path: str | PathLike[str]) -> SavedCalibration:
+def read_saved(path: str | PathLike[str]) -> CalibrationFile:
     """The result in a calibration.json or diagnosis.json, or in the folder that has one. Raises InputError with all that is
     wrong."""
-    return read_as(SavedCalibration, path)
+    return read_as(CalibrationFile, path)
 
 
 def file_of(path: str | PathLike[str]) -> Path:

@@ -1,0 +1,212 @@
+"""Model and reading of diagnosis.json."""
+
+from os import PathLike
+
+from pydantic import Field
+
+from calibration.discovery.diagnosis import Outcome
+from calibration.results.calibration_file import CalibrationFile, FittedModel, Parameter, read_as
+from jaxhydro.errors import Number
+from jaxhydro.result_model import ResultModel
+
+
+class Evidence(ResultModel):
+    """Evidence for an effect. See `calibration.discovery.diagnosis.Evidence`."""
+
+    score: Number | None
+    delta_bic: Number | None
+    holdout_gain: Number | None
+    clear: Number | None = None
+
+
+class FoundEffect(ResultModel):
+    """An effect that was found. See `calibration.discovery.diagnosis.Effect`."""
+
+    effect: str
+    degree_of_freedom: str | None = None
+    meaning: str = ""
+    source: str = ""
+    parameters: dict[str, Parameter]
+    evidence: Evidence
+    share_of_residual_explained: Number
+    indistinguishable_from: list[str]
+    test_that_would_tell: str | None = None
+    in_doubt: str | None = None
+
+
+class RejectedEffect(ResultModel):
+    """An effect that was tried and is not in the model, and why."""
+
+    effect: str
+    degree_of_freedom: str | None = None
+    reason: str
+
+
+class ForceRelation(ResultModel):
+    """Relation of a latent force to a motion or the wave: coherence, phase by which the force leads (rad), correlation."""
+
+    coherence: Number | None = None
+    phase: Number | None = None
+    correlation: Number | None = None
+
+
+class ForceTerm(ResultModel):
+    """A term of a force law: its expression in x, v and eta, and its coefficient (SI)."""
+
+    term: str
+    coefficient: Number | None = None
+    unit: str = ""
+
+
+class ForceLaw(ResultModel):
+    """A law of few terms for a latent force.
+
+    Attributes:
+        terms: The terms; empty where no law explains enough.
+        share: Fraction of the force's mean square that it explains in the data named by `share_of`.
+        share_of: Data that `share` refers to.
+        share_fitted: The same fraction in the fitted tests.
+        v0: Velocity scale of tanh(v / v0) (m/s, rad/s).
+        omega: Circular frequency of the lagged velocity (rad/s).
+    """
+
+    terms: list[ForceTerm] = Field(default_factory=list)
+    share: Number | None = None
+    share_of: str = ""
+    share_fitted: Number | None = None
+    v0: Number | None = None
+    omega: Number | None = None
+
+
+class SavedLatentForce(ResultModel):
+    """Force that would make the model follow the records, in one motion; SI. Dictionaries are by kind of test.
+
+    Attributes:
+        degree_of_freedom: The motion.
+        unit: N or N m.
+        rms: Root mean square.
+        bands: Fractions of the mean square in the mean and in frequency bands.
+        follows: Relations to motions and waves.
+        grows_as_power_of: Exponents of its growth, by what it grows with.
+        law: A law of few terms.
+        words: Description.
+    """
+
+    degree_of_freedom: str
+    unit: str = ""
+    rms: dict[str, Number | None] = Field(default_factory=dict)
+    bands: dict[str, dict[str, Number | None]] = Field(default_factory=dict)
+    follows: dict[str, dict[str, ForceRelation]] = Field(default_factory=dict)
+    grows_as_power_of: dict[str, Number | None] = Field(default_factory=dict)
+    law: ForceLaw | None = None
+    words: str
+
+
+class Unexplained(ResultModel):
+    """What is left: its fraction of the squared error, a description, and the forces that would explain it."""
+
+    share: Number
+    signature: str
+    forces: list[SavedLatentForce] = Field(default_factory=list)
+
+
+class MissingEffects(ResultModel):
+    """What the declared model lacks."""
+
+    verdict: Outcome
+    effects: list[FoundEffect]
+    rejected: list[RejectedEffect]
+    unexplained: Unexplained
+
+
+class EffectScore(ResultModel):
+    """Score of a candidate in one round. See `calibration.discovery.diagnosis.Score`."""
+
+    round: int
+    effect: str
+    degree_of_freedom: str | None = None
+    gain: Number | None = None
+    parameters: int
+    holdout_gain: Number | None = None
+    refitted_gain: Number | None = None
+    refitted_holdout_gain: Number | None = None
+
+
+class ResidualBand(ResultModel):
+    """Frequency band (Hz) of a residual: its rms over that of the noise."""
+
+    low: Number
+    high: Number
+    rms_over_noise: Number | None = None
+
+
+class Residual(ResultModel):
+    """Residual of one motion of one test, in `unit` (m or deg).
+
+    Attributes:
+        test: Name of the test.
+        use: Use of the test.
+        channel: The motion.
+        unit: m or deg.
+        rms: Root mean square.
+        noise: Standard deviation of the measurement noise.
+        relative: RMS over the standard deviation of the motion.
+        bands: RMS over the noise, by frequency band.
+        words: Description.
+    """
+
+    test: str
+    use: str = ""
+    channel: str
+    unit: str = ""
+    rms: Number | None = None
+    noise: Number | None = None
+    relative: Number | None = None
+    bands: list[ResidualBand] = Field(default_factory=list)
+    words: str = ""
+
+    @property
+    def over_noise(self) -> float | None:
+        """The residual over the noise."""
+        return self.rms / self.noise if self.rms is not None and self.noise else None
+
+
+class Anatomy(ResultModel):
+    """Residuals of the fitted declared model, and of the model with the effects found."""
+
+    before: list[Residual] = Field(default_factory=list)
+    after: list[Residual] = Field(default_factory=list)
+
+
+class DiagnosisFile(CalibrationFile):
+    """Content of diagnosis.json.
+
+    Attributes:
+        complete: False where the search was stopped before its end.
+        missing: What the declared model lacks.
+        augmented: The calibrated model with the effects that were found.
+        scores: Scores of all candidates in all rounds.
+        anatomy: Residuals before and after.
+        next_test: The test to do next.
+        notes: Notes and doubts, as sentences.
+        seconds: Computing time (s).
+    """
+
+    complete: bool = True
+    missing: MissingEffects
+    augmented: FittedModel
+    scores: list[EffectScore] = Field(default_factory=list)
+    anatomy: Anatomy = Field(default_factory=Anatomy)
+    next_test: str = ""
+    notes: list[str] = Field(default_factory=list)
+    seconds: Number | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether both fits did."""
+        return self.baseline.converged and self.augmented.converged
+
+
+def read_diagnosis(path: str | PathLike[str]) -> DiagnosisFile:
+    """A diagnosis.json, or that of a folder. Raises InputError with all that is wrong."""
+    return read_as(DiagnosisFile, path)
