@@ -19,7 +19,7 @@ from calibration.discovery.residual_anatomy import anatomy
 from calibration.discovery.set_up import set_up_study
 from calibration.discovery.strip_trials import StripTrial, try_strip_conventions
 from calibration.discovery.wave_records import options_for, simulated_by_program
-from calibration.fitting.decay_fit import Progress
+from calibration.fitting.progress import Progress
 from calibration.residuals.measured_seas import NO_ZERO, Options
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import CheckpointWarning

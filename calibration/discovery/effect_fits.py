@@ -18,7 +18,8 @@ from calibration.discovery.expected_residuals import expected_rows
 from calibration.discovery.held_out_blocks import HeldOutBlocks
 from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.set_up import CANDIDATE_PRIOR_WIDTH, StudySetup
-from calibration.fitting.decay_fit import DecayFit, prepare_fit, run_fit
+from calibration.fitting.decay_fit import prepare_fit, run_fit
+from calibration.fitting.fit import Fit
 from calibration.residuals.decays import first_guess
 
 SecondOrderTreatment = Literal["second", "first", "cut", "origin", "cut, origin"]
@@ -48,7 +49,7 @@ class EffectFits:
     def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
         self.campaign, self.setup, self.study, self.say = campaign, setup, setup.study, say
         self.order: SecondOrderTreatment = "second"
-        self.decay_calibration: DecayFit | None = None  # an ordinary calibration to the decays, where one is at hand
+        self.decay_calibration: Fit | None = None  # an ordinary calibration to the decays, where one is at hand
         self.strips: StripConventions | None = None  # where they are not taken as the platform file says
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
         self.base = self.study.index([*setup.base, *setup.nuisances])
@@ -77,11 +78,11 @@ class EffectFits:
         if study.fitted_decays.any():
             if (plain := self.decay_calibration) is None:
                 run_fit(plain := prepare_fit(self.campaign), near=True)
-            for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
+            for label, value in zip(plain.decays.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
             rows = [r.id for r in study.decay_records]
-            mine, theirs = np.asarray(study.decays.data.unit), np.asarray(plain.problem.data.unit)
-            for k, (record, values) in enumerate(zip(plain.records, np.asarray(plain.unknowns.own))):
+            mine, theirs = np.asarray(study.decays.data.unit), np.asarray(plain.decays.problem.data.unit)
+            for k, (record, values) in enumerate(zip(plain.decays.records, np.asarray(plain.unknowns.own))):
                 i = rows.index(record.id)
                 own[i] = (values.reshape(3, -1) * theirs[k] / mine[i]).ravel()
         return Point(x, own)

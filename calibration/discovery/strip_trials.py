@@ -8,7 +8,9 @@ import numpy as np
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.strip_conventions import DEFAULT_STRIPS, StripConventions
 from calibration.discovery.acceptance import MIN_LIKELIHOOD_GAIN
-from calibration.fitting.decay_fit import DecayFit, independent_observations, prepare_fit, run_fit
+from calibration.fitting.decay_fit import prepare_fit, run_fit
+from calibration.fitting.decay_part import independent_observations
+from calibration.fitting.fit import Fit
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.strip_drag import StripDrag
 
@@ -32,7 +34,7 @@ class StripTrial(NamedTuple):
     """
 
     campaign: Campaign
-    fit: DecayFit | None = None
+    fit: Fit | None = None
     strips: StripConventions | None = None
     notes: tuple[str, ...] = ()
 
@@ -61,12 +63,10 @@ def try_strip_conventions(campaign: Campaign, say: Callable[[str, float], None])
     return StripTrial(other, again, SIMPLER_STRIPS, (f"{SIMPLER_STRIPS_NOTE} (by {better:.0f} in -2 ln L of the decays)",))
 
 
-def _unlikelihood(fit: DecayFit) -> float:
+def _unlikelihood(fit: Fit) -> float:
     """-2 ln L of calibrated decays, errors no smaller than the stated noise."""
-    data = fit.problem.data
-    noise = np.array([[record.noise.get(DOFS[dof], 0.0) for dof in data.dofs] for record in fit.records])
-    squares = np.maximum(fit.mean_squares(), noise**2)
+    data = fit.decays.problem.data
+    noise = np.array([[record.noise.get(DOFS[dof], 0.0) for dof in data.dofs] for record in fit.decays.records])
+    squares = np.maximum(fit.decays.residual_mean_squares(), noise**2)
     there = np.asarray(data.present).sum(axis=-1) > 0
-    return float(
-        np.sum(independent_observations(data, fit.ends)[:, None] * np.where(there, np.log(np.maximum(squares, 1e-300)), 0.0))
-    )
+    return float(np.sum(independent_observations(data)[:, None] * np.where(there, np.log(np.maximum(squares, 1e-300)), 0.0)))
