@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from calibration.campaign.strip_conventions import StripConventions
 from calibration.residuals.measured_seas import Options
 from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE
+from calibration.results.strip_conventions import StripConventions
 from jaxhydro.errors import InputError, NonNegative, Number, Positive, Problem, suggest_path, validate
 from jaxhydro.platform.body import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 from jaxhydro.waves.irregular_sea import Acting

@@ -47,7 +47,6 @@ def document(diagnosis: Diagnosis) -> dict[str, Any]:
     return {
         "campaign": diagnosis.campaign,
         "platform": before["platform"],
-        **({} if diagnosis.strips is None else {"strips": diagnosis.strips.model_dump()}),
         **({} if diagnosis.seas is None else {"seas": asdict(diagnosis.seas)}),
         "jaxhydro": before["jaxhydro"],
         "complete": diagnosis.complete,
