@@ -1,12 +1,15 @@
 """Makes docs/validation.md and its figures: every number on the page comes from a run of this program.
 
     python -m benchmarks.validate [--seeds 20] [--starts 20] [--diagnoses 224] [--processes 2]
-                                  [--only SECTION ...] [--fresh] [--stale]
+                                  [--only SECTION ...] [--fresh] [--stale] [--text]
 
 Finished parts are kept in .venv/validate-cache under a hash of the sources and files that they depend on; what has not
 changed is not done again, and a run that was stopped goes on where it was. `--fresh` forgets them first. `--stale`
 takes what earlier sources gave rather than running anything long, and says so on the page; what was said of the campaigns of
 `diagnoses`, too many for one day, is kept in docs/diagnoses.jsonl for it.
+
+Results are JSON in docs/evidence, apart from the text that is made of them. `--text` makes the page again of these and runs
+nothing: a section that has no results there stays as it is until its next run, and is named.
 """
 
 import argparse
@@ -123,7 +126,8 @@ def written(name: str, found: Section, options: argparse.Namespace) -> str:
     folder = PAGE.parent / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     for path in found.figures:
-        shutil.copyfile(path, folder / path.name)
+        if path.exists() or not common.text_only:  # a figure of a run stays as it is on the page
+            shutil.copyfile(path, folder / path.name)
         lines += [f"![{path.stem.replace('-', ' ')}](figures/{path.name})", ""]
     lines += [f"Falls short: {words}.\n" for words in found.short]
     return "\n".join(lines)
@@ -174,8 +178,9 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, help="sections to make; others stay")
     parser.add_argument("--fresh", action="store_true", help="forget finished parts first")
     parser.add_argument("--stale", action="store_true", help="take finished parts of earlier sources")
+    parser.add_argument("--text", action="store_true", help="make the page again of the results that there are; nothing is run")
     options = parser.parse_args()
-    common.accept_stale = options.stale
+    common.accept_stale, common.text_only = options.stale, options.text
     parts = former()
     for number, name in enumerate(options.only, 1):
         say(f"[{number}/{len(options.only)}] {name}")

@@ -17,8 +17,10 @@ class UnknownName(KeyError, ValueError):
         return str(self.args[0]) if self.args else ""
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """Known word nearest to `word`, ignoring case; empty where none is near."""
+def nearest(word: object, known: Iterable[str]) -> str:
+    """Known word nearest to `word`, ignoring case; empty where none is near, or where `word` is no text."""
+    if not isinstance(word, str):
+        return ""
     by_lower = {name.lower(): name for name in known}
     near = difflib.get_close_matches(word[:80].lower(), by_lower, n=1, cutoff=MIN_SIMILARITY)
     return by_lower[near[0]] if near else ""
@@ -35,7 +37,7 @@ def unknown(kind: str, word: object, known: Iterable[str], hint: str = "") -> Un
     """
     known = list(known)
     listed = ", ".join(known[:MAX_LISTED_WORDS]) + (", ..." if len(known) > MAX_LISTED_WORDS else "") or "none"
-    near = nearest(word, known) if isinstance(word, str) else ""
+    near = nearest(word, known)
     hint = hint or (f"Did you mean {near!r}?" if near else "")
     return UnknownName(f"no {kind} {word!r}; there are: {listed}" + (f". {hint}" if hint else ""))
 
@@ -57,5 +59,5 @@ def check(**chosen: tuple[Any, Iterable[Any]]) -> None:
         if any(_same(value, one) for one in allowed):
             continue
         listed = " or ".join(filter(None, (", ".join(map(repr, allowed[:-1])), repr(allowed[-1]))))
-        near = nearest(value, [one for one in allowed if isinstance(one, str)]) if isinstance(value, str) else ""
+        near = nearest(value, [one for one in allowed if isinstance(one, str)])
         raise UnknownName(f"{name}: expected {listed}, found {value!r}" + (f". Did you mean {near!r}?" if near else ""))

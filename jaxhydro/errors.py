@@ -14,7 +14,7 @@ from ruamel.yaml.constructor import DuplicateKeyError
 from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
-from jaxhydro import choices
+from jaxhydro.choices import nearest
 from jaxhydro.schema_description import SchemaLocation, arms_of, bare, choices_of, dotted, locate, tags_of, words
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -105,11 +105,6 @@ class Faults(ValueError):
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
         super().__init__("; ".join(map(str, problems)))
-
-
-def nearest(word: object, known: Iterable[str]) -> str:
-    """Known word nearest to `word`, ignoring case; empty where none is near."""
-    return choices.nearest(word if isinstance(word, str) else shown(word), known)
 
 
 def suggest(word: object, known: Iterable[str]) -> str:

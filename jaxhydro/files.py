@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from jaxhydro.errors import InputError, Problem, nearest, suggest_path
+from jaxhydro.choices import nearest
+from jaxhydro.errors import InputError, Problem, suggest_path
 
 MANIFEST = "campaign.yaml"
 YAML = (".yaml", ".yml")

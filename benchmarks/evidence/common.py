@@ -14,6 +14,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"
 CACHE = Path(os.environ.get("JAXHYDRO_VALIDATE_CACHE", ROOT / ".venv" / "validate-cache"))
+EVIDENCE = ROOT / "docs" / "evidence"  # results by section, from which the page's text is made again without a run
+MAX_EVIDENCE = 400_000  # bytes of a section's file there; results that are larger stay in the cache
+KEPT_ELSEWHERE = ("diagnoses",)  # sections with a file of their own in docs
 DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 # the edge of the packages, and sweeps, which only that edge knows: no number depends on them
 EDGE = {
@@ -65,20 +68,32 @@ def fingerprint(*inputs: Path | str) -> str:
 
 stale: list[str] = []  # sections that took a result of other sources
 accept_stale = False
+text_only = False
 
 
 def cached(section: str, key: str, name: str, work: Callable[[], Any] | None = None) -> Any:
     """A result (JSON) from the cache, else that of `work`, kept; None where there is neither.
 
     Where `accept_stale` is set, the latest result of other sources is better than none, and the section is noted in `stale`.
+    Where `text_only` is set, results are those in docs/evidence, else the latest in the cache, and nothing is run.
+
+    Raises:
+        Absent: Where `text_only` is set and there is no result.
     """
+    if text_only and (kept := evidence(section).get(name)) is not None:
+        return kept["result"]
     path = CACHE / section / key / f"{name}.json"
-    others = sorted((CACHE / section).glob(f"*/{name}.json"), key=lambda p: p.stat().st_mtime) if accept_stale else []
-    if not path.exists() and others:
+    others = sorted((CACHE / section).glob(f"*/{name}.json"), key=lambda p: p.stat().st_mtime)
+    if not path.exists() and others and (accept_stale or text_only):
         path = others[-1]
         stale.append(section)
     if path.exists():
-        return json.loads(path.read_text())
+        result = json.loads(path.read_text())
+        if path.parent.name == key:
+            record(section, key, name, result)
+        return result
+    if text_only:
+        raise Absent(f"no result {name!r} to make the text of: `python -m benchmarks.validate --only {section}` runs it")
     if work is None:
         return None
     return keep(section, key, name, work())
@@ -91,7 +106,28 @@ def keep(section: str, key: str, name: str, result: Any) -> Any:
     beside = path.with_suffix(f".{os.getpid()}")
     beside.write_text(json.dumps(result))
     beside.replace(path)
-    return json.loads(path.read_text())
+    result = json.loads(path.read_text())
+    record(section, key, name, result)
+    return result
+
+
+def evidence(section: str) -> dict[str, Any]:
+    """Results of a section in docs/evidence: name -> `sources`, their hash, and `result`."""
+    path = EVIDENCE / f"{section}.json"
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
+def record(section: str, key: str, name: str, result: Any) -> None:
+    """Write a result into docs/evidence too, unless the section's results are too many for it."""
+    known, one = evidence(section), {"sources": key, "result": result}
+    if section in KEPT_ELSEWHERE or known.get(name) == one:
+        return
+    text = json.dumps(known | {name: one}, indent=1, sort_keys=True) + "\n"
+    if len(text) > MAX_EVIDENCE:
+        say(f"  {section}: {name} is too large for docs/evidence and stays in the cache")
+        return
+    EVIDENCE.mkdir(parents=True, exist_ok=True)
+    (EVIDENCE / f"{section}.json").write_text(text)
 
 
 def parallel(

@@ -110,10 +110,15 @@ def run(figures: Path) -> Section:
 
     beside = [Path(__file__).with_name(f"{part}.py") for part in ("hulls_cases", "hulls_runs", "hulls_reference")]
     key = fingerprint(HULLS, BUILT_IN, *beside)
-    panels = json.loads(POTENTIAL.read_text("utf-8"))
+    results = {name: cached("hulls", key, name, lambda case=case: hulls_runs.worked_out(case)) for name, case in CASES.items()}
+    return text(results, cached("hulls", key, "variants", two_members), json.loads(POTENTIAL.read_text("utf-8")))
+
+
+def text(results: dict[str, Any], variants: dict[str, Any], panels: dict[str, Any]) -> Section:
+    """The section, of results by hull, of those of the variants and of panels' numbers."""
     rows_of_periods, rows_of_motion, short = [], [], []
     for name, case in CASES.items():
-        found = cached("hulls", key, name, lambda case=case: hulls_runs.worked_out(case))
+        found = results[name]
         rows_of_periods += period_rows(name, case, found, panels)
         rows_of_motion += motion_rows(name, case, found, panels)
         dof = worst({d: found["motion"][d] for d in case.moved}, found["reference"]["motion"])
@@ -124,9 +129,8 @@ def run(figures: Path) -> Section:
                 f"{case.title}: {dof} in waves of {case.period:g} s differs by {percent(apart)} from the same hull "
                 f"in plain NumPy (goal {100 * EXACT:g} %)"
             )
-    variants = cached("hulls", key, "variants", two_members)
     largest = {label: max(abs(x) for kind in one.values() for x in kind.values()) for label, one in variants.items()}
-    text = (
+    body = (
         "The platform files are in `benchmarks/hulls/`, with the source of every number; VolturnUS-S is the "
         "built-in one. Mass, "
         "geometry and linearised mooring are published. Added mass is that of strips, whose coefficients follow "
@@ -159,4 +163,4 @@ def run(figures: Path) -> Section:
         f"the one with a step in "
         f"`stations`, in all periods and motions. A model at 1:50 has the Froude-scaled values to {largest['1:50']:.1g}.\n"
     )
-    return Section(TITLE, text, (), tuple(short))
+    return Section(TITLE, body, (), tuple(short))

@@ -200,7 +200,7 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     from matplotlib.figure import Figure
 
     from calibration.plots.sea_figures import LOW_BAND, WAVE_BAND
-    from calibration.residuals.sea_errors import bands_of
+    from jaxhydro.analysis.sea_statistics import bands_of
     from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, style
 
     with style():

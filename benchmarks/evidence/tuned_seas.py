@@ -32,7 +32,7 @@ def start_of(key: str, name: str) -> dict[str, float]:
     return cached(NAME, key, "decays") if name == "campaign 4" else TRUE | sideways
 
 
-def bands_of(found: Any) -> dict[str, Any]:
+def band_errors(found: Any) -> dict[str, Any]:
     """Test -> use, and channel -> band -> errors before and after."""
     return {
         test.id: {"use": test.use}
@@ -65,7 +65,7 @@ def tuned(key: str, name: str) -> dict[str, Any]:
             label: {"start": p.start, "value": p.value, "deviation": p.standard_deviation, "unit": p.unit}
             for label, p in found.parameters.items()
         },
-        "bands": bands_of(found),
+        "bands": band_errors(found),
         "relative": {test.id: {s.channel: s.relative for s in test.series if s.scored} for test in found.tests},
         "said": list(found.identifiability.sentences()),
         "history": list(found.history),

@@ -8,7 +8,8 @@ from calibration.campaign.campaign_hints import Hint, campaign_hints
 from calibration.campaign.checks import Finding, Severity
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
-from calibration.campaign.signals import dominant_period, peak_frequency, wave_height
+from calibration.campaign.signals import dominant_period, wave_height
+from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import characteristic_length, equilibrium, natural_modes, widths
 from jaxhydro.environment import DOFS
@@ -112,7 +113,7 @@ def _record_findings(
     if record.wave is not None and record.kind in IN_WAVES:
         step = float(np.median(np.diff(record.time)))
         height = wave_height(record.wave, record.kind == "irregular")
-        wavelength = gravity / (2 * np.pi * peak_frequency(record.wave, step) ** 2)
+        wavelength = gravity / (2 * np.pi) * record_peak_period(record.wave, step) ** 2
         message = f"waves {height:.3g} m high and {wavelength:.3g} m long {FULL_SCALE}: {UNIT_OR_SCALE}"
         yield from found(
             STEEPNESS_LIMITS, height / wavelength, "wave", message, "waves that do not break, less than 1/7 as high as long"

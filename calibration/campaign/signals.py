@@ -6,12 +6,10 @@ import re
 
 import numpy as np
 import pandas as pd
-from scipy import signal
 
 SPIKE_DEVIATIONS = 8.0  # robust standard deviations
 SPIKE_MARGIN = 2.0  # the same, or steps of the last digit: a spike is that far beyond both neighbours
 MISSING_CODE_RATIO = 10.0  # times all else: what is no measurement
-SEGMENT = 1000.0  # s of a record in waves, or an eighth of it
 
 
 def resolution(values: np.ndarray) -> float:
@@ -77,12 +75,6 @@ def dominant_period(time: np.ndarray, values: np.ndarray) -> float | None:
 def wave_height(elevation: np.ndarray, irregular: bool) -> float:
     """Significant wave height of a sea (four standard deviations), or the height of a regular wave (8^0.5 of them)."""
     return (4.0 if irregular else 8**0.5) * float(np.std(elevation))
-
-
-def peak_frequency(wave: np.ndarray, step: float) -> float:
-    """Frequency (Hz) of a wave record's highest peak, by Welch's estimate; `step` in s."""
-    frequency, density = signal.welch(wave, 1 / step, nperseg=min(len(wave), max(round(SEGMENT / step), 8)))
-    return float(frequency[max(int(density.argmax()), 1)])
 
 
 def constant_stretches(values: np.ndarray, grain: float) -> tuple[np.ndarray, np.ndarray]:

@@ -14,12 +14,11 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES, WAVE
-from calibration.campaign.signals import peak_frequency
 from calibration.discovery.diagnosis import Effect, Evidence
 from calibration.discovery.diagnosis_conclusion import test_fits_at
 from calibration.formatting import listed
-from calibration.residuals.sea_errors import bands_of
 from calibration.result import Estimate
+from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
 
 if TYPE_CHECKING:
     from calibration.discovery.greedy_search import Search
@@ -92,7 +91,7 @@ def _met(campaign: Campaign, search: Search) -> list[SignComparison]:
         if test.kind not in IN_WAVES or wave is None:
             continue
         step, taper = float(test.time[1] - test.time[0]), np.hanning(len(test.time))
-        low, high = bands_of(WAVE, 1 / peak_frequency(wave, step))["wave_frequency"]
+        low, high = bands_of(WAVE, record_peak_period(wave, step))["wave_frequency"]
         frequency = np.fft.rfftfreq(len(test.time), step)
         inside = (frequency >= low) & (frequency < high)
         for series in test.series:

@@ -19,8 +19,8 @@ from calibration.discovery.latent_force.recover_force import latent_of
 from calibration.discovery.residual_anatomy import anatomy, signature
 from calibration.fitting.fit_conclusion import records_not_followed
 from calibration.residuals.measured_seas import peak_period
-from calibration.residuals.sea_errors import bands_of
 from calibration.result import BandError, Calibration, Estimate, Series, TestFit
+from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import band_weights
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS

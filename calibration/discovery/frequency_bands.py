@@ -34,7 +34,7 @@ class Bands(NamedTuple):
     high: np.ndarray
 
 
-def bands_of(duration: float, step: float, length: int, count: int, highest: float) -> Bands:
+def cut_into_bands(duration: float, step: float, length: int, count: int, highest: float) -> Bands:
     """Frequency bands of a record, their width growing by `BAND_GROWTH`.
 
     Args:

@@ -10,7 +10,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
-from calibration.discovery.frequency_bands import Bands, FourierRows, band_powers, bands_of, step_of
+from calibration.discovery.frequency_bands import Bands, FourierRows, band_powers, cut_into_bands, step_of
 from calibration.discovery.linearisations import RELATIVE_FLOOR, MotionSeries
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
@@ -144,7 +144,7 @@ def gather_sea(sea: SeaRecord, records: Sequence[Record], highest: float) -> tup
     """
     measured, step = np.asarray(sea.measured), float(sea.times[1] - sea.times[0])
     n = measured.shape[-1]
-    cut = bands_of(n * step, step, n, BAND_COUNT, highest)
+    cut = cut_into_bands(n * step, step, n, BAND_COUNT, highest)
     names = [DOFS[dof] for dof in sea.dofs]
     turns = np.array(sea.dofs) >= 3
     found = []
@@ -177,7 +177,7 @@ def _decay_series(records: Sequence[Record], data, highest: float) -> tuple[list
     width = np.full((len(records), 3, len(data.dofs)), np.inf)
     for i, record in enumerate(records):
         n, dt = len(record.time), step_of(record.time)
-        cut = bands_of(n * dt, dt, data.time.shape[1], BAND_COUNT, highest)
+        cut = cut_into_bands(n * dt, dt, data.time.shape[1], BAND_COUNT, highest)
         main = data.dofs.index(DOFS.index(record.degree_of_freedom))
         motion = band_powers(cut, np.asarray(data.measured[i, main])) / float(data.unit[i, main]) ** 2
         for j, dof in enumerate(data.dofs):

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from calibration.campaign.signals import wave_height
 from calibration.formatting import number
 from calibration.residuals.measured_seas import SeaTest
-from calibration.residuals.sea_errors import bands_of, channels, density, moving
+from calibration.residuals.sea_errors import channels, density, moving
+from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.files import safe_name
 from jaxhydro.plots.style import MEASURED, SIMULATED, header, stack
 from jaxhydro.units import unit_of

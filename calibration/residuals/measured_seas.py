@@ -22,7 +22,7 @@ from calibration.campaign.second_order_hint import second_order_hint
 from calibration.campaign.wave_band import wave_band
 from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
 from calibration.result import Series, TestFit
-from jaxhydro.analysis.spectral import power_spectrum
+from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.choices import check
 from jaxhydro.dynamics.conventions import allowed_values
 from jaxhydro.dynamics.model import Model
@@ -281,9 +281,7 @@ def peak_period(run: Run, record: Record, scale: float) -> float:
     stated = record.test.peak_period if record.kind == "irregular" else record.test.period
     if stated is not None:
         return stated * scale**0.5
-    whole = samples_after_transient(run, record)
-    spectrum = power_spectrum(run.time[whole], run.wave[whole])
-    return 1 / float(spectrum.frequency[1:][np.argmax(spectrum.density[1:])])
+    return record_peak_period(run.wave[samples_after_transient(run, record)], run.step)
 
 
 def _test(run: Run, record: Record, motion: np.ndarray, wave: np.ndarray, scale: float) -> SeaTest:

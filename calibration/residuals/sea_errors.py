@@ -6,7 +6,8 @@ import math
 import numpy as np
 
 from calibration.residuals.measured_seas import SeaTest, moving_channels
-from jaxhydro.analysis.spectral import BANDS, LONG_PEAK_PERIOD, SEGMENT, PowerSpectrum, band_integral, bands, power_spectrum
+from jaxhydro.analysis.sea_statistics import bands_of
+from jaxhydro.analysis.spectral import SEGMENT, PowerSpectrum, band_integral, power_spectrum
 from jaxhydro.units import for_people
 
 OVERLAP, WINDOW = 0.5, "hann"
@@ -26,13 +27,6 @@ class Band:
     def error(self) -> float:
         """(simulated - measured) / measured; NaN where nothing was measured."""
         return self.simulated / self.measured - 1 if self.measured > 0 else math.nan
-
-
-def bands_of(channel: str, peak_period: float) -> dict[str, tuple[float, float]]:
-    """Bands (Hz) of a motion or of the wave, which has no low one; none of yaw."""
-    if channel == "wave":
-        return {"wave_frequency": BANDS["wave, long" if peak_period >= LONG_PEAK_PERIOD else "wave"]}
-    return {} if channel == "yaw" else bands(channel, peak_period)
 
 
 def channels(test: SeaTest) -> dict[str, tuple[np.ndarray, np.ndarray]]:

@@ -9,6 +9,7 @@ import numpy as np
 from jaxhydro.analysis.spectral import band_integral, bands, power_spectrum, statistics
 from jaxhydro.environment import DOFS
 from jaxhydro.units import unit_of
+from jaxhydro.waves.sea_state import peak_period
 
 MIN_RANGE = 1e-9  # m, deg: what moves less does not move
 PRINTED_STATISTICS = (
@@ -33,13 +34,32 @@ def bands_of(channel: str, peak_period: float | None) -> dict[str, tuple[float, 
     """Frequency bands (Hz) of a channel.
 
     Args:
-        channel: "wave", which has only `wave_frequency`, or a degree of freedom; yaw has no bands.
+        channel: "wave", which has only `wave_frequency`, or a degree of freedom; yaw and mooring lines have no bands.
         peak_period: Peak period (s). None (white noise): the bands of a moderate sea.
     """
-    if channel == "yaw":
+    if channel not in ("wave", *DOFS) or channel == "yaw":
         return {}
     found = bands("surge" if channel == "wave" else channel, peak_period or 1.0)
     return {"wave_frequency": found["wave_frequency"]} if channel == "wave" else found
+
+
+def record_peak_period(elevation: np.ndarray, step: float, low: float = 0.0, cutoff: float = math.inf) -> float:
+    """Peak period (s) of an elevation record, as `jaxhydro.waves.sea_state.peak_period` defines it.
+
+    Args:
+        elevation: Evenly sampled elevation (m), (t,).
+        step: Sampling interval (s).
+        low: Lowest frequency of the waves (Hz).
+        cutoff: Highest frequency of the waves (Hz).
+
+    Raises:
+        ValueError: If there are no waves in the band.
+    """
+    spectrum = power_spectrum(step * np.arange(len(elevation)), elevation)
+    inside = (spectrum.frequency > 0) & (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
+    if not spectrum.density[inside].any():
+        raise ValueError(f"expected waves from {low:g} to {cutoff:g} Hz, found none")
+    return peak_period(spectrum.frequency[inside], spectrum.density[inside])
 
 
 def summary(time: np.ndarray, channels: Mapping[str, np.ndarray], peak_period: float | None) -> dict[str, Any]:

@@ -71,8 +71,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-OUT = "Folder for the results; made where absent."
-Out = Annotated[Path, typer.Option("--out", help=OUT, show_default=False)]
 
 
 def main() -> None:
@@ -105,7 +103,7 @@ def simulate(
             autocompletion=options.platforms_like,
         ),
     ],
-    out: Out,
+    out: arguments.Out,
     hs: arguments.Hs = None,
     tp: arguments.Tp = None,
     gamma: arguments.Gamma = None,
@@ -132,7 +130,7 @@ def simulate(
     dt: arguments.Dt = sea_options.DEFAULTS["--dt"],
     calibration: arguments.Calibrated = None,
     step: arguments.Step = None,
-    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
+    figures: arguments.Figures = True,
 ) -> None:
     """Motions in irregular waves, regular waves and free decays: series, statistics and figures.
 
@@ -171,9 +169,9 @@ def simulate(
 
 @app.command(epilog=arguments.FITTING)
 def calibrate(
-    campaign: Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")],
-    out: Out,
-    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
+    campaign: arguments.Campaign,
+    out: arguments.Out,
+    figures: arguments.Figures = True,
     tests: arguments.Tests = None,
     objective: arguments.Aim = arguments.Objective.bands,
     law: arguments.OverSea = arguments.Law.constant,
@@ -196,9 +194,9 @@ def calibrate(
 
 @app.command(epilog=arguments.DIAGNOSING)
 def diagnose(
-    campaign: Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")],
-    out: Out,
-    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
+    campaign: arguments.Campaign,
+    out: arguments.Out,
+    figures: arguments.Figures = True,
 ) -> None:
     """Fit a platform's coefficients, then find what the model lacks: an effect with its name, its size and the evidence.
 
@@ -216,15 +214,15 @@ def diagnose(
 
 @app.command(epilog=arguments.QUANTIFYING)
 def uncertainty(
-    campaign: Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")],
+    campaign: arguments.Campaign,
     calibration: arguments.Finished,
-    out: Out,
+    out: arguments.Out,
     profiles: arguments.Profiled = None,
     bootstrap: arguments.Resamplings = None,
     nuts: arguments.Nuts = False,
     level: arguments.Level = 0.95,
     seed: arguments.DrawSeed = 0,
-    figures: Annotated[bool, typer.Option(help="Draw figures.")] = True,
+    figures: arguments.Figures = True,
 ) -> None:
     """How well a calibration of free decays knows its coefficients: intervals with errors taken as they are.
 
@@ -253,7 +251,7 @@ def report(
 
 
 @app.command()
-def demo(out: Annotated[Path, typer.Option("--out", help=OUT)] = Path("jaxhydro-demo")) -> None:
+def demo(out: Annotated[Path, typer.Option("--out", help=arguments.OUT)] = Path("jaxhydro-demo")) -> None:
     """Calibrate to the nine embedded decays of VolturnUS-S, compare with the true coefficients, make a page."""
     from importlib import resources
 
@@ -265,7 +263,7 @@ def demo(out: Annotated[Path, typer.Option("--out", help=OUT)] = Path("jaxhydro-
 @app.command(epilog=arguments.SWEEPING)
 def sweep(
     file: Annotated[Path, typer.Argument(help="A sweep file.", metavar="SWEEP")],
-    out: Out,
+    out: arguments.Out,
     workers: arguments.Workers = None,
     batch: arguments.Batch = None,
     scheduler: arguments.Scheduler = None,

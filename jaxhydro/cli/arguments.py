@@ -1,4 +1,4 @@
-"""Help texts of the command line, and the options of `jaxhydro simulate`."""
+"""Help texts and options of the command line."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -190,6 +190,10 @@ def _option(name: str, panel: str, text: str, default: str | bool = False, **mor
     return typer.Option(name, help=text, rich_help_panel=panel, show_default=default, **more)
 
 
+OUT = "Folder for the results; made where absent."
+Out = Annotated[Path, typer.Option("--out", help=OUT, show_default=False)]
+Campaign = Annotated[Path, typer.Argument(help="A campaign's folder, or its campaign.yaml.")]
+Figures = Annotated[bool, typer.Option(help="Draw figures.")]
 Hs = Annotated[float | None, _option("--hs", SEA, "Significant wave height, m: 4 times the root of the spectrum's area.")]
 Tp = Annotated[float | None, _option("--tp", SEA, "Peak period, s.")]
 Gamma = Annotated[

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import signal
 
+from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.cli.options import finite, positive, wrong
 from jaxhydro.dynamics.requested_sea import Record, RequestedSea, usual_transient
 from jaxhydro.errors import InputError, Problem, suggest
@@ -163,17 +163,12 @@ def with_record(sea: RequestedSea, file: Path, table: Any, given: Mapping[str, A
     if stated.get(time_name, "s") != "s":
         raise wrong_file(f"column {time_name}", "times in s", f"{stated[time_name]}, as the file states")
     elevation = elevation * UNITS[unit]
-    height, length = 4 * float(np.std(elevation)), _peak_length(times, elevation)
+    height = 4 * float(np.std(elevation))
+    # of waves in deep water: no other makes them longer
+    length = 9.80665 / (2 * np.pi) * record_peak_period(elevation, float(times[-1] - times[0]) / (len(times) - 1)) ** 2
     if height > MAX_STEEPNESS * length:
         found = f"waves {height:.3g} m high and {length:.3g} m long"
         expected = "waves less than 1/7 as high as long, at full scale"
         raise wrong_file(f"column {name}", expected, found, "--wave-unit: mm or cm?")
     x, y = (finite(float(value), "--wave-position") for value in given.get("--wave-position", (0.0, 0.0)))
     return replace(sea, record=Record(str(file), name, times, elevation, (x, y)))
-
-
-def _peak_length(times: np.ndarray, elevation: np.ndarray) -> float:
-    """Length (m) in deep water of the waves at the spectrum's peak (Welch): no water makes them longer."""
-    step = float(times[-1] - times[0]) / (len(times) - 1)
-    frequency, density = signal.welch(elevation, 1 / step, nperseg=min(len(times), max(round(1000.0 / step), 8)))
-    return 9.80665 / (2 * np.pi * float(frequency[max(int(density.argmax()), 1)]) ** 2)

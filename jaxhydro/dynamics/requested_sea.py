@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from jaxhydro.analysis.spectral import power_spectrum
+from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.table_ranges import outside_tables
 from jaxhydro.errors import InputError, Problem
@@ -261,15 +261,13 @@ def _from_record(model: Model, asked: RequestedSea, record: Record, notes: list[
     if found.mismatch > MAX_RECORD_MISMATCH:
         missed = f"first and second order miss {found.mismatch:.1%} of the record in the band, and the nearest found is used"
         notes.append(f"{missed}: a --cutoff below {cutoff:g}, or --order 1, follows it")
-    spectrum = power_spectrum(record.times, record.elevation)
-    inside = (spectrum.frequency >= low) & (spectrum.frequency <= cutoff)
-    peak = spectrum.frequency[inside][np.argmax(spectrum.density[inside])] if inside.any() else cutoff
+    step = float(record.times[-1] - record.times[0]) / (len(record.times) - 1)
     return found.waves, {
         "record": record.source,
         "record_column": record.column,
         "wave_position": list(record.position),
         "significant_wave_height": 4 * float(np.std(record.elevation)),
-        "peak_period": 1 / float(peak),
+        "peak_period": record_peak_period(record.elevation, step, low, cutoff),
         "mismatch": found.mismatch,
     }
 

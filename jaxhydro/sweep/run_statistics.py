@@ -10,7 +10,6 @@ from jaxtyping import Float
 
 from jaxhydro.analysis.sea_statistics import bands_of, still
 from jaxhydro.analysis.spectral import Statistics, band_integral, power_spectrum, statistics
-from jaxhydro.environment import DOFS
 from jaxhydro.units import unit_of
 
 STATISTICS = Statistics._fields
@@ -47,16 +46,6 @@ def frequencies(time: Float[np.ndarray, " t"]) -> Float[np.ndarray, " f"]:
     return found[found <= MAX_FREQUENCY * (1 + 1e-9)]
 
 
-def bands_in(channel: str, peak_period: float) -> dict[str, tuple[float, float]]:
-    """Frequency bands (Hz) of a channel, as in `jaxhydro simulate`; none for mooring lines.
-
-    Args:
-        channel: Name of the channel.
-        peak_period: Peak period of the sea (s).
-    """
-    return bands_of(channel, peak_period) if channel in ("wave", *DOFS) else {}
-
-
 def run_results(
     time: Float[np.ndarray, " t"],
     start: float,
@@ -84,7 +73,7 @@ def run_results(
     for name, values in channels.items():
         values = still(values[inside])
         spectrum = power_spectrum(when, values)
-        limits = bands_in(name, peak_period)
+        limits = bands_of(name, peak_period)
         integrals = [band_integral(spectrum, *limits[band]) if band in limits else math.nan for band in BANDS]
         damage = equivalent_ranges(values, exponents, equivalent_frequency * (when[-1] - when[0]))
         found.append((np.array(statistics(when, values)), spectrum.density[:size], np.array(integrals), damage))

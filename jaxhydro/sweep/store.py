@@ -20,12 +20,13 @@ from filelock import FileLock, Timeout
 from jaxtyping import Float
 
 import jaxhydro
+from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.files import staged
 from jaxhydro.fingerprint import computed_with, content_hash, fingerprint
 from jaxhydro.sweep.batch import CALIBRATION, PLAN, PLATFORM, Setup
 from jaxhydro.sweep.cases import Plan, Run
-from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, RunResults, bands_in, frequencies, unit
+from jaxhydro.sweep.run_statistics import BANDS, STATISTICS, RunResults, frequencies, unit
 
 RESULTS, INPUTS, UNFINISHED, LOCK = "results.zarr", "inputs", ".results", ".lock"
 TO_DO, DONE, FAILED = 0, 1, 2
@@ -206,7 +207,7 @@ def _arrays(path: Path, inputs: Inputs, setup: Setup, shares: Float[np.ndarray, 
     limits = np.full((len(plan.cases), len(channels), len(BANDS), 2), np.nan)
     for i, case in enumerate(plan.cases):
         for j, channel in enumerate(channels):
-            for band, edges in bands_in(channel, case.tp).items():
+            for band, edges in bands_of(channel, case.tp).items():
                 limits[i, j, BANDS.index(band)] = edges
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of consolidated metadata, which xarray asks for

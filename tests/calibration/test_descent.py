@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 
 from calibration.discovery.effect_descent import MIN_RELATIVE_GAIN, broyden_update, fit
 from calibration.discovery.eliminated_least_squares import cost_of, linear_residual, minus_two_log_likelihood, predict_gain
-from calibration.discovery.frequency_bands import FourierRows, bands_of
+from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, Prior
 from calibration.discovery.study import Study
 
@@ -43,7 +43,7 @@ class Oscillations(Study):
 
 @pytest.fixture
 def study():
-    cut = bands_of(TIME[-1] + 0.1, 0.1, SAMPLES, 12, 6.0)
+    cut = cut_into_bands(TIME[-1] + 0.1, 0.1, SAMPLES, 12, 6.0)
     noise = np.random.default_rng(1).normal(0, NOISE, (3, SAMPLES))
     uses = ("fit", "fit", "holdout")
     series = tuple(
@@ -60,12 +60,11 @@ def study():
         8,
         SimpleNamespace(data=SimpleNamespace(dofs=(0,))),
         (),
-        (),
         series,
         tuple(SimpleNamespace(use=use) for use in uses),
         np.full((3, 2), np.inf),
         (FourierRows.of([cut] * 3, SAMPLES),),
-        {},
+        None,
     )
     truth = Point(np.array([1.3, 0.06]), np.array([[1.0, 0.1], [2.0, -0.2], [0.5, 0.0]]))
     object.__setattr__(found, "looks", [])

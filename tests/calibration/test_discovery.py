@@ -22,7 +22,7 @@ from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.listed import noticeable_scales
 from calibration.discovery.eliminated_least_squares import FirstOrderGain
-from calibration.discovery.frequency_bands import FourierRows, bands_of
+from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.greedy_search import Search
 from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.set_up import set_up_study
@@ -87,7 +87,7 @@ def campaign_of(folder, torque, swinging=None):
 
 def test_bands_are_a_partition_of_the_lines():
     """Every Fourier line up to the highest frequency is in one band; degrees of freedom are the record's, not the zeros'."""
-    cut = bands_of(100.0, 0.1, 1500, 9, 1.0)
+    cut = cut_into_bands(100.0, 0.1, 1500, 9, 1.0)
     frequency = np.fft.rfftfreq(1500, 0.1)
     assert_allclose(cut.member.sum(axis=0), 1.0)
     assert cut.member.shape[1] == (frequency <= 1.0).sum()
@@ -98,7 +98,7 @@ def test_rows_hold_the_sum_of_squares():
     """Parseval: products over rows are those over samples, series by series."""
     rng = np.random.default_rng(0)
     values = rng.normal(size=(2, 401, 3))  # an odd number has no line at half the sampling rate
-    cut = bands_of(40.1, 0.1, 401, 12, 6.0)  # all frequencies
+    cut = cut_into_bands(40.1, 0.1, 401, 12, 6.0)  # all frequencies
     rows = FourierRows.of([cut, cut], 401)
     found = rows(values)
     for i, one in enumerate(values):
@@ -109,7 +109,7 @@ def test_rows_hold_the_sum_of_squares():
 
 def test_a_series_without_rows_keeps_its_place():
     """A motion that a record lacks has no lines, and is counted all the same: what comes after it stays where it was."""
-    cut = bands_of(40.1, 0.1, 401, 12, 6.0)
+    cut = cut_into_bands(40.1, 0.1, 401, 12, 6.0)
     nothing = cut._replace(member=np.zeros_like(cut.member))
     rows = FourierRows.of([cut, nothing], 401)
     assert rows.members == 2

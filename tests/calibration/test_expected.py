@@ -13,7 +13,7 @@ from test_water_effects import irregular
 import jaxhydro as jh
 from calibration.discovery.eliminated_least_squares import deviances, row_weights
 from calibration.discovery.expected_residuals import expected_over_floor, force_spectrum, impedance
-from calibration.discovery.frequency_bands import FourierRows, bands_of
+from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.greedy_search import Search
 from calibration.discovery.linearisations import MotionSeries, Prior
 from calibration.discovery.residuals import SeaRecord
@@ -99,7 +99,7 @@ def test_noise_alone_is_no_force() -> None:
 def study() -> Study:
     """One motion in a sea of an hour, slow to 0.05 Hz."""
     n = 3600
-    cut = bands_of(n, 1.0, n, 14, 0.2)
+    cut = cut_into_bands(n, 1.0, n, 14, 0.2)
     series = MotionSeries(
         "sea", "irregular", "fit", "surge", 0.01, 1.0, 2 * cut.lines, cut.low, cut.high, n, np.full(14, 0.02), 0.05
     )

@@ -31,13 +31,13 @@ from calibration.discovery.doubts import doubted_effects, moving_release_notes, 
 from calibration.discovery.effect_descent import fit
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, symmetric_inverse
-from calibration.discovery.frequency_bands import FourierRows, band_powers, bands_of
+from calibration.discovery.frequency_bands import FourierRows, band_powers, cut_into_bands
 from calibration.discovery.gather import gather_sea
 from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.study import Study
 
-CUT = bands_of(400.0, 0.1, 4000, 14, 1.0)
+CUT = cut_into_bands(400.0, 0.1, 4000, 14, 1.0)
 TIME = 0.1 * np.arange(4000)
 
 

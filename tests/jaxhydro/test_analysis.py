@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import signal
 
+from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
 from jaxhydro.analysis.spectral import (
     BANDS,
     PowerSpectrum,
@@ -18,6 +19,11 @@ from jaxhydro.analysis.spectral import (
     statistics,
     transfer_function,
 )
+from jaxhydro.environment import Environment
+from jaxhydro.waves.irregular import spectrum_components
+from jaxhydro.waves.irregular_sea import IrregularSea
+from jaxhydro.waves.sea_state import peak_period
+from jaxhydro.waves.spectra import jonswap
 
 RNG = np.random.default_rng(20)
 STEP = 0.25
@@ -242,3 +248,26 @@ def test_peaks_of_two_waves() -> None:
 def test_errors_say_what_was_expected(call, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_peak_period_of_a_record() -> None:
+    """That of the spectrum that a record was drawn from, within a band, and to a hundredth of a regular wave."""
+    water, step = Environment(1025.0, 200.0, 9.81), 0.5
+    waves = spectrum_components(lambda w: jonswap(w, 3.0, 10.0), 3600.0, water, low=0.03, cutoff=0.3, seed=2)
+    sea = np.asarray(IrregularSea(waves, water, 1).gauge(np.arange(0.0, 3600.0, step)))
+    frequency = np.arange(0.03, 0.3, 0.001)
+    drawn = peak_period(frequency, np.asarray(jonswap(2 * np.pi * frequency, 3.0, 10.0)))
+    assert record_peak_period(sea, step) == pytest.approx(drawn, rel=0.02) and drawn == pytest.approx(10.0, rel=0.06)
+    regular = np.sin(2 * np.pi / 12.3 * step * np.arange(2000))
+    assert record_peak_period(regular, step) == pytest.approx(12.3, rel=0.01)
+    slow = 5 * np.sin(2 * np.pi / 100 * step * np.arange(2000))
+    assert record_peak_period(slow, step) > 90
+    assert record_peak_period(regular + slow, step, 0.03, 0.3) == pytest.approx(12.3, rel=0.01)
+    with pytest.raises(ValueError, match="expected waves from 0 to inf Hz, found none"):
+        record_peak_period(np.zeros(100), step)
+
+
+def test_channels_with_bands() -> None:
+    assert set(bands_of("wave", 9.0)) == {"wave_frequency"}
+    assert set(bands_of("roll", 9.0)) == {"low_frequency", "wave_frequency"}
+    assert bands_of("yaw", 9.0) == bands_of("line1", 9.0) == {}

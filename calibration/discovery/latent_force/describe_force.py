@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 from scipy import signal
 
-from calibration.campaign.signals import SEGMENT, peak_frequency, wave_height
+from calibration.campaign.signals import wave_height
 from calibration.discovery.diagnosis import ForceCoherence, ForceExcerpt, LatentForce, Law, LawTerm
 from calibration.discovery.latent_force.force_law import LAG_RATIOS, LAGGED_TERMS, columns_of, squared_envelope
 from calibration.discovery.latent_force.recovered_force import RecoveredForce
 from calibration.formatting import listed, number, percent, quantity, readable_unit
-from calibration.residuals.sea_errors import bands_of
+from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
+from jaxhydro.analysis.spectral import SEGMENT
 from jaxhydro.environment import DOFS
 
 CYCLES_PER_SEGMENT = 4.0  # periods of a decay in a spectral segment
@@ -48,7 +49,7 @@ def bands_in(one: RecoveredForce) -> dict[str, tuple[float, float]]:
     if one.test.wave is None:
         own = motion_frequency(one)
         return {"slower": (0.0, 0.5 * own), "own": (0.5 * own, 1.5 * own), "higher": (1.5 * own, np.inf)}
-    low, high = bands_of("wave", 1 / peak_frequency(one.test.wave, one.test.step))["wave_frequency"]
+    low, high = bands_of("wave", record_peak_period(one.test.wave, one.test.step))["wave_frequency"]
     return {"low_frequency": (0.0, low), "wave_frequency": (low, high), "higher": (high, np.inf)}
 
 
@@ -114,7 +115,7 @@ def coherences(forces: Sequence[RecoveredForce]) -> dict[str, ForceCoherence]:
     """Relation of a force to the motion, and in waves to the elevation and its squared envelope."""
     found = {name: force_coherence(forces, values, lambda _: (0.0, np.inf)) for name, values in MOTION.items()}
     if (wavy := [one for one in forces if one.test.wave is not None]) and len(wavy) == len(forces):
-        half = {one.test.id: 0.5 * peak_frequency(one.test.wave, one.test.step) for one in wavy if one.test.wave is not None}
+        half = {test.id: 0.5 / record_peak_period(np.asarray(test.wave), test.step) for test in (one.test for one in wavy)}
         found["elevation"] = force_coherence(
             wavy, lambda one: np.asarray(one.test.wave), lambda one: (half[one.test.id], np.inf)
         )
