@@ -1,10 +1,9 @@
 """One calibration of the built-in campaign: this package's least squares against population searches on its simulator.
 
-Differential evolution (scipy), a genetic algorithm (pymoo) and CMA-ES (cma), as `calibration.global_search` has
-them, get the same
-simulation at the same time step, the same bounds of the same coefficients on the same logarithmic scale, and two advantages:
-the records' releases and sensor offsets, which the least squares has to find too, are given to them as it found them, and
-their populations are simulated in batches.
+Differential evolution (scipy), a genetic algorithm (pymoo) and CMA-ES (cma), as `benchmarks.population_search` has them, get
+the same simulation at the same time step, the same bounds of the same coefficients on the same logarithmic scale, and two
+advantages: the records' releases and sensor offsets, which the least squares has to find too, are given to them as it found
+them, and their populations are simulated in batches.
 """
 
 import dataclasses
@@ -17,12 +16,13 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.bench_timing import Row, contest, times
+from benchmarks.population_search import POPULATIONS
 from calibration.campaign.load_campaign import load_campaign
 from calibration.fitting.decay_fit import DecayFit, run_fit
-from calibration.global_search import METHODS, Budget, Task
 from calibration.global_search.descents import WindowedFit
 from calibration.global_search.run_search import Found, set_up_search
 from calibration.global_search.run_search import run as search
+from calibration.global_search.task import Budget, Task
 from calibration.residuals.decays import DecayProblem, Unknowns, first_guess
 
 CAMPAIGN = Path(__file__).resolve().parents[1] / "jaxhydro" / "campaigns" / "volturnus-s-decays"
@@ -81,7 +81,7 @@ def measure(budget: float, quick: bool, searches: Sequence[str] = tuple(SEARCHES
     turns = contest(contestants, 2 if quick else 5)
     budgeted = Budget(budget, objective=CLOSE * target)
     found = {
-        name: search(Task(problem, records, fit.unknowns.own, budgeted), METHODS[name.lower()](), SEED) for name in searches
+        name: search(Task(problem, records, fit.unknowns.own, budgeted), POPULATIONS[name.lower()](), SEED) for name in searches
     }
     yield report(first, again, target, turns["one"].median, turns["batch"].over(turns["one"]) / BATCH, found)
 

@@ -15,8 +15,8 @@ from calibration.fitting.fit_uncertainty import identifiability_of
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.law_choice import SeaLaws, choose_law
 from calibration.fitting.sea_fit import calibrate_in_waves
-from calibration.global_search import Budget
 from calibration.global_search.run_search import Found, SearchInterrupted, search
+from calibration.global_search.task import Budget
 from calibration.identifiability.directions import Identifiability
 from calibration.result import Calibration, Estimate, Series, TestFit
 from calibration.uncertainty.bootstrap import Bootstrap, bootstrap_blocks, bootstrap_repeats

@@ -16,16 +16,21 @@ from jaxhydro.start import start as _start
 
 _start()  # before the imports below, which may compute
 
-from jaxhydro.dynamics.model import Model, RigidBody, State
+from jaxhydro.dynamics.conventions import Conventions
+from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.response import Response
+from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.dynamics.simulate import free_decay, simulate
 from jaxhydro.dynamics.statics import EquilibriumError, equilibrium, natural_modes
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.errors import InputError
-from jaxhydro.loads import LOADS, AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads import LOADS, AbstractLoad, Action, Instant
+from jaxhydro.parameters import Parameter
 from jaxhydro.platform.build import build, load_model
 from jaxhydro.platform.convergence import Convergence, convergence
 from jaxhydro.platform.schema import Platform, builtin_platforms, load_platform
+from jaxhydro.sensors import SENSOR_EFFECTS, AbstractSensorEffect
+from jaxhydro.water import WATER_EFFECTS, AbstractWaterEffect
 from jaxhydro.waves import (
     AbstractSea,
     Components,
@@ -43,10 +48,15 @@ __version__ = "0.2.0"
 __all__ = [
     "DOFS",
     "LOADS",
+    "SENSOR_EFFECTS",
+    "WATER_EFFECTS",
     "AbstractLoad",
     "AbstractSea",
+    "AbstractSensorEffect",
+    "AbstractWaterEffect",
     "Action",
     "Components",
+    "Conventions",
     "Convergence",
     "Environment",
     "EquilibriumError",

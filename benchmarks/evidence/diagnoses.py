@@ -56,6 +56,7 @@ FACTOR = 1.3  # a goal: held-out error over that of a campaign with nothing miss
 TANK = [ROOT / "benchmarks" / name for name in ("tank.py", "tank_effects.py", "reference_model.py", "reference_waves.py")]
 # all campaigns take more hours than one machine is lent for: what was said of each, and by which sources, is kept with the page
 KEPT = ROOT / "docs" / "diagnoses.jsonl"
+SEARCHED = " Sources before 2026-11-27 also tried seas of simpler second order, which campaigns now state."
 LAWS = (
     "Two laws of drag are not the same in both programs, so that no values of one follow the other. Where drag changes with "
     "amplitude, in a sea the tank's goes with the surface's Keulegan-Carpenter number in all strips, the package's with every "
@@ -427,7 +428,7 @@ def conclude(results: dict[Case, dict[str, Any]], earlier: int, figure: Path) ->
     text = (
         f"Nine decays and two seas of 1600 s each, from `benchmarks/tank.py`, a plain NumPy tank that shares no code with the "
         f"package: noise, imperfect releases, mass and mooring not quite as declared. {len(results)} of {total} campaigns were "
-        f"run{by}. {tally.text()} {other_strengths(said, results)}\n\n{LAWS}\n\n"
+        f"run{by}.{SEARCHED if earlier else ''} {tally.text()} {other_strengths(said, results)}\n\n{LAWS}\n\n"
         f"What was said, seed by seed (*nothing*: nothing missing; a name: that effect instead; in brackets, what else was "
         f"added; the number: error of the tests that were not fitted, over that of the same platform in the same waves with "
         f"nothing missing, by sources of its time; a force: the law proposed for what is unexplained, and the share that it "

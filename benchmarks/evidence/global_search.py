@@ -8,6 +8,7 @@ import numpy as np
 
 from benchmarks.evidence.common import DEMO, Section, cached, fingerprint, parallel, say, table
 from benchmarks.evidence.global_search_figure import draw
+from benchmarks.population_search import POPULATIONS, fit_releases
 from calibration.formatting import number
 
 TITLE = "Global searches"
@@ -15,7 +16,6 @@ RECORDS = ("surge-2", "heave-2", "pitch-2")
 SEEDS, BUDGET = 10, 60.0  # and CPU seconds of a search
 CLOSE = 1.01
 NAMES = {"multistart": "Multi-start LM", "cma-es": "CMA-ES", "de": "Differential evolution", "ga": "Genetic algorithm"}
-POPULATIONS = ("cma-es", "de", "ga")
 
 
 def campaign():
@@ -28,11 +28,14 @@ def campaign():
 
 def of_seed(name: str) -> dict[str, Any]:
     """One search; `name` is its method and its seed."""
-    from calibration.global_search import Budget
-    from calibration.global_search.run_search import search
+    from calibration.global_search.multistart import MultiStart
+    from calibration.global_search.run_search import run as run_search
+    from calibration.global_search.run_search import set_up_search
+    from calibration.global_search.task import Budget, Task
 
     method, seed = name.rsplit("-", 1)
-    found = search(campaign(), method=method, seed=int(seed), budget=Budget(seconds=BUDGET))
+    task = Task(*set_up_search(campaign()), None, Budget(seconds=BUDGET))
+    found = run_search(task, POPULATIONS.get(method, MultiStart)(), int(seed))
     return {
         "objective": found.objective,
         "simulations": found.simulations,
@@ -47,9 +50,8 @@ def handicap(values: dict[str, float]) -> float:
     """J of the best coefficients with the releases that population searches are given."""
     import jax.numpy as jnp
 
-    from calibration.global_search import Budget, Task
-    from calibration.global_search.descents import fit_releases
     from calibration.global_search.run_search import set_up_search
+    from calibration.global_search.task import Budget, Task
 
     problem, records = set_up_search(campaign())
     task = Task(problem, records, None, Budget())

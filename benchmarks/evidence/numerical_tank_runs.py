@@ -61,6 +61,7 @@ def written() -> Path:
         "wave_channel": {"column": "wave_m", "unit": "m", "position": [0.0, 0.0]},
         "noise": NOISE,
         "zero": {"test": "rest"},
+        "records": {"order": 1},
         "tests": [
             {"id": "rest", "kind": "static", "file": f"{REST}.csv", "use": "ignore"},
             *({"id": dof, "kind": "decay", "degree_of_freedom": dof, "file": f"decay_{dof}_nwt.csv"} for dof in DECAYS),
@@ -124,8 +125,7 @@ def declared() -> dict[str, Any]:
 
     import jaxhydro as jh
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.discovery.wave_records import options_for
-    from calibration.residuals.measured_seas import compare
+    from calibration.residuals.measured_seas import compare, options_of
 
     campaign = load_campaign(CAMPAIGN)
     model, errors = campaign.model, {}
@@ -137,23 +137,21 @@ def declared() -> dict[str, Any]:
         missed = {name: np.asarray(motion[name]) - record.values[name] for name in DECAYS}
         relative = {name: float(np.sqrt((x**2).mean()) / np.std(record.values[name])) for name, x in missed.items()}
         errors[dof] = {"use": record.use, "relative": relative, "bands": {}}
-    options, notes = options_for(campaign)
-    found = compare(campaign, model, options)
+    found = compare(campaign, model, options_of(campaign))
     errors |= errors_in_waves(found.tests)
-    return {"errors": errors, "order": options.order, "notes": [*notes, *found.notes]}
+    return {"errors": errors, "notes": list(found.notes)}
 
 
 def calibrated() -> dict[str, Any]:
     """The declared model calibrated to the three decays as `calibrate` does, and what it then makes of the sea."""
     from calibration import calibrate
     from calibration.campaign.load_campaign import load_campaign
-    from calibration.discovery.wave_records import options_for
-    from calibration.residuals.measured_seas import compare
+    from calibration.residuals.measured_seas import compare, options_of
 
     campaign = load_campaign(CAMPAIGN)
     result = calibrate(campaign)
     errors = {name: one for name, one in errors_of(result).items() if name in DECAYS}
-    errors |= errors_in_waves(compare(campaign, result.model, options_for(campaign)[0]).tests)
+    errors |= errors_in_waves(compare(campaign, result.model, options_of(campaign)).tests)
     return {"errors": errors, "parameters": values_of(result.parameters), "converged": result.converged}
 
 

@@ -161,9 +161,10 @@ def words(results: dict[str, Any], known: dict[str, Any]) -> str:
     stiff, at_rest = (quantity(x, None, "N/m") for x in (setup()["AddCLin"][0][0], lines["static"][0]))
     return f"""
 OpenFAST's runs with potential flow (`decay_*_nwt` and `{SEA}` of the shared reference runs: radiation with memory, the
-full difference-frequency QTF, catenary lines, quadratic damping; waves of first order) are given to `jaxhydro diagnose` as if
-they were measured: every {EVERY}th sample, with noise of 0.01 m in surge, 0.005 m in heave and 0.01 deg in pitch. The declared
-model is that of OpenFAST's runs by strips: the same rigid body, Table 1's coefficients, linear damping, a linear mooring.
+full difference-frequency QTF, catenary lines, quadratic damping; waves of first order, which the campaign states) are given to
+`jaxhydro diagnose` as if they were measured: every {EVERY}th sample, with noise of 0.01 m in surge, 0.005 m in heave and
+0.01 deg in pitch. The declared model is that of OpenFAST's runs by strips: the same rigid body, Table 1's coefficients, linear
+damping, a linear mooring.
 Waves meet it at its mean position (`waves_at: mean`), as in the tank, where `ExctnDisp` is 0. Three decays and the sea's first
 half, from {TRANSIENT:.0f} to {HALF:.0f} s, are fitted; its second half is held out. No run is a static pull-out (`{REST}` rests
 at zero), so the mooring declared is the tangent at rest, the stiffness matrix of the runs by strips: {stiff} in surge, where

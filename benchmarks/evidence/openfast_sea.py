@@ -68,7 +68,7 @@ def read(name: str) -> Run:
 
 
 def model(run: Run, *, centre: bool = False, nodes: bool = False, **changes: Any) -> jh.Model:
-    """The platform with OpenFAST's conventions, but for `changes` of `Model`'s options.
+    """The platform with OpenFAST's conventions, but for `changes`.
 
     Strips up to still water as they are on the upright platform unless the waves are stretched, directions of the undisplaced
     platform, diffraction without its lag and of free waves only; of the `centre` column not at all. `nodes`: strips lumped at
@@ -79,7 +79,7 @@ def model(run: Run, *, centre: bool = False, nodes: bool = False, **changes: Any
     file = platform(run.setup)
     file["members"][0]["maccamy_fuchs"] = centre
     with mock.patch("numpy.polynomial.legendre.leggauss", _nodes) if nodes else contextlib.nullcontext():
-        return dataclasses.replace(jh.build(jh.Platform.model_validate(file)), **options | changes)
+        return jh.build(jh.Platform.model_validate(file)).with_conventions(**options | changes)
 
 
 def _nodes(order: int) -> tuple[np.ndarray, np.ndarray]:

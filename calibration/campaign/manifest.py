@@ -25,11 +25,14 @@ from jaxhydro.errors import (
     Schema,
     Text,
     read_yaml,
+    shown,
     suggest,
     validate,
 )
 from jaxhydro.files import campaign_file
 from jaxhydro.units import SI
+from jaxhydro.waves import second_order
+from jaxhydro.waves.irregular_sea import Acting
 
 DOFS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 CHANNELS = ("time", *DOFS)
@@ -129,10 +132,25 @@ class Test(Schema):
 
 
 class Recording(Schema):
-    """What the records were made of. `order` of their waves: 1, linear waves, or 2, with the waves that they bind; left out:
-    2, unless a wave record that a program made shows none (`diagnose`)."""
+    """Waves that the records have.
 
-    order: Literal[1, 2] | None = None
+    Attributes:
+        order: 1: linear waves; 2: with the bound waves of second order.
+        kinds: Pairs of waves that bind others: at sums or differences of their frequencies.
+        highest_difference: Highest difference frequency (Hz on the files' time axis) of bound waves; None: all.
+        acting: Where bound waves act on the platform.
+    """
+
+    order: Literal[1, 2] = 2
+    kinds: Annotated[tuple[second_order.Kind, ...], Field(min_length=1)] = second_order.KINDS
+    highest_difference: Positive | None = None
+    acting: Acting = "everywhere"
+
+    @model_validator(mode="after")
+    def _second_order(self) -> Recording:
+        if self.order == 1 and (stated := sorted(self.model_fields_set - {"order"})):
+            raise Faults(*(Problem(key, "nothing, since linear waves bind none", shown(getattr(self, key))) for key in stated))
+        return self
 
 
 class Period(Schema):

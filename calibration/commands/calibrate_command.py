@@ -16,8 +16,8 @@ from calibration.fitting.joint_state import Loss
 from calibration.fitting.law_choice import SeaLaws, choose_law
 from calibration.fitting.law_parameters import LAWS, is_law_parameter
 from calibration.fitting.sea_fit import calibrate_in_waves
-from calibration.global_search import Budget
 from calibration.global_search.run_search import SearchInterrupted, search
+from calibration.global_search.task import Budget
 from calibration.report import sea_tables, tables
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.report.summary import calibration_sentence, summary_of
@@ -121,11 +121,11 @@ def run(
         _calibrated_values(used._replace(values=begin["start"]), start, campaign)
         if used.strips is not None:
             complain(f"warning: values are begun from, strips stay as the platform file has them: {start} has {used.strips}")
-        if tests != "decays" and used.seas is not None and (said := non_default_options(used.seas)):
-            complain(f"warning: waves are taken with all that they bind; for {start} they were not: {said}")
+        if tests != "decays" and used.seas is not None and (said := non_default_options(used.seas, (), options_of(campaign))):
+            complain(f"warning: waves are taken as the campaign states; for {start} they were otherwise: {said}")
     words: tuple[str, ...] = ()
     if method is not None:
-        values, said = _run_search(campaign, method, seed, seconds)
+        values, said = _run_search(campaign, seed, seconds)
         begin, words = {"begin": values}, (f"begun from a search: {said}",)
     try:
         with progress() as show:
@@ -187,11 +187,11 @@ def _print_results(saved: CalibrationFile) -> None:
         table("Errors of energy in bands", *energies, left=4)
 
 
-def _run_search(campaign: Campaign, method: str, seed: int, seconds: float) -> tuple[dict[str, float], str]:
+def _run_search(campaign: Campaign, seed: int, seconds: float) -> tuple[dict[str, float], str]:
     """Where a global search ends, and what it took; stopped by the user, where it has got to."""
     try:
         with progress() as show:
-            found = search(campaign, method=method, seed=seed, budget=Budget(seconds), progress=show)
+            found = search(campaign, seed=seed, budget=Budget(seconds), progress=show)
     except ValueError as error:
         raise InputError("--method", [Problem("", "a search that can be run", str(error))]) from None
     except SearchInterrupted as stopped:

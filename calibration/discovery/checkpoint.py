@@ -34,8 +34,6 @@ class Checkpoint:
     """State of a search after some rounds.
 
     Attributes:
-        order: Second-order treatment of the seas.
-        declared_in_second_order: Fit of the declared model in second-order waves, where first order was chosen instead.
         expected: Expected size of residual rows (n,), or None.
         states: Fits after every round.
         found: Evidence of accepted effects by name.
@@ -47,8 +45,6 @@ class Checkpoint:
         seconds: Computing time (s).
     """
 
-    order: str
-    declared_in_second_order: FitState | None
     expected: np.ndarray | None
     states: tuple[FitState, ...]
     found: dict[str, AcceptedEffect]
@@ -64,8 +60,6 @@ class Checkpoint:
         yield from self.states
         for one in self.found.values():
             yield from (one.before, one.after)
-        if self.declared_in_second_order is not None:
-            yield self.declared_in_second_order
 
 
 def save_checkpoint(path: Path, search: "Search", states: list[FitState], seconds: float) -> None:
@@ -81,8 +75,6 @@ def save_checkpoint(path: Path, search: "Search", states: list[FitState], second
         InputError: If the file cannot be written.
     """
     reached = Checkpoint(
-        search.order,
-        search.declared_in_second_order,
         search.study.expected,
         tuple(states),
         search.found,
@@ -134,8 +126,6 @@ def load_checkpoint(path: Path, search: "Search", tell: Callable[[str], None] = 
         tell(f"{path}: what an earlier run reached cannot be read ({type(error).__name__}: {said}); the diagnosis starts anew")
         return []
     search.study = replace(search.study, expected=reached.expected)
-    search.take_seas(reached.order)  # type: ignore[arg-type]
-    search.declared_in_second_order = reached.declared_in_second_order
     search.found, search.scores, search.rejected = reached.found, list(reached.scores), reached.rejected
     search.notes, search.alone, search.earlier = list(reached.notes), reached.alone, reached.seconds
     search.anchor(reached.begun)
@@ -166,8 +156,8 @@ def _check(reached: Checkpoint, search: "Search") -> None:
     """Check array sizes against the search; raises ValueError."""
     study = search.study
     rows, series, free = len(study.row_series), len(study.series), len(study.start)
-    if reached.order not in ("second", *study.other_seas) or not reached.states:
-        raise ValueError("no states in seas of this campaign")
+    if not reached.states:
+        raise ValueError("no states")
     asked: list[tuple[np.ndarray, tuple[int, ...]]] = [(reached.begun, (free,))]
     asked += [] if reached.expected is None else [(reached.expected, (rows,))]
     for state in reached.every_state():

@@ -17,10 +17,8 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.greedy_search import MAX_EFFECTS, Search
 from calibration.discovery.residual_anatomy import anatomy
 from calibration.discovery.set_up import set_up_study
-from calibration.discovery.strip_trials import StripTrial, try_strip_conventions
-from calibration.discovery.wave_records import options_for, simulated_by_program
 from calibration.fitting.decay_fit import Progress
-from calibration.residuals.measured_seas import NO_ZERO, Options
+from calibration.residuals.measured_seas import NO_ZERO, Options, options_of
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import CheckpointWarning
 from jaxhydro.interrupts import stopping
@@ -46,7 +44,7 @@ def diagnose(
         campaign: The campaign.
         candidates: The user's own candidate effects, beside the catalogue.
         progress: Called with the stage of the search.
-        options: How seas are reconstructed; by default the wave records decide.
+        options: How seas are reconstructed; by default as the campaign states.
         kept: Checkpoint file. An existing one of the same campaign, options, program and libraries is resumed.
 
     Returns:
@@ -78,19 +76,16 @@ def diagnose(
 
     say("reading the records", 0.0)
 
-    def begun_with(campaign: Campaign) -> tuple[Search, tuple[str, ...]]:
-        how, notes = options_for(campaign) if options is None else (options, ())
-        taken = try_strip_conventions(campaign, say) if simulated_by_program(how) else StripTrial(campaign)
-        search = Search(taken.campaign, set_up_study(taken.campaign, how, candidates), say)
-        search.decay_calibration, search.strips, notes = taken.fit, taken.strips, (*notes, *taken.notes)
+    def begun_with(campaign: Campaign) -> Search:
+        how = options_of(campaign) if options is None else options
+        search = Search(campaign, set_up_study(campaign, how, candidates), say)
         states.extend([] if kept is None else load_checkpoint(kept, search, unusable.append))
-        return search, notes
+        return search
 
-    search, notes = begun_with(campaign)
+    search = begun_with(campaign)
     wrong = {} if states else reversed_channels(campaign, search)
     if wrong:
-        search, notes = begun_with(campaign := with_signs_reversed(campaign, list(wrong)))
-        notes = (reversal_note(list(wrong)), *notes)
+        search = begun_with(campaign := with_signs_reversed(campaign, list(wrong)))
     if states:
         say(f"going on from what was reached before: round {len(states)}", 0.15)
     else:
@@ -99,18 +94,17 @@ def diagnose(
         reach(search.fit_baseline())
 
     def concluded() -> Diagnosis:
+        signs = [reversal_note(list(wrong))] if wrong else []
         lost = [] if search.alone is None else abandoned_decays(search.study, search.alone, states[-1].left)
         unknown = [] if campaign.manifest.zero is not None else [UNKNOWN_ZERO_NOTE]
         warnings = [str(finding) for finding in group_findings(campaign.findings)]
-        every = (*notes, *search.notes, *lost, *unknown, *warnings)
-        return conclude(search.campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
+        every = (*signs, *search.study.notes, *search.notes, *lost, *unknown, *warnings)
+        return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 
     try:
         for again in range(2 * MAX_EFFECTS):
             if len(states) > MAX_EFFECTS:  # an earlier run may have reached them
                 break
-            if len(states) > 1 and (second := search.second_order_again(states[-1], len(states))) is not None:
-                states[0], states[-1] = second
             states[-1], after = search.add_effect(fitted := states[-1], len(states))
             if after is not None:
                 reach(after)

@@ -5,7 +5,6 @@ from enum import StrEnum
 
 import numpy as np
 
-from calibration.campaign.strip_conventions import StripConventions
 from calibration.discovery.acceptance import Verdict
 from calibration.discovery.refusal import Refusal
 from calibration.residuals.measured_seas import Options
@@ -26,9 +25,8 @@ class Outcome(StrEnum):
     UNEXPLAINED = "unexplained"
 
 
-# reasons for doubt in an effect, beside a rejected effect that explains more
-SECOND_ORDER = "second_order"  # second-order waves were left out
-HELD_OUT_ERROR = "held_out_error"  # the effects increase the held-out error, in all or in the effect's motion
+# reason for doubt in an effect: the effects increase the held-out error, in all or in the effect's motion
+HELD_OUT_ERROR = "held_out_error"
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +60,7 @@ class Effect:
         share: Fraction of the unexplained error of the fitted tests that it explains.
         indistinguishable: Effects that the records cannot tell from it.
         telling_test: The test that would tell them apart, or None.
-        in_doubt: A rejected effect that explains more beside it, `SECOND_ORDER` or `HELD_OUT_ERROR`; None: no doubt.
+        in_doubt: A rejected effect that explains more beside it, or `HELD_OUT_ERROR`; None: no doubt.
     """
 
     effect: str
@@ -271,7 +269,6 @@ class Diagnosis:
         notes: Notes and doubts, in words.
         seconds: Computing time (s).
         latent: Missing forces by motion, where something is unexplained.
-        strips: How strips are taken, where the platform file does not say.
         seas: How waves are reconstructed and act.
         complete: False where the search was stopped before its end.
     """
@@ -291,6 +288,5 @@ class Diagnosis:
     notes: tuple[str, ...]
     seconds: float
     latent: tuple[LatentForce, ...] = ()
-    strips: StripConventions | None = None
     seas: Options | None = None
     complete: bool = True

@@ -82,8 +82,7 @@ def conclude(
         (*lost, *doubts_of(search, after, augmented, more), *notes),
         seconds,
         latent,
-        search.strips,
-        search.study.options[search.order] if search.study.seas else None,
+        search.study.options if search.study.seas else None,
     )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Finding
+from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.formatting import listed, number, percent
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency
 MEMORY_EFFECTS = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
-DRIFT_EFFECTS = ("wave_drift", "wave_drift_damping")  # proportional to the square of the wave
 # of the held-out error to that of the declared model. True effects increase it to 1.01 times at most in the campaigns of
 # docs/validation.md, since likelihoods are not errors
 MAX_HELD_OUT_RATIO = 1.05
@@ -66,8 +65,7 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     Reasons, the later overriding the earlier:
 
     - a rejected effect explains more (`outdone_effects`);
-    - the held-out error rose, in all or in the effect's motion;
-    - drift, where second-order waves were left out: both grow with the square of the wave.
+    - the held-out error rose, in all or in the effect's motion.
     """
     last = max((one.round for one in search.scores), default=0)
     candidates = {(one.effect, one.dof): one.name for one in search.setup.candidates}
@@ -82,8 +80,6 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     every = held_out_error_rose(before.objective("holdout"), after.objective("holdout"))
     worse = [dof for dof in DOFS if held_out_error_rose(before.objective("holdout", dof), after.objective("holdout", dof))]
     found |= {one.name: HELD_OUT_ERROR for one in state.chosen if every or one.dof in worse}
-    if search.declared_in_second_order is not None:
-        found |= {one.name: SECOND_ORDER for one in state.chosen if one.effect in DRIFT_EFFECTS}
     return found
 
 

@@ -4,12 +4,10 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.campaign.strip_conventions import StripConventions
 from calibration.discovery.acceptance import FitState, HeldOutComparison, ResidualSummary, Verdict, assess_effect
 from calibration.discovery.effect_descent import FitOutcome, fit
 from calibration.discovery.effects.candidates import Candidate
@@ -18,11 +16,8 @@ from calibration.discovery.expected_residuals import expected_rows
 from calibration.discovery.held_out_blocks import HeldOutBlocks
 from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.set_up import CANDIDATE_PRIOR_WIDTH, StudySetup
-from calibration.fitting.decay_fit import DecayFit, prepare_fit, run_fit
+from calibration.fitting.decay_fit import prepare_fit, run_fit
 from calibration.residuals.decays import first_guess
-
-SecondOrderTreatment = Literal["second", "first", "cut", "origin", "cut, origin"]
-"""Seas with the second order that their records have, without, with its differences cut off, with it at the origin, or both."""
 
 MAX_ITERATIONS = 50  # iterations of a full refit
 MAX_RELINEARISATIONS = 8  # new slopes in a full refit
@@ -35,11 +30,8 @@ class EffectFits:
     Attributes:
         campaign: The campaign.
         setup: Study, candidates, priors.
-        study: The study, with the current seas and weights.
+        study: The study, with the current weights.
         say: Called with the stage and its progress (0 to 1).
-        order: Current second-order treatment of the seas.
-        decay_calibration: Ordinary calibration to the decays, or None.
-        strips: How strips are taken, where not as the platform file says.
         begun: Parameter coordinates where the search began (p,).
         base: Directions that are free without any effect.
         count: Number of independent observations, for BIC.
@@ -47,9 +39,6 @@ class EffectFits:
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
         self.campaign, self.setup, self.study, self.say = campaign, setup, setup.study, say
-        self.order: SecondOrderTreatment = "second"
-        self.decay_calibration: DecayFit | None = None  # an ordinary calibration to the decays, where one is at hand
-        self.strips: StripConventions | None = None  # where they are not taken as the platform file says
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
         self.base = self.study.index([*setup.base, *setup.nuisances])
         # independent observations, for BIC: a quarter of the degrees of freedom, as most bands hold noise only
@@ -75,8 +64,7 @@ class EffectFits:
             return Point(x, np.zeros((0, 0)))
         own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
-            if (plain := self.decay_calibration) is None:
-                run_fit(plain := prepare_fit(self.campaign), near=True)
+            run_fit(plain := prepare_fit(self.campaign), near=True)
             for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
             rows = [r.id for r in study.decay_records]
@@ -103,12 +91,6 @@ class EffectFits:
     def weigh_by_expected(self, place: Point) -> None:
         """Weigh tests in waves by the residuals that unknown forces would leave, estimated at a point."""
         self.study = replace(self.study, expected=expected_rows(self.study, place))
-
-    def take_seas(self, order: SecondOrderTreatment) -> None:
-        """Use the seas of this second-order treatment from now on."""
-        self.order = order
-        self.study = replace(self.study, seas=self.setup.study.seas if order == "second" else self.study.other_seas[order])
-        self.__dict__.pop("blocks", None)  # which were cut from others
 
     def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """Fit all directions of a linearisation until nothing is gained."""

@@ -14,11 +14,10 @@ from calibration.discovery.frequency_bands import Bands, FourierRows, band_power
 from calibration.discovery.linearisations import RELATIVE_FLOOR, MotionSeries
 from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
-from calibration.discovery.wave_records import highest_difference, simulated_by_program
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, dominant_period, gather_decays
-from calibration.residuals.measured_seas import Options, Seas, moving_channels, sea_of, sea_step, seas_of
+from calibration.residuals.measured_seas import Options, moving_channels, sea_step, seas_of
 from calibration.residuals.stretches import samples_after_transient
 from jaxhydro.dynamics.integrate import clock
 from jaxhydro.dynamics.model import Model
@@ -76,29 +75,19 @@ def study_of(
         series += found
         cuts.append(rows)
     seas: list[SeaRecord] = []
-    other_options: dict[str, Options] = {}
-    others: dict[str, list[SeaRecord]] = {}
+    notes: list[str] = []
     if waving:
         step = sea_step(model, options)
-        recorded = seas_of(campaign, model.environment, options)
-        other_options = {} if campaign.manifest.records.order is not None else other_options_of(options, recorded)
-        others = {name: [] for name in other_options}
-        for run, made in recorded:
+        for run, made in seas_of(campaign, model.environment, options):
             tests = [r for r in run.records if r.id in waving]
             if not tests:
                 continue
-
             sea = _sea_record(run, made.sea, tests, model, space, from_rest, step)
-            separated = {options.highest_difference: made.sea}
-            for name, how in other_options.items():
-                if (bound := how.highest_difference) not in separated:
-                    separated[bound] = sea_of(run, model.environment, how).sea
-                other = replace(separated[bound], acting=how.acting)
-                others[name].append(_sea_record(run, other, tests, model, space, from_rest, step))
             found, rows = gather_sea(sea, tests, highest)
             series += found
             cuts.append(rows)
             seas.append(sea)
+            notes += [*run.notes, *made.notes]
     steps = [sea.fitted for sea in seas] + ([] if decays is None else [int(np.sum(decays.data.count))])
     if max(steps) > DOMINANT_SHARE * sum(steps):
         width = -(-width // 2)
@@ -110,29 +99,13 @@ def study_of(
         width,
         decays,
         tuple(seas),
-        {name: tuple(some) for name, some in others.items()},
         tuple(series),
         decaying,
         own_width,
         tuple(cuts),
-        {"second": options, **other_options},
+        options,
+        tuple(notes),
     )
-
-
-def other_options_of(options: Options, recorded: Seas) -> dict[str, Options]:
-    """Simplified second-order treatments to try, by name (see `effect_fits.SecondOrderTreatment`).
-
-    Programs simplify; whether one did is seen in the wave records.
-    """
-    found: dict[str, Options] = {}
-    if options.order == 2:
-        found["first"] = replace(options, acting="nowhere")
-    if simulated_by_program(options):
-        found["origin"] = replace(options, acting="at the origin")
-        if (highest := highest_difference(recorded)) is not None:
-            found["cut"] = replace(options, highest_difference=highest)
-            found["cut, origin"] = replace(found["cut"], acting="at the origin")
-    return found
 
 
 def highest_frequency(model: Model) -> float:

@@ -15,30 +15,18 @@ from calibration.discovery.acceptance import (
     FitState,
     ResidualSummary,
 )
-from calibration.discovery.candidate_scores import REFIT_ITERATIONS, CandidateScoring
+from calibration.discovery.candidate_scores import CandidateScoring
 from calibration.discovery.candidate_trials import AcceptedEffect, RefittedCandidate, ScoredCandidate, in_order_of_belief
-from calibration.discovery.effect_fits import SecondOrderTreatment
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
-from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, predict_gain, prior_residuals
+from calibration.discovery.eliminated_least_squares import predict_gain, prior_residuals
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
 
 MAX_EFFECTS = 10  # effects in a model
 SHORTLIST = 5  # candidates refitted in a round
-FIRST_ORDER_NOTE = (
-    "waves act as of first order: what theory binds to them at second order is in the records, but with it the motions are "
-    "followed worse"
-)
-SIMPLER_SEA_NOTES = {
-    "cut": "differences of frequencies above {highest:.3g} Hz bind nothing, as where a program cuts them off",
-    "origin": "waves act at second order by their horizontal flow at the origin, on all of the platform, as in some programs",
-}
 SHARED_NOTE = "{first} hardly matters beside {later}, yet explains more: they share what they explain, and may be one other law"
-# all simplifications of a program, then parts of them
-TREATMENTS_TRIED: tuple[SecondOrderTreatment, ...] = ("cut, origin", "origin", "cut", "first")
-MAX_UNFITTED_LOSS = 300.0  # increase of -2 ln L by another treatment, before it is fitted
 MASS_DEVIATIONS_ALLOWED = 2.0  # standard deviations by which weighed mass properties may be off
 MIN_RELATIVE_PROMISE = 0.3  # of the best refit's gain: candidates that promise less are not refitted
 
@@ -51,7 +39,6 @@ class Search(CandidateScoring):
         earlier: Computing time of earlier, stopped runs (s).
         alone: Residual of a calibration to decays alone, where there are seas too.
         found: Evidence of the accepted effects by name.
-        declared_in_second_order: Fit of the declared model in second-order waves, where first order was chosen instead.
     """
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
@@ -60,10 +47,9 @@ class Search(CandidateScoring):
         self.earlier = 0.0  # s, that runs of it took which were stopped
         self.alone: ResidualSummary | None = None  # of a calibration to the decays, where there are seas, too
         self.found: dict[str, AcceptedEffect] = {}
-        self.declared_in_second_order: FitState | None = None  # where waves of first order were taken in place of theirs
 
     def fit_baseline(self) -> FitState:
-        """Fit the declared model, and choose the second-order treatment of the seas."""
+        """Fit the declared model."""
         self.say("calibrating the declared model", 0.03)
         place = self.start
         self.anchor(place.x)
@@ -72,61 +58,7 @@ class Search(CandidateScoring):
         if self.study.seas:
             self.weigh_by_expected(place)
         self.say("declared model: slopes", 0.08)
-        state = self.refit(self.study.linearise(place, self.base), (), "declared model", 0.1)
-        best, taken, name = state, self.order, "declared model"
-        for order in TREATMENTS_TRIED:
-            stage = "declared model in waves of " + ("first order" if order == "first" else f"another kind ({order})")
-            other = self.fitted_in_seas(order, best, stage, 0.12) if order in self.study.other_seas else None
-            simpler = set(order.split(", ")) < set(taken.split(", "))  # of what is taken a part, which may be enough
-            if other is not None and self.likelihood_gain(best, other) >= (
-                -MIN_LIKELIHOOD_GAIN if simpler else MIN_LIKELIHOOD_GAIN
-            ):
-                best, taken, name = other, order, stage
-        self.take_seas(taken)
-        if best is state:
-            return state
-        better = f"(by {self.likelihood_gain(state, best):.0f} in -2 ln L)"
-        if taken == "first":
-            self.declared_in_second_order = state
-            self.notes.append(f"{FIRST_ORDER_NOTE} {better}")
-        else:
-            highest = self.study.options[taken].highest_difference
-            said = "; ".join(SIMPLER_SEA_NOTES[part] for part in taken.split(", ")).format(highest=highest)
-            self.notes.append(f"{said}: motions are followed better so {better}, and the records have no sums of frequencies")
-            self.weigh_by_expected(best.look.place)  # what other seas left is none of it
-        return self.refit(self.study.linearise(best.look.place, self.base), (), name, 0.14)
-
-    def second_order_again(self, state: FitState, number: int) -> tuple[FitState, FitState] | None:
-        """Return to second-order waves where first-order ones no longer follow the motions better.
-
-        What the model lacked before may have made second order look wrong.
-
-        Returns:
-            Fits of the declared model and of the state in second-order waves; None: first order stays.
-        """
-        if (declared := self.declared_in_second_order) is None:
-            return None
-        name, done = f"round {number}: waves of second order again", 0.15 + 0.8 * (number - 1) / MAX_EFFECTS
-        second = self.fitted_in_seas("second", state, name, done)
-        if second is None or self.likelihood_gain(second, state) > MIN_LIKELIHOOD_GAIN:
-            self.take_seas("first")
-            return None
-        self.notes = [note for note in self.notes if not note.startswith(FIRST_ORDER_NOTE)]
-        self.declared_in_second_order = None
-        look = self.study.linearise(second.look.place, self.active(state.chosen))
-        return declared, self.refit(look, state.chosen, name, done)
-
-    def fitted_in_seas(self, order: SecondOrderTreatment, state: FitState, name: str, fraction: float) -> FitState | None:
-        """A state after a few iterations in seas of another second-order treatment.
-
-        These are the search's seas from then on. None where they are much worse before any fit.
-        """
-        self.take_seas(order)
-        there = minus_two_log_likelihood(self.study, self.study.residual(state.look.place))
-        if float((there - state.likelihood)[self.study.used].sum()) > MAX_UNFITTED_LOSS:
-            return None
-        look = self.study.linearise(state.look.place, self.active(state.chosen))
-        return self.state(state.chosen, self.fit(look, state.chosen, REFIT_ITERATIONS, 0, name, fraction))
+        return self.refit(self.study.linearise(place, self.base), (), "declared model", 0.1)
 
     def likelihood_gain(self, before: FitState, after: FitState) -> float:
         """Decrease of -2 ln L of the fitted tests from one state to another."""

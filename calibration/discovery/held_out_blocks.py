@@ -126,7 +126,6 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
         study,
         decays=decays,
         seas=tuple(seas),
-        other_seas={},
         series=tuple(series),
         decay_records=tuple(cut),
         own_width=own_width,

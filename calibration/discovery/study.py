@@ -1,6 +1,6 @@
 """All records of a campaign and one model: residuals and linearisations at any point."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
@@ -37,12 +37,12 @@ class Study:
         width: Number of directions that are differentiated at a time.
         decays: The decays, or None.
         seas: The runs in waves.
-        other_seas: The same with other second-order treatments, by `effect_fits.SecondOrderTreatment`.
         series: All motions of all tests.
         decay_records: Records of the decays.
         own_width: Standard deviations of the decays' own unknowns (r, o).
         cuts: Rows of the decays and of every run in waves.
-        options: How seas are reconstructed, by second-order treatment.
+        options: How seas are reconstructed.
+        notes: Remarks on the wave records, in words.
         expected: Expected size of rows (n,) over their floor (`expected_residuals`), or None.
     """
 
@@ -53,12 +53,12 @@ class Study:
     width: int
     decays: DecayProblem | None
     seas: tuple[SeaRecord, ...]
-    other_seas: Mapping[str, tuple[SeaRecord, ...]]
     series: tuple[MotionSeries, ...]
     decay_records: tuple[Record, ...]
     own_width: np.ndarray
     cuts: tuple[FourierRows, ...]
-    options: Mapping[str, Options]
+    options: Options
+    notes: tuple[str, ...] = ()
     expected: np.ndarray | None = None
 
     @property

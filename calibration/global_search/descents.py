@@ -5,15 +5,11 @@ from collections.abc import Sequence
 
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import FIRST_WINDOW_CYCLES, WINDOW_GROWTH, DecayFit, record_weights, run_fit
-from calibration.global_search.base import FAILED_OBJECTIVE, BudgetSpent, Task
-from calibration.global_search.objective import coordinates
+from calibration.fitting.decay_fit import FIRST_WINDOW_CYCLES, DecayFit, record_weights, run_fit
+from calibration.global_search.task import FAILED_OBJECTIVE, BudgetSpent, Task
 from calibration.residuals.decays import DecayProblem, Unknowns, first_guess
-
-FIRST_POINTS_POWER = 5  # 2^5 points to begin with
 
 
 class WindowedFit(DecayFit):
@@ -65,30 +61,6 @@ def compile_fit(task: Task) -> None:
         fit = fit_from(task.problem, task.records, np.asarray(task.problem.space.start), stop)
         with contextlib.suppress(BudgetSpent):
             short_fit(fit, task.begins + 1e-3 * (fit.window(FIRST_WINDOW_CYCLES) - task.begins))
-
-
-def fit_releases(task: Task) -> Float[Array, "r 3*c"]:
-    """The records' releases by least squares over their first cycles (1.25, then 3.1 of them), whose coefficients, free too,
-    are thrown away. Begun from the best of a few points, none of them by chance; first guesses where that gives no number.
-    Counted."""
-    from scipy.stats.qmc import Sobol
-
-    task.stage = "releases"
-    x = coordinates(
-        task.problem.space, Sobol(task.size, scramble=False).random_base2(FIRST_POINTS_POWER) + 0.5**FIRST_POINTS_POWER / 2
-    )
-    x = rank_points(task, np.concatenate([np.asarray(task.problem.space.start)[None], x]))
-    compile_fit(task)
-
-    def report(*_) -> None:
-        task.simulations += fit.simulations_per_iteration * fit.part
-        task.check()
-
-    fit = fit_from(task.problem, task.records, x[0], report)
-    guess = fit.unknowns.own
-    for cycles in (FIRST_WINDOW_CYCLES, WINDOW_GROWTH * FIRST_WINDOW_CYCLES):
-        short_fit(fit, fit.window(cycles))
-    return fit.unknowns.own if bool(jnp.isfinite(fit.unknowns.own).all()) else guess
 
 
 class _Diverged(Exception):

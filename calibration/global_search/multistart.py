@@ -1,18 +1,18 @@
 """Multi-start least squares: many starts ranked cheaply, the best few calibrated."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
 
-from calibration.global_search.base import AbstractSearch, Task, even_batch
 from calibration.global_search.descents import compile_fit, descend, rank_points
 from calibration.global_search.objective import coordinates
+from calibration.global_search.task import Task, even_batch
 
 
 @dataclass(frozen=True)
-class MultiStart(AbstractSearch):
+class MultiStart:
     """Levenberg-Marquardt from the best `finalists` of `starts` points.
 
     The points are a scrambled Sobol sequence in the unit cube, log-uniform in positive coefficients (Owen 1998, Journal of
@@ -26,7 +26,12 @@ class MultiStart(AbstractSearch):
     starts: int = 64
     finalists: int = 4
     name: ClassVar[str] = "multistart"
-    descends: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for no starts or finalists."""
+        for option in fields(self):
+            if not (value := getattr(self, option.name)) > 0:
+                raise ValueError(f"{option.name}: expected a number above 0, found {value!r}")
 
     def batch_size(self, size: int) -> int:
         return even_batch(self.starts)

@@ -1,6 +1,5 @@
 """Global search over the coefficients that a campaign's decays determine."""
 
-import importlib.util
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -12,12 +11,11 @@ import numpy as np
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.records import Record
 from calibration.fitting.decay_fit import Progress, prepare_fit
-from calibration.global_search import METHODS, AbstractSearch, Budget, BudgetSpent, History, Task
-from calibration.global_search.descents import fit_releases
+from calibration.global_search.multistart import MultiStart
 from calibration.global_search.objective import ranges
+from calibration.global_search.task import Budget, BudgetSpent, History, SearchMethod, Task
 from calibration.parameters.space import parameter_space
 from calibration.residuals.decays import DecayProblem
-from jaxhydro.errors import suggest
 from jaxhydro.interrupts import stopping
 
 DEFAULT_FACTOR = 10.0  # a coefficient without bounds is searched from a tenth to ten times of what the platform declares
@@ -63,7 +61,8 @@ class SearchInterrupted(KeyboardInterrupt):
 def search(
     campaign: Campaign,
     *,
-    method: str | AbstractSearch = "multistart",
+    starts: int = MultiStart.starts,
+    finalists: int = MultiStart.finalists,
     seed: int = 0,
     budget: Budget = Budget(),
     free: Sequence[str] | None = None,
@@ -74,13 +73,12 @@ def search(
 
     J is the sum of RMSE / standard deviation over the records' released degrees of freedom. The search covers the
     manifest's bounds. Where it has none, it covers 1/`factor` to `factor` times the platform's value. Positive coefficients
-    are on a logarithmic scale. Priors are not used. Population searches do not fit releases: initial positions and rates
-    are fitted first, by least squares over the first 3 cycles (`fit_releases`), and offsets are eliminated in J.
-    Multi-start fits them with the coefficients.
+    are on a logarithmic scale. Priors are not used. Releases and offsets are fitted with the coefficients.
 
     Args:
         campaign: The campaign.
-        method: "multistart" (least squares from the best of many starts), "cma-es", "ga" or "de", or one of their classes.
+        starts: Number of starting points that are ranked by their first cycles.
+        finalists: Number of the best starting points that least squares are begun from.
         seed: Seed of the random numbers. The same seed gives the same search, unless seconds end it.
         budget: When the search ends.
         free: Labels or patterns of the free parameters; None for those of the manifest.
@@ -91,18 +89,24 @@ def search(
         The coefficients of lowest J, and the history of the search.
 
     Raises:
-        ValueError: If the method, seed, budget or factor is invalid.
+        ValueError: If an option is invalid.
         InputError: If there is nothing to search, or bounds are missing.
         SearchInterrupted: If the user stops the search (a KeyboardInterrupt); it holds what was reached.
     """
-    chosen = _checked(method, seed, budget, factor)
+    if not (isinstance(seed, int) and not isinstance(seed, bool) and seed >= 0):
+        raise ValueError(f"seed: expected a whole number from 0, found {seed!r}")
+    if not factor > 1:
+        raise ValueError(f"factor: expected a number above 1, found {factor!r}")
+    if not (budget.seconds > 0 and budget.simulations > 0):
+        raise ValueError(f"budget: expected seconds and simulations above 0, found {budget.seconds!r}, {budget.simulations!r}")
+    method = MultiStart(starts, finalists)
     problem, records = set_up_search(campaign, free, factor)
     task = Task(problem, records, None, budget, progress or (lambda _: None))
-    return run(task, chosen, seed)
+    return run(task, method, seed)
 
 
-def run(task: Task, method: AbstractSearch, seed: int) -> Found:
-    """A search on a task, begun now. The releases are fitted first where the task has none and the method does not fit them.
+def run(task: Task, method: SearchMethod, seed: int) -> Found:
+    """A search on a task, begun now.
 
     Raises ValueError where the budget is too small for anything, SearchInterrupted with what was reached.
     """
@@ -110,8 +114,6 @@ def run(task: Task, method: AbstractSearch, seed: int) -> Found:
     task.batch = method.batch_size(task.size)
     try:
         task.begin()
-        if task.own is None and not method.descends:
-            task.own = fit_releases(task)
         method.run(task, np.random.default_rng(seed))
     except BudgetSpent:
         ended = "reached" if task.best <= task.budget.objective else "budget"
@@ -140,31 +142,3 @@ def set_up_search(
     bounds = ranges(model, labels, dict(campaign.manifest.calibrate.bounds), factor, source)
     space = parameter_space(model, labels, bounds, None, source)
     return replace(fit.problem, space=space), tuple(fit.records)
-
-
-def _checked(method: str | AbstractSearch, seed: int, budget: Budget, factor: float) -> AbstractSearch:
-    """The method. Raises ValueError for what is wrong."""
-    if not (isinstance(seed, int) and not isinstance(seed, bool) and seed >= 0):
-        raise ValueError(f"seed: expected a whole number from 0, found {seed!r}")
-    if not factor > 1:
-        raise ValueError(f"factor: expected a number above 1, found {factor!r}")
-    if not (budget.seconds > 0 and budget.simulations > 0):
-        raise ValueError(f"budget: expected seconds and simulations above 0, found {budget.seconds!r}, {budget.simulations!r}")
-    if isinstance(method, AbstractSearch):
-        chosen = method
-    elif isinstance(method, str) and method in METHODS:
-        chosen = METHODS[method]()
-    else:
-        hint = suggest(str(method), METHODS)
-        raise ValueError(f"method: expected one of {', '.join(METHODS)}, found {method!r}. {hint}".strip())
-    if not chosen.descends and math.isinf(budget.seconds) and math.isinf(budget.simulations) and budget.objective <= 0:
-        raise ValueError(f"budget: expected a limit, as {chosen.name} does not end of its own, found none")
-    _require_package(chosen)
-    return chosen
-
-
-def _require_package(method: AbstractSearch) -> None:
-    """Raises ValueError where the package that a method needs is not there."""
-    if method.needs is not None and importlib.util.find_spec(method.needs) is None:
-        install = "pip install 'jaxhydro[search]'"
-        raise ValueError(f"method {method.name}: expected the package {method.needs} (`{install}`), found none")

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Outcome
+from calibration.discovery.diagnosis import HELD_OUT_ERROR, Outcome
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
 from calibration.formatting import listed, number, percent, quantity
 from calibration.results.calibration_file import Parameter
@@ -12,6 +12,7 @@ from calibration.vocabulary import UNDETERMINED
 STOPPED = "stopped by the user before it was done: what follows is what was found until then"
 UNFINISHED = "The search did not come to its end: until then nothing was found that the declared model lacks."
 WHERE = "in the motion and at the frequencies where the error falls most"
+SECOND_ORDER = "second_order"  # a doubt in files of earlier versions, which chose the order of the waves themselves
 NEAR_ZERO_DEVIATIONS = 2.0  # standard deviations from zero: below, it is said that a parameter is near zero
 SMALL_DEVIATION = 0.25  # of the value it began from: a deviation below is small, whatever the value
 EVIDENCE_STRENGTHS = (

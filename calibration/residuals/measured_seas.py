@@ -18,12 +18,14 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import WAVE
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run, runs
+from calibration.campaign.second_order_hint import second_order_hint
 from calibration.campaign.wave_band import wave_band
 from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.spectral import power_spectrum
 from jaxhydro.choices import check
-from jaxhydro.dynamics.model import CONVENTIONS, Model
+from jaxhydro.dynamics.conventions import allowed_values
+from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import observe
 from jaxhydro.dynamics.requested_sea import share_within
 from jaxhydro.dynamics.simulate import largest_step
@@ -62,20 +64,24 @@ class Options:
     def __post_init__(self) -> None:
         """Raises UnknownName for another order, stretching, diffraction, kind or place of action."""
         check(order=(self.order, (1, 2)), stretching=(self.stretching, get_args(Stretching)))
-        check(diffraction=(self.diffraction, (*CONVENTIONS["diffraction"], None)), acting=(self.acting, get_args(Acting)))
+        check(diffraction=(self.diffraction, (*allowed_values("diffraction"), None)), acting=(self.acting, get_args(Acting)))
         for kind in self.kinds:
             check(kinds=(kind, KINDS))
 
 
 def options_of(campaign: Campaign) -> Options:
-    """Default options of a campaign's seas where a command says nothing: its own band and order."""
-    low, cutoff = wave_band(campaign.manifest, campaign.model, campaign.records)
-    return Options(order=campaign.manifest.records.order or 2, low=low, cutoff=cutoff)
+    """Default options of a campaign's seas where a command says nothing: its band, and waves as its `records` state."""
+    manifest, stated = campaign.manifest, campaign.manifest.records
+    low, cutoff = wave_band(manifest, campaign.model, campaign.records)
+    highest = None if stated.highest_difference is None else stated.highest_difference / manifest.scale**0.5
+    return Options(
+        order=stated.order, low=low, cutoff=cutoff, kinds=stated.kinds, highest_difference=highest, acting=stated.acting
+    )
 
 
-def non_default_options(options: Options, asked: Collection[str] = ()) -> str:
-    """What of seas is not as `Options` has it where nothing is said, in words, what was `asked` for left aside."""
-    usual, words = Options(), []
+def non_default_options(options: Options, asked: Collection[str] = (), usual: Options = Options()) -> str:
+    """Options of seas that differ from the `usual` ones, in words; those `asked` for are left aside."""
+    words = []
     of_second = {
         "kinds": f"bound waves at {' and '.join(f'{kind}s' for kind in options.kinds)} of frequencies only",
         "highest_difference": f"differences up to {options.highest_difference or 0:.3g} Hz",
@@ -183,7 +189,7 @@ def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
 
 def with_diffraction(model: Model, options: Options) -> Model:
     """The model with the diffraction asked for."""
-    return model if options.diffraction is None else dataclasses.replace(model, diffraction=options.diffraction)
+    return model if options.diffraction is None else model.with_conventions(diffraction=options.diffraction)
 
 
 def sea_step(model: Model, options: Options) -> float:
@@ -192,8 +198,12 @@ def sea_step(model: Model, options: Options) -> float:
 
 
 def seas_of(campaign: Campaign, environment: Environment, options: Options) -> Seas:
-    """The runs of a campaign and their seas. Raises InputError."""
-    return tuple((run, sea_of(run, environment, options)) for run in runs(campaign))
+    """The runs of a campaign and their seas, the first with the remark on all wave records. Raises InputError."""
+    made = [(run, sea_of(run, environment, options)) for run in runs(campaign)]
+    if made and options.order == 2 and not campaign.manifest.records.model_fields_set:
+        hint = second_order_hint([(run, one.sea) for run, one in made], (options.low, options.cutoff))
+        made[0] = (made[0][0], dataclasses.replace(made[0][1], notes=(*made[0][1].notes, *hint)))
+    return tuple(made)
 
 
 def compare(

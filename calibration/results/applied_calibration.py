@@ -6,9 +6,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from calibration.campaign.strip_conventions import StripConventions
 from calibration.residuals.measured_seas import Options
 from calibration.results.calibration_file import CalibrationFile, file_error, read_saved
+from calibration.results.strip_conventions import StripConventions
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, shown, suggest
 from jaxhydro.hull.coefficient_labels import shared_hint

@@ -8,9 +8,9 @@ from typing import Annotated, Literal, TypeVar
 from pydantic import ConfigDict, Field, model_validator
 
 from calibration.campaign.manifest import Use
-from calibration.campaign.strip_conventions import StripConventions
 from calibration.residuals.measured_seas import Options
 from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE, Figure
+from calibration.results.strip_conventions import StripConventions
 from jaxhydro.errors import InputError, NonNegative, Number, Positive, Problem, suggest_path, validate
 from jaxhydro.platform.body import ConstantDrag, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 from jaxhydro.result_model import ReferenceSeaState, ResultModel

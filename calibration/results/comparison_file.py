@@ -2,9 +2,9 @@
 
 from pydantic import Field
 
-from calibration.campaign.strip_conventions import StripConventions
 from calibration.results.calibration_file import SeaOptions, TestErrors
 from calibration.results.result_folder import Figure
+from calibration.results.strip_conventions import StripConventions
 from jaxhydro.errors import Number
 from jaxhydro.result_model import ResultModel
 

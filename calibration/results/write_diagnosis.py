@@ -63,7 +63,7 @@ def document(diagnosis: Diagnosis) -> DiagnosisFile:
     return DiagnosisFile(
         campaign=diagnosis.campaign,
         platform=diagnosis.baseline.platform,
-        **stated(strips=diagnosis.strips and diagnosis.strips.model_dump(), seas=diagnosis.seas and asdict(diagnosis.seas)),
+        **stated(seas=diagnosis.seas and asdict(diagnosis.seas)),
         jaxhydro=augmented.jaxhydro,
         complete=diagnosis.complete,
         baseline=outputs.fitted_model(diagnosis.baseline),

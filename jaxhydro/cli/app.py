@@ -190,7 +190,7 @@ def calibrate(
     """
     kind = None if tests is None else tests.value
     how: dict[str, Any] = {"objective": objective.value, "law": law.value.replace("-", "_"), "loss": loss.value, "start": start}
-    how |= {"method": None if method is None else method.value, "seed": search_seed, "seconds": search_seconds}
+    how |= {"method": method, "seed": search_seed, "seconds": search_seconds}
     _calibrate(campaign, out, figures, None, kind, **how)
 
 

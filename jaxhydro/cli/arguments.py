@@ -106,6 +106,9 @@ SWEEPING = "\n\n".join(
 )
 
 
+MULTISTART = "multistart"
+
+
 class Spectrum(StrEnum):
     """Spectra by name."""
 
@@ -146,15 +149,6 @@ class Loss(StrEnum):
     cauchy = "cauchy"
 
 
-class Method(StrEnum):
-    """See `calibration.global_search.run_search`."""
-
-    multistart = "multistart"
-    cma_es = "cma-es"
-    ga = "ga"
-    de = "de"
-
-
 class Law(StrEnum):
     """How coefficients depend on the sea state: see `calibration.choose_law`."""
 
@@ -182,6 +176,14 @@ class Stretch(StrEnum):
     vertical = "vertical"
     wheeler = "wheeler"
     extrapolation = "extrapolation"
+
+
+def _search_method(value: str) -> str:
+    """Check a global search by its name."""
+    if value == MULTISTART:
+        return value
+    baselines = "; population searches (ga, de, cma-es) are baselines: python -m benchmarks.validate --only global_search"
+    raise typer.BadParameter(f"{MULTISTART} expected, found {value!r}{baselines if value in ('ga', 'de', 'cma-es') else ''}")
 
 
 def _option(name: str, panel: str, text: str, default: str | bool = False, **more: Any) -> Any:
@@ -282,7 +284,13 @@ OverSea = Annotated[
     ),
 ]
 GlobalSearch = Annotated[
-    Method | None, typer.Option(help="Search the decays' coefficients within their bounds first. Not with --start.")
+    str | None,
+    typer.Option(
+        help="multistart: search the decays' coefficients within their bounds first. Not with --start.",
+        metavar="multistart",
+        parser=_search_method,
+        autocompletion=lambda: [MULTISTART],
+    ),
 ]
 SearchSeed = Annotated[int, typer.Option(help="Of the search.", min=0)]
 SearchSeconds = Annotated[float, typer.Option(help="CPU time of the search, s.", min=1.0)]

@@ -155,7 +155,7 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
         "heading": asked.heading,
         "order": asked.order,
         "stretching": asked.stretching,
-        "diffraction": "none" if model.cylinders is None else model.diffraction,
+        "diffraction": "none" if model.cylinders is None else model.conventions.diffraction,
     }
     usual = usual_cutoff(4 * math.sqrt(energy), float(model.environment.gravity))
     if asked.order == 2 and cutoff > usual:
@@ -163,7 +163,7 @@ def build_sea(model: Model, asked: RequestedSea, duration: float) -> BuiltSea:
             f"in a sea this high second order is usually cut off at sqrt(2 g / Hs), --cutoff {usual:.2g} (Stansberg): "
             "beyond, short waves bind more than they have"
         )
-    if model.cylinders is None and model.diffraction != "none":
+    if model.cylinders is None and model.conventions.diffraction != "none":
         notes.append("no member of this platform diffracts waves: 1 + Ca everywhere")
     sea = IrregularSea(waves, model.environment, 1 if asked.order == 1 else 2, asked.stretching)  # type: ignore[arg-type]
     if asked.record is not None:

@@ -145,6 +145,11 @@ class Hull(eqx.Module):
         wet = share * elements.length
         return Wetted(wet, jnp.where(column, wet, elements.length))
 
+    @property
+    def ends_without_faces(self) -> int:
+        """Number of ends; the faces of tapered strips come after them."""
+        return len(self.ends.label) - len(self.ends.strip)
+
     def ends_wetted(self, depth: Float[Array, " m"]) -> Float[Array, " m"]:
         """Submerged fraction of ends at a `depth` (m)."""
         return covered(depth, FACE_WETTING_LENGTH * self.size)

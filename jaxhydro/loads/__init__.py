@@ -4,7 +4,7 @@ A new effect is one file in this folder and one line in `LOADS`.
 """
 
 from jaxhydro.loads.added_mass import AddedMass
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.changing_drag import ChangingDrag
 from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
@@ -12,7 +12,6 @@ from jaxhydro.loads.coulomb_friction import CoulombFriction
 from jaxhydro.loads.coupled_damping import CoupledDamping
 from jaxhydro.loads.covered_ends import CoveredEnds
 from jaxhydro.loads.cubic_damping import CubicDamping
-from jaxhydro.loads.current import Current
 from jaxhydro.loads.drift_transfer import DriftTransfer
 from jaxhydro.loads.end_drag import EndDrag
 from jaxhydro.loads.end_inertia import EndInertia
@@ -22,6 +21,7 @@ from jaxhydro.loads.high_pass_drag import HighPassDrag
 from jaxhydro.loads.hydrostatic_coupling import HydrostaticCoupling
 from jaxhydro.loads.hydrostatics import Buoyancy
 from jaxhydro.loads.hysteresis import Hysteresis
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.keulegan_carpenter_drag import KeuleganCarpenterDrag
 from jaxhydro.loads.linear_damping import LinearDamping
 from jaxhydro.loads.mass_error import MassError
@@ -31,8 +31,6 @@ from jaxhydro.loads.nonlinear_hydrostatics import NonlinearHydrostatics
 from jaxhydro.loads.power_drag import PowerDrag
 from jaxhydro.loads.quadratic_damping import QuadraticDamping
 from jaxhydro.loads.radiation_memory import RadiationMemory
-from jaxhydro.loads.sensor_lag import SensorLag
-from jaxhydro.loads.sensor_reference import SensorReference
 from jaxhydro.loads.slow_drag import SlowDrag
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.loads.stiffness import Stiffness
@@ -43,9 +41,8 @@ from jaxhydro.loads.umbilical import Umbilical
 from jaxhydro.loads.wave_drift import WaveDrift
 from jaxhydro.loads.wave_drift_damping import WaveDriftDamping
 from jaxhydro.loads.wave_excitation import WaveExcitation
-from jaxhydro.loads.wave_gauge_position import WaveGaugePosition
-from jaxhydro.loads.wave_reflection import WaveReflection
 from jaxhydro.loads.weight import Weight
+from jaxhydro.parameters import Parameter
 
 LOADS: dict[str, type[AbstractLoad]] = {
     "weight": Weight,
@@ -75,11 +72,6 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "cubic_damping": CubicDamping,
     "mass_error": MassError,
     "static_force": StaticForce,
-    "current": Current,
-    "sensor_reference": SensorReference,
-    "sensor_lag": SensorLag,
-    "wave_gauge_position": WaveGaugePosition,
-    "wave_reflection": WaveReflection,
     "computed_excitation": ComputedExcitation,
     "wave_drift": WaveDrift,
     "drift_transfer": DriftTransfer,

@@ -4,8 +4,10 @@ from typing import Any, ClassVar
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.matrix import assemble, meaning, place, unit
+from jaxhydro.parameters import Parameter
 
 
 class AddedMass(AbstractLoad):

@@ -1,204 +1,15 @@
-"""Base class of loads, their parameters, and the instant at which they act."""
+"""Base class of loads, and what they do at an instant."""
 
 import abc
-import math
-from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
-import equinox as eqx
-import jax.numpy as jnp
-import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
-from jaxhydro.environment import Environment
-from jaxhydro.hull.hull import Hull, Wetted
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import AbstractEffect
 from jaxhydro.waves.excitation import Excitation
-from jaxhydro.waves.flow import EndFlow, StripFlow
-from jaxhydro.waves.sea import AbstractSea
 from jaxhydro.waves.sea_state import SeaState
 from jaxhydro.waves.transfer import Transfer
-
-
-class Parameter(NamedTuple):
-    """Unit, meaning, bounds and neutral value of a load's parameter.
-
-    A `lower` bound of 0 or more means that the quantity cannot be negative, as drag, stiffness and times cannot (`check`). All
-    other bounds only limit where a fit searches: published values beyond them, such as a Cd of 30 for a plate, are not wrong.
-
-    Attributes:
-        unit: Unit, "-" where there is none.
-        meaning: What the parameter is, in words.
-        lower: Lower bound.
-        upper: Upper bound.
-        null: Neutral value, at which the parameter has no effect.
-        of_hull: Whether bounds that are lengths or times scale with the platform's size.
-    """
-
-    unit: str
-    meaning: str
-    lower: float = float("-inf")
-    upper: float = float("inf")
-    null: float = 0.0
-    of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not where a wave gauge may have stood
-
-    def check(self, label: str, value: Any) -> None:
-        """Raise ValueError for a value that is not finite, or is negative where it cannot be.
-
-        Args:
-            label: Label of the parameter, for the message.
-            value: Number or array to check.
-
-        Raises:
-            ValueError: The value is not a finite number, or is negative although `lower` is 0 or more.
-        """
-        try:
-            numbers = np.asarray(value, float)
-        except (TypeError, ValueError):
-            raise ValueError(f"{label}: expected a number ({self.unit}), found {value!r}") from None
-        least = 0.0 if self.lower >= 0 else -math.inf
-        if not (np.isfinite(numbers) & (numbers >= least)).all():
-            expected = "a finite number" if least < 0 else "a finite number of 0 or more"
-            found = ", ".join(f"{one:g}" for one in numbers.ravel()[:3])
-            raise ValueError(f"{label}: expected {expected} ({self.unit}: {self.meaning}), found {found}")
-
-    def sized(self, size: float, pace: float) -> "Parameter":
-        """The parameter with bounds for a platform of another size.
-
-        Args:
-            size: Length scale (-) relative to VolturnUS-S (`jaxhydro.scales`).
-            pace: Time scale (-) relative to VolturnUS-S.
-
-        Returns:
-            The same parameter; bounds in m, s, Hz or m/s are scaled where `of_hull` is set.
-        """
-        factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
-        lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
-        return self if factor == 1.0 or not self.of_hull else self._replace(lower=lower, upper=upper)
-
-
-class StripShape(NamedTuple):
-    """Submerged part of each strip.
-
-    Attributes:
-        volume: Displaced volume (m³), (n,).
-        facing: Area (m²) normal to the flow along each of the two directions, (2, n).
-    """
-
-    volume: Float[Array, " n"]
-    facing: Float[Array, "2 n"]
-
-
-class EndShape(NamedTuple):
-    """Areas and added-mass volumes of member ends and of the faces of tapered strips.
-
-    A face belongs to the wet part of its strip. An end is weighted by `EndFlow.wet`. The end of a member that lies at the
-    surface has the area of the wet section beside it.
-
-    A face of a strip over which the section A grows by dA has the area dA, against the axis, and the volume r dA, A = pi r².
-    Over a step that makes 2/3 pi (R³ - r³), the difference of two half spheres.
-
-    Attributes:
-        area: Area (m²) on which pressure acts, (m,).
-        facing: Area (m²) normal to the flow along the axis, (m,).
-        volume: Volume (m³) to which added mass refers, (m,).
-
-    References:
-        OpenFAST HydroDyn, Morison module (tapered members); RAFT, raft_member.py, getHydroConstants.
-    """
-
-    area: Float[Array, " m"]
-    facing: Float[Array, " m"]
-    volume: Float[Array, " m"]
-
-    @classmethod
-    def of(cls, hull: Hull, wetted: Wetted, covered: Float[Array, " n"], extent: Float[Array, "2 n"]) -> "EndShape":
-        """Shape of a hull's ends and faces at an instant.
-
-        Args:
-            hull: The hull.
-            wetted: Submerged part of each load element.
-            covered: Wet length of each strip (m), (n,).
-            extent: Size of each strip along its two directions (m), (2, n).
-        """
-        ends, strips, area = hull.ends, hull.strips, hull.ends.area
-        if ends.afloat:
-            at, beside, part = (jnp.array(column) for column in zip(*ends.afloat, strict=True))
-            area = area.at[at].set(area[at] / part * wetted.length[beside] / hull.elements.length[beside])
-        own = cls(area, ends.facing, ends.volume)
-        if not ends.strip:
-            return own
-        of = jnp.array(ends.strip, dtype=int)
-        shape, (width, height), (wider, higher) = strips.shape[of], extent[:, of], strips.taper[:, of]
-        grown = shape * (wider * height + higher * width) * covered[of]
-        faces = slice(len(ends.label) - len(ends.strip), None)
-        facing = jnp.where(ends.radius[faces] > 0, jnp.abs(grown), 0.0)
-        radius = jnp.sqrt(shape * width * height / math.pi)
-        found = (-ends.outward[faces] * grown, facing, radius * facing)
-        return cls(*(one.at[faces].set(face) for one, face in zip(own, found, strict=True)))
-
-
-class Lines(NamedTuple):
-    """Distances and centripetal accelerations of strips, ends and faces.
-
-    Attributes:
-        away: Distance (m) from the start of the load element, (l,).
-        inward: Centripetal acceleration (m/s²) along the line, (l,).
-    """
-
-    away: Float[Array, " l"]
-    inward: Float[Array, " l"]
-
-
-class Instant(eqx.Module):
-    """Motion, submerged geometry and flow at one instant: everything that a load may read.
-
-    It is computed once per evaluation of the equation of motion.
-
-    Attributes:
-        time: Time (s).
-        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
-        rotation: Rotation matrix from body to earth axes.
-        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
-        environment: Water and gravity.
-        hull: The hull.
-        wetted: Submerged part of each load element.
-        strip_shape: Submerged part of each strip.
-        end_shape: Areas of ends and faces.
-        strip_flow: Flow past each strip.
-        end_flow: Flow past each end and face.
-        lines: Distances and centripetal accelerations of strips and ends.
-        drift: Squared wave envelopes (m²) of `AbstractSea.drift`, or None.
-        excitation: First-order force (N, N m) of `AbstractSea.excitation`, or None.
-        lid: Pressure over density (m²/s²) and acceleration (m/s², body axes) of the water at the points of `Hull.leaning`.
-    """
-
-    time: Float[Array, ""]
-    position: Float[Array, "6"]
-    rotation: Float[Array, "3 3"]
-    velocity: Float[Array, "6"]
-    environment: Environment
-    hull: Hull
-    wetted: Wetted
-    strip_shape: StripShape
-    end_shape: EndShape
-    strip_flow: StripFlow
-    end_flow: EndFlow
-    lines: Lines
-    drift: Float[Array, " d"] | None = None
-    excitation: Float[Array, "6"] | None = None
-    lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
-
-    def earth_velocity(self) -> Float[Array, "6"]:
-        """Velocity of the reference point and angular velocity in earth axes (m/s, rad/s)."""
-        return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
-
-    def diffracting(self) -> Bool[Array, " n"]:
-        """Whether each strip diffracts the waves."""
-        return jnp.array(self.hull.strips.diffracts) > 0
-
-    def over_strips(self, elements: Float[Array, "2 e"]) -> Float[Array, "2 n"]:
-        """Values per load element repeated for each of its strips: (2, e) to (2, n)."""
-        return elements[:, jnp.array(self.hull.strips.element, dtype=int)]
 
 
 class Action(NamedTuple):
@@ -227,21 +38,8 @@ class Action(NamedTuple):
     memory_rate: Any = None
 
 
-class AbstractLoad(eqx.Module):
-    """Base class of all loads: a differentiable force law with named, bounded parameters.
-
-    A load knows nothing of batches, of the model around it or of calibration. Loads that are not forces override other methods:
-    `stream` and `through` change the water, `seen` and `clock_lag` the sensors.
-
-    Attributes:
-        values: Parameters that may be calibrated, by label.
-        source: Publication or program that the law was taken from.
-        moves: Whether the load moves the sea, together with all that other loads make of it.
-    """
-
-    values: eqx.AbstractVar[Mapping[str, Float[Array, ""]]]
-    source: ClassVar[str] = ""
-    moves: ClassVar[bool] = False  # the sea, with all that others make of it
+class AbstractLoad(AbstractEffect):
+    """Base class of all loads: a differentiable force law with named, bounded parameters."""
 
     def rest(self) -> Any:
         """Memory before t = 0; None for a load without memory (not `()`, which diffrax cannot carry)."""
@@ -262,20 +60,12 @@ class AbstractLoad(eqx.Module):
         """The load with the coefficients of a sea state; itself where it does not depend on the sea state."""
         return self
 
-    def stream(self) -> Float[Array, "3"] | None:
-        """Steady current (m/s, earth axes) that the load adds to the water everywhere, or None."""
+    def excitation_table(self) -> Excitation | None:
+        """First-order forces that the load needs of a sea (`AbstractSea.with_tables`), or None."""
         return None
 
-    def through(self, sea: AbstractSea) -> AbstractSea:
-        """The sea as changed by the load; the same sea where the load does not change it."""
-        return sea
-
-    def drifts(self) -> Transfer | None:
-        """Difference-frequency transfer function with which an irregular sea is prepared, or None."""
-        return None
-
-    def excites(self) -> Excitation | None:
-        """First-order excitation with which an irregular sea is prepared, or None."""
+    def transfer_function(self) -> Transfer | None:
+        """Difference-frequency forces that the load needs of a sea (`AbstractSea.with_tables`), or None."""
         return None
 
     def covers(self) -> tuple[str, float, float] | None:
@@ -289,26 +79,11 @@ class AbstractLoad(eqx.Module):
         """
         return None
 
-    def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
-        """Reading of the motion sensors at a position (m, rad), (..., 6)."""
-        return position
-
-    def clock_lag(self) -> Float[Array, ""] | None:
-        """Lag (s) of the recorded motions behind the waves, or None.
-
-        The record at t shows the motion at t - lag.
-        """
-        return None
-
     @abc.abstractmethod
-    def about(self, label: str) -> Parameter:
-        """Unit, meaning, bounds and neutral value of one parameter of this load."""
-
     def act(self, now: Instant, memory: Any) -> Action:
-        """Forces, added mass and memory rate at an instant; empty for a load that is not a force.
+        """Forces, added mass and memory rate at an instant.
 
         Args:
             now: Motion, geometry and flow at the instant.
             memory: The load's memory, as from `rest`.
         """
-        return Action()

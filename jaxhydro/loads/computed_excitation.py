@@ -1,15 +1,14 @@
 """First-order wave forces from a radiation-diffraction program, in place of the strips'."""
 
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 from jaxhydro.waves.excitation import Excitation
-from jaxhydro.waves.irregular_sea import IrregularSea
-from jaxhydro.waves.sea import AbstractSea, WaveSea
 
 LABEL = "computed_excitation.share"
 
@@ -40,7 +39,7 @@ class ComputedExcitation(AbstractLoad):
     def about(self, label: str) -> Parameter:
         return Parameter("-", "share of the computed excitation, in place of the strips'", -0.5, 2.0)
 
-    def excites(self) -> Excitation:
+    def excitation_table(self) -> Excitation:
         return self.excitation
 
     def covers(self) -> tuple[str, float, float]:
@@ -48,10 +47,6 @@ class ComputedExcitation(AbstractLoad):
 
     def replaces(self) -> Float[Array, ""]:
         return self.values[LABEL]
-
-    def through(self, sea: AbstractSea) -> AbstractSea:
-        sea = sea.direct() if isinstance(sea, IrregularSea) else sea
-        return replace(sea, exciting=self.excitation) if isinstance(sea, WaveSea) else sea
 
     def act(self, now: Instant, memory: Any) -> Action:
         if now.end_flow.pressure is None:

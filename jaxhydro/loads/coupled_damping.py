@@ -7,8 +7,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.matrix import assemble, place, unit
+from jaxhydro.parameters import Parameter
 
 
 class CoupledDamping(AbstractLoad):

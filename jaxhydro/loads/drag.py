@@ -10,9 +10,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.base import Instant, Parameter
 from jaxhydro.loads.end_inertia import spread_ends
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.strip_inertia import spread
+from jaxhydro.parameters import Parameter
 
 MIN_SQUARED_SPEED = (
     1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere

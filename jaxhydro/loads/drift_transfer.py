@@ -1,14 +1,14 @@
 """Slow drift force from a computed quadratic transfer function."""
 
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
-from jaxhydro.waves.irregular_sea import IrregularSea
-from jaxhydro.waves.sea import DRIFT_ENTRIES, AbstractSea, WaveSea
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
+from jaxhydro.waves.sea import DRIFT_ENTRIES
 from jaxhydro.waves.transfer import Transfer
 
 
@@ -37,15 +37,11 @@ class DriftTransfer(AbstractLoad):
     def about(self, label: str) -> Parameter:
         return Parameter("-", "share of the computed difference-frequency force", 0.0, 3.0)
 
-    def drifts(self) -> Transfer:
+    def transfer_function(self) -> Transfer:
         return self.transfer
 
     def covers(self) -> tuple[str, float, float]:
         return "drift", float(self.transfer.omega[0]), float(self.transfer.omega[-1])
-
-    def through(self, sea: AbstractSea) -> AbstractSea:
-        sea = sea.direct() if isinstance(sea, IrregularSea) else sea
-        return replace(sea, transfer=self.transfer) if isinstance(sea, WaveSea) else sea
 
     def act(self, now: Instant, memory: Any) -> Action:
         if now.drift is None:

@@ -7,7 +7,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.ends import Ends
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 
 def spread_ends(

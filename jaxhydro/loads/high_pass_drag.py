@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import (
     SUCTION,
     about,
@@ -22,6 +22,8 @@ from jaxhydro.loads.drag import (
     quadratic,
     strip_area,
 )
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 # A first-order filter faster than this is no filter in waves, and at 0.25 s leaves what Adams-Bashforth can follow (0.19 Hz).
 MAX_CUTOFF = 0.15  # Hz

@@ -4,7 +4,9 @@ from typing import Any, ClassVar
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 
 class HydrostaticCoupling(AbstractLoad):

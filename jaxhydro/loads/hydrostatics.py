@@ -12,7 +12,9 @@ from jaxtyping import Array, Float
 
 from jaxhydro.hull.strips import END_WETTING_LENGTH, Member
 from jaxhydro.hull.waterplane import chord, segment
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
 

@@ -6,8 +6,10 @@ from typing import Any, ClassVar, Self
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, magnitude, nulls
+from jaxhydro.parameters import Parameter
 
 MIN_SQUARED_SPEED = 1e-12  # m2/s2, rad2/s2 and of z^2 under roots: speeds well below 1e-6 m/s do not count as motion
 YIELD = "displacement in which the hysteretic force in {dof} comes to its limit"

@@ -10,8 +10,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import about, end_area, lines_of, of_ends, of_strips, on_all, quadratic, strip_area
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 MIN_NUMBER = 0.1  # the Keulegan-Carpenter number below which the coefficient no longer changes
 INITIAL_WINDOW_SHARE = 1 / 30  # share of the window that is open at the start

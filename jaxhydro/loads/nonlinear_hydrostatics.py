@@ -6,8 +6,10 @@ from typing import Any, ClassVar, Self
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_of, dofs_only, entries, nulls
+from jaxhydro.parameters import Parameter
 
 PARAMETERS = {
     "even_quadratic": both_units("N/m2", "N m/rad2", "force in {dof} with the square of the displacement, always the same way"),

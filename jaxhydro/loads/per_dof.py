@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
-from jaxhydro.loads.base import Parameter
+from jaxhydro.parameters import Parameter
 
 Values = Mapping[str, Float[Array, ""]]
 Parameters = Mapping[str, tuple[Parameter, Parameter]]

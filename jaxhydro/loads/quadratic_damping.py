@@ -5,9 +5,11 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import MIN_SQUARED_SPEED
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.matrix import assemble, meaning, unit
+from jaxhydro.parameters import Parameter
 
 
 class QuadraticDamping(AbstractLoad):

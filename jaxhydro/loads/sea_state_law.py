@@ -9,7 +9,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import check, unknown
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 from jaxhydro.waves.sea_state import SeaState
 
 EXPONENT_BASES = {"significant_height": "Hs", "peak_period": "Tp"}

@@ -8,8 +8,10 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import SLOW_DRAG_LABEL, SLOW_DRAG_PARAMETERS, about, end_area, quadratic, strip_area
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 
 class SlowDrag(AbstractLoad):

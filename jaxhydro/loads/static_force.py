@@ -5,8 +5,10 @@ from typing import Any, ClassVar, Self
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.per_dof import about, all_dofs, both_units, entries, nulls
+from jaxhydro.parameters import Parameter
 
 PARAMETERS = {"force": both_units("N", "N m", "constant load on the reference point in {dof}, earth axes")}
 

@@ -5,8 +5,10 @@ from typing import Any, ClassVar
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.matrix import assemble, meaning, unit
+from jaxhydro.parameters import Parameter
 
 
 class Stiffness(AbstractLoad):

@@ -5,8 +5,10 @@ from typing import Any, ClassVar
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import quadratic, strip_area
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 
 class StripDrag(AbstractLoad):

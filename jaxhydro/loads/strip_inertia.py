@@ -7,7 +7,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.strips import Elements
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 
 
 def spread(
@@ -39,7 +41,7 @@ class StripInertia(AbstractLoad):
 
     On members that diffract the waves rho V times `Flow.diffracted` takes the place of rho V (1 + Ca) a_water: the
     coefficient of MacCamy and Fuchs for every component, bound ones by their own wavenumber (2 for long ones, whatever Ca,
-    unless `Model.diffraction` is "ramp"). Members that lie at the surface have the pressure on their waterplane too:
+    unless `Conventions.diffraction` is "ramp"). Members that lie at the surface have the pressure on their waterplane too:
     `waterplane`.
     """
 

@@ -8,7 +8,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
+from jaxhydro.parameters import Parameter
 from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY
 
 WAYS = {

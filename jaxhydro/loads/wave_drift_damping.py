@@ -5,8 +5,10 @@ from typing import Any, ClassVar
 
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
+from jaxhydro.parameters import Parameter
 
 PARAMETERS = {
     "coefficient": both_units("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0),

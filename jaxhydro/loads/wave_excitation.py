@@ -6,9 +6,11 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action, Instant, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.end_inertia import spread_ends
+from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.strip_inertia import spread
+from jaxhydro.parameters import Parameter
 
 PREFIX = "wave_excitation."
 

@@ -10,7 +10,9 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.dynamics.model import Model, RigidBody, strongly_typed
+from jaxhydro.dynamics.conventions import Conventions
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.hull.coefficient_labels import shared_hint, shares_of
@@ -33,6 +35,7 @@ from jaxhydro.loads import (
 )
 from jaxhydro.loads.hydrostatics import buoyancy
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
+from jaxhydro.parameters import strongly_typed
 from jaxhydro.platform import schema as schema
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
 from jaxhydro.platform.computed_loads import tables_of
@@ -123,8 +126,11 @@ def build(platform: schema.Platform) -> Model:
             EndInertia(pick(of_ends["Ca"])),
             EndDrag(pick(of_ends["Cd"])),
         ]
-    forms = (platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal)
-    model = Model(environment, body, hull, tuple(loads), *forms, remarks=(*_of_mooring(platform), *remarks, *said))
+    conventions = Conventions(
+        platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
+    )
+    all_remarks = (*_of_mooring(platform), *remarks, *said)
+    model = Model(environment, body, hull, tuple(loads), conventions=conventions, remarks=all_remarks)
     model = with_drag_laws(model, _chosen_drag(platform, model))
     return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
 
@@ -145,7 +151,7 @@ def model_of(platform: schema.Platform, diffraction: str | None = None, elements
             members.append(member if column else member.model_copy(update={"elements": elements}))
         platform = platform.model_copy(update={"members": tuple(members)})
     model = build(platform)
-    return model if diffraction is None else replace(model, diffraction=str(diffraction))
+    return model if diffraction is None else model.with_conventions(diffraction=str(diffraction))
 
 
 def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:

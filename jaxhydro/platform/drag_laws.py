@@ -8,11 +8,12 @@ from typing import Any, TypeAlias
 import jax.numpy as jnp
 import numpy as np
 
-from jaxhydro.dynamics.model import Model, strongly_typed
+from jaxhydro.dynamics.model import Model
 from jaxhydro.hull.hull import Hull
 from jaxhydro.loads import AbstractLoad, EndDrag, HighPassDrag, KeuleganCarpenterDrag, StripDrag, SuctionSideDrag
 from jaxhydro.loads.drag import lines_of
 from jaxhydro.loads.sea_state_law import SeaStateLaw
+from jaxhydro.parameters import strongly_typed
 from jaxhydro.platform.body import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 
 DragLaw: TypeAlias = ConstantDrag | HighPass | HighPassAtEnds | KeuleganCarpenter | SuctionSide

@@ -267,7 +267,7 @@ def _coordinate(group: zarr.Group, name: str, dims: tuple[str, ...], values: Any
 def _about(inputs: Inputs, setup: Setup) -> dict[str, Any]:
     plan = json.loads(inputs.plan.to_json())
     options = {name: value for name, value in plan.items() if name not in ("cases", "seeds") and value is not None}
-    about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.diffraction}
+    about = {"diffraction": "none" if setup.model.cylinders is None else setup.model.conventions.diffraction}
     coordinates = "hs tp gamma heading probability spectrum_share unit band_limits"
     return (
         options

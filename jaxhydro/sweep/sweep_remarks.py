@@ -97,7 +97,7 @@ def notes(plan: Plan, model: Model, shares: Float[np.ndarray, " c"], failing: di
     run = {state: share for state, share in seas.items() if state not in failing}
     yield from _of_band(run, len(seas), plan)
     yield from _of_height(run, len(seas), plan, model)
-    if model.cylinders is None and model.diffraction != "none":
+    if model.cylinders is None and model.conventions.diffraction != "none":
         yield "no member of this platform diffracts waves: 1 + Ca everywhere"
 
 

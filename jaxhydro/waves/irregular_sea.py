@@ -86,6 +86,9 @@ class IrregularSea(AbstractSea):
     def drift(self, time: Float[Array, ""]) -> Float[Array, " d"]:
         return self.direct().drift(time)
 
+    def with_tables(self, exciting: Excitation | None, transfer: Transfer | None) -> WaveSea:
+        return self.direct().with_tables(exciting, transfer)
+
     def direction(self) -> Float[Array, "2"]:
         return direction(self.components.vector(), self.components.amplitude**2)
 

@@ -77,6 +77,13 @@ class AbstractSea(eqx.Module):
         """
         return None
 
+    def with_tables(self, exciting: Excitation | None, transfer: Transfer | None) -> "AbstractSea":
+        """The sea with a platform's computed first-order and difference-frequency forces, by direct summation.
+
+        A prepared sea was made with them, and is returned as it is; so is still water.
+        """
+        return self
+
     def direction(self) -> Float[Array, "2"]:
         """Unit vector that the waves travel along, weighted by energy (earth axes), (2,)."""
         raise NotImplementedError(f"{type(self).__name__} does not tell where its waves travel to")
@@ -202,6 +209,10 @@ class WaveSea(AbstractSea):
             return None
         angle = self.waves.omega * time - place @ self.waves.vector
         return self.growth(time) * (self.exciting.at(self.waves.omega) @ (self.waves.elevation * jnp.exp(1j * angle))).real
+
+    def with_tables(self, exciting: Excitation | None, transfer: Transfer | None) -> "WaveSea":
+        exciting, transfer = exciting or self.exciting, transfer or self.transfer
+        return dataclasses.replace(self, exciting=exciting, transfer=transfer)
 
     def direction(self) -> Float[Array, "2"]:
         return direction(self.waves.vector, jnp.abs(self.waves.elevation) ** 2)

@@ -78,6 +78,7 @@ def test_a_small_regular_wave(name: str) -> None:
         assert moved(name)[dof] == pytest.approx(expected[jh.DOFS.index(dof)], rel=within), dof
 
 
+@pytest.mark.slow
 def test_a_step_is_two_members() -> None:
     other = model_of(two_members(platform_of(CASES["oc4-deepcwind"])))
     assert periods(other) == pytest.approx(own_periods("oc4-deepcwind"), rel=1e-6)

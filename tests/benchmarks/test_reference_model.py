@@ -276,6 +276,7 @@ def test_rk4_is_of_fourth_order():
         model.decay(offset, method="rk4", dt=0.2, step=0.15)
 
 
+@pytest.mark.slow
 def test_strips_and_tolerance_are_fine_enough():
     offset, velocity = demo.release("pitch", 2, 0)
     _, q = demo.true_model().decay(offset, velocity, duration=120.0, tolerance=1e-8)

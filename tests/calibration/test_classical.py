@@ -22,7 +22,8 @@ from calibration.decay_analysis.linear_quadratic import (
 from calibration.decay_analysis.model_damping import drag_coefficient, model_damping, motion_shape
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import linearised
-from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.parameters import Parameter
 
 PERIOD = 20.0
 OMEGA = 2 * math.pi / PERIOD
@@ -279,7 +280,7 @@ class Friction(AbstractLoad):
 def test_wrong_requests_are_refused() -> None:
     """Damping of another law, an unknown degree of freedom or label, a shape without it, a drag that does not act."""
     with pytest.raises(ValueError, match="linear and quadratic damping in heave"):
-        model_damping(platform().with_load(Friction()), "heave")
+        model_damping(platform().with_effect(Friction()), "heave")
     with pytest.raises(KeyError, match="heeve"):
         model_damping(platform(), "heeve")
     with pytest.raises(KeyError, match="heeve"):

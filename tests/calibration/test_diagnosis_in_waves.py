@@ -3,9 +3,8 @@
 import dataclasses
 import json
 import re
-from importlib import resources
 from pathlib import Path
-from types import MappingProxyType, SimpleNamespace
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -16,21 +15,17 @@ from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
 from calibration.commands.calibrate_command import simulate_campaign
-from calibration.discovery import strip_trials
 from calibration.discovery.channel_signs import with_signs_reversed
-from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude
 from calibration.discovery.effects.phase_shift_start import PHASE_SPACING, phase_shift_start
-from calibration.discovery.greedy_search import FIRST_ORDER_NOTE, SIMPLER_SEA_NOTES, Search
+from calibration.discovery.greedy_search import Search
 from calibration.discovery.linearisations import Point
 from calibration.discovery.set_up import set_up_study
-from calibration.discovery.wave_records import highest_difference, options_for, simulated_by_program
 from calibration.report.write_report import write_report
-from calibration.residuals.measured_seas import seas_of
+from calibration.residuals.measured_seas import options_of
 from calibration.results.applied_calibration import apply_calibration
 from calibration.results.write_diagnosis import write_diagnosis
-from jaxhydro.loads.strip_drag import StripDrag
 
 RHO, G, DEPTH = 1000.0, 9.81, 200.0
 RADIUS, DRAUGHT = 3.0, 10.0
@@ -189,7 +184,7 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
     for shift in (far, near):
         (folder := tmp_path / f"{shift}").mkdir()
         campaign = campaign_of(folder, lambda omega, shift=shift: pressure(omega) * np.exp(1j * turns(omega) * shift))
-        setup = set_up_study(campaign, options_for(campaign)[0])
+        setup = set_up_study(campaign, options_of(campaign))
         (one,) = (one for one in setup.candidates if label in one.amplitudes)
         look = setup.study.linearise(Point(np.asarray(setup.study.space.start), np.zeros((0, 0))), setup.study.index([label]))
         found.append(phase_shift_start(setup.study, look, label, one.phase_per_unit))
@@ -208,9 +203,9 @@ def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
-    """Records with differences of frequencies up to some, and no sums: where motions are followed best so, seas are as the
-    program has them, are when the search goes on, and where what was found is simulated. With sums, records are a basin's."""
+def test_seas_are_as_the_campaign_states(tmp_path: Path) -> None:
+    """Bound waves at some differences of frequencies, by their flow at the origin: the declared model follows such records to
+    the noise, and so does a simulation of what a diagnosis has written."""
     (tmp_path / "platform.yaml").write_text(re.sub("excitation: .*\n", "", PLATFORM))
     model = jh.load_model(tmp_path / "platform.yaml")
     times, tests = np.arange(0.0, DURATION, STEP), []
@@ -243,26 +238,12 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
         "tests": tests,
         "channels": {"time": {"column": "t", "unit": "s"}} | motions,
         "wave_channel": {"column": "wave", "unit": "m", "position": [0.0, 0.0]},
+        "records": dict(kinds=["difference"], acting="at the origin", highest_difference=HIGHEST),
     }
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
     campaign = load_campaign(tmp_path)
-    options, _ = options_for(campaign)
-    assert simulated_by_program(options)
-    assert highest_difference(seas_of(campaign, model.environment, options)) == pytest.approx(HIGHEST, abs=0.002)
-    cut = dataclasses.replace(options, highest_difference=HIGHEST)
-    assert highest_difference(seas_of(campaign, model.environment, cut)) is None
-    setup = set_up_study(campaign, options)
-    search = Search(campaign, setup, lambda *_: None)
+    search = Search(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
     state = search.fit_baseline()
-    assert search.order == "cut, origin" and search.study.seas is search.study.other_seas["cut, origin"]
-    taken = search.study.options[search.order]
-    assert taken == dataclasses.replace(cut, highest_difference=taken.highest_difference, acting="at the origin")
-    told = [said.format(highest=taken.highest_difference) for said in SIMPLER_SEA_NOTES.values()]
-    assert [note for note in search.notes if all(said in note for said in told)]
-    save_checkpoint(tmp_path / "kept", search, [state], 1.0)
-    again = Search(campaign, setup, lambda *_: None)
-    assert len(load_checkpoint(tmp_path / "kept", again)) == 1 and again.study.seas is again.study.other_seas["cut, origin"]
-    assert set(set_up_study(campaign, dataclasses.replace(options, kinds=("sum", "difference"))).study.other_seas) == {"first"}
     found = conclude(campaign, search, state, state, (), 1.0)
     write_diagnosis(found, tmp_path / "found", figures=False)
     assert simulate_campaign(tmp_path, tmp_path / "seas", calibration=tmp_path / "found")
@@ -270,28 +251,7 @@ def test_a_program_that_simplifies_bound_waves(tmp_path: Path) -> None:
     for test in found.augmented.tests:
         for one in test.series:
             assert errors[test.id][one.channel]["relative"] == pytest.approx(one.relative, rel=0.02)
-
-
-@pytest.mark.slow
-def test_second_order_is_taken_again(tmp_path: Path) -> None:
-    """Where waves of first order were taken, and follow no better any more, those of the record; with the declared model that
-    was fitted in them."""
-    campaign = campaign_of(tmp_path, pressure)
-    search = Search(campaign, set_up_study(campaign, options_for(campaign)[0]), lambda *_: None)
-    declared = search.fit_baseline()
-    assert search.declared_in_second_order is None and search.second_order_again(declared, 1) is None
-    of_second = search.blocks
-    search.take_seas("first")
-    assert of_second is not None and search.blocks is not None  # which are of the seas in hand
-    assert search.blocks.study.seas[0].sea is search.study.seas[0].sea is not of_second.study.seas[0].sea
-    search.declared_in_second_order, search.notes = declared, [f"{FIRST_ORDER_NOTE} (by 30 in -2 ln L)", "another"]
-    lost = dataclasses.replace(declared, likelihood=declared.likelihood - 1e3)  # waves of first order follow far better
-    assert search.second_order_again(lost, 1) is None and search.study.seas is search.study.other_seas["first"]
-    again = search.second_order_again(declared, 1)
-    assert again is not None and again[0] is declared and search.study.seas is search.setup.study.seas
-    assert search.notes == ["another"] and search.declared_in_second_order is None
-    used = search.study.used
-    assert_allclose(again[1].likelihood[used].sum(), declared.likelihood[used].sum(), atol=1.0)
+            assert one.relative < 0.005  # which noise of 1 mm in waves and motions leaves
 
 
 @pytest.mark.slow
@@ -353,7 +313,7 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     windows = {"fit": [0, 0.4 * DURATION], "holdout": [0.4 * DURATION, DURATION - STEP]}
     manifest["tests"] = [{"id": use, "window": window, "use": use, **sea} for use, window in windows.items()]
     (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
-    study = set_up_study(campaign := load_campaign(tmp_path), options_for(campaign)[0]).study
+    study = set_up_study(campaign := load_campaign(tmp_path), options_of(campaign)).study
     (record,) = study.seas
     assert record.fitted < 0.45 * record.steps
     place = Point(np.asarray(study.space.start), np.zeros((0, 0)))
@@ -365,39 +325,3 @@ def test_what_is_held_out_is_not_simulated_to_fit(tmp_path: Path) -> None:
     assert_allclose(looks[0].residual, some, rtol=0, atol=1e-12)
     assert not looks[0].slopes[~fitted].any() and np.abs(looks[0].slopes[fitted]).max() > 1e-3
     assert_allclose(looks[0].slopes, looks[1].slopes, rtol=0, atol=1e-9 * np.abs(looks[1].slopes).max())
-
-
-@pytest.mark.parametrize("better, simpler", [(40.0, True), (20.0, False)])
-def test_strips_as_a_program_takes_them(better: float, simpler: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where calibrated decays are followed better so, and no word of the platform file says how strips are taken."""
-    campaign = load_campaign(resources.files("jaxhydro") / "campaigns" / "volturnus-s-decays")
-    asked: list[Campaign] = []
-    monkeypatch.setattr(strip_trials, "prepare_fit", lambda one: asked.append(one) or one)
-    monkeypatch.setattr(strip_trials, "run_fit", lambda one, near: None)
-    monkeypatch.setattr(strip_trials, "_unlikelihood", lambda one: better if one.model.directions == "body" else 0.0)
-    found = strip_trials.try_strip_conventions(campaign, lambda *_: None)
-    model = found.campaign.model
-    assert [one.model.directions for one in asked] == ["body", "earth"] and found.fit is asked[simpler]
-    assert (model.directions, model.centripetal) == (("earth", False) if simpler else ("body", True))
-    assert [load.coupled for load in model.loads if isinstance(load, StripDrag)] == [not simpler]
-    assert bool(found.notes) is simpler and found.strips == (strip_trials.SIMPLER_STRIPS if simpler else None)
-    said = dataclasses.replace(campaign, platform=campaign.platform.model_copy(update={"drag_speed": "vector"}))
-    assert strip_trials.try_strip_conventions(said, lambda *_: None) == strip_trials.StripTrial(said)
-    assert len(asked) == 2
-
-
-def test_errors_below_the_noise_tell_nothing() -> None:
-    """-2 ln L of decays: of four observations in a cycle, and of errors no smaller than the noise."""
-    noise = [{"surge": 0.1, "pitch": 1e-3}, {"surge": 0.1, "pitch": 1e-3}]
-    data = SimpleNamespace(dofs=(0, 4), pace=[2 * np.pi / 10, 2 * np.pi / 5], time=np.zeros((2, 9)), present=np.ones((2, 2, 9)))
-
-    def of(*squares: list[float]) -> float:
-        records = [SimpleNamespace(noise=one) for one in noise]
-        problem = SimpleNamespace(data=data)
-        fit = SimpleNamespace(problem=problem, records=records, ends=[100.0, 100.0], mean_squares=lambda: np.array(squares))
-        return strip_trials._unlikelihood(fit)  # type: ignore[arg-type]
-
-    least = of([0.01, 1e-6], [0.01, 1e-6])
-    assert of([0.001, 1e-9], [0.01, 1e-8]) == pytest.approx(least)
-    assert of([0.02, 1e-6], [0.01, 1e-6]) - least == pytest.approx(40 * np.log(2))
-    assert of([0.01, 1e-6], [0.01, 2e-6]) - least == pytest.approx(80 * np.log(2))

@@ -32,7 +32,8 @@ from calibration.results.refusal_sentences import describe_refusal
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
-from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.parameters import Parameter
 
 PLATFORM = {
     "name": "a rolling body",
@@ -267,7 +268,7 @@ def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
 def test_a_model_of_ones_own_is_calibrated(tmp_path):
     """With a load that no platform file has, freed by its label like any other."""
     campaign = campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x))
-    own = campaign.with_model(campaign.model.with_load(Sine({"repeating.strength": jnp.asarray(3.0)})))
+    own = campaign.with_model(campaign.model.with_effect(Sine({"repeating.strength": jnp.asarray(3.0)})))
     found = calibrate(own, free=["added_mass.A44", "linear_damping.B44", "repeating.strength"])
     assert_allclose(found.parameters["repeating.strength"].value, 4.0, rtol=0.05)
     with pytest.raises(InputError, match=r"repeating\.strength"):

@@ -112,12 +112,11 @@ def study() -> Study:
         8,
         None,
         (),
-        (),
         (series,),
         (),
         np.zeros((0, 0)),
         (FourierRows.of([cut], n, 0.1),),
-        {},
+        None,
     )  # type: ignore[arg-type]
 
 

@@ -21,7 +21,7 @@ from calibration.discovery.acceptance import (
     worsened_motion,
 )
 from calibration.discovery.candidate_trials import RefittedCandidate, in_order_of_belief
-from calibration.discovery.diagnosis import HELD_OUT_ERROR, SECOND_ORDER, Finding, Rejected, Score
+from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
 from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
 from calibration.discovery.effect_descent import fit
@@ -60,7 +60,7 @@ def study_of(*found: MotionSeries) -> Study:
     """Of decays in surge."""
     records = (SimpleNamespace(id="t", degree_of_freedom="surge"),)
     cuts = (FourierRows.of([CUT] * len(found), 4000),)
-    return Study(None, None, (), np.zeros((0, 0)), 8, None, (), (), found, records, np.zeros((0, 0)), cuts, {})  # type: ignore[arg-type]
+    return Study(None, None, (), np.zeros((0, 0)), 8, None, (), found, records, np.zeros((0, 0)), cuts, None)  # type: ignore[arg-type]
 
 
 def left(squares, error) -> ResidualSummary:
@@ -109,7 +109,7 @@ def test_what_barely_moves_in_a_sea_weighs_nothing():
     found, cut = gather_sea(sea, [record], 0.5)  # type: ignore[arg-type]
     assert [one.channel for one in found] == ["surge", "sway", "pitch"]
     assert [bool(one.dof.any()) for one in found] == [True, False, True]
-    study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), (), tuple(found), (), np.zeros((0, 0)), (cut,), {})  # type: ignore[arg-type]
+    study = Study(None, None, (), np.zeros((0, 0)), 8, None, (), tuple(found), (), np.zeros((0, 0)), (cut,), None)  # type: ignore[arg-type]
     errors = [cut(np.stack([0 * TIME, size * np.sin(0.3 * TIME), 0 * TIME])) for size in (0.0, 3.0)]
     assert len({float(minus_two_log_likelihood(study, one).sum()) for one in errors}) == 1
     assert list(study.main) == [True, False, True]
@@ -150,7 +150,6 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
         rejected=rejected,
         found={friction.name: SimpleNamespace(verdict=good)},
         setup=SimpleNamespace(candidates=[friction, drag, memory]),
-        declared_in_second_order=None,
     )
     state: Any = SimpleNamespace(chosen=(friction,))
     assert doubted_effects(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
@@ -159,9 +158,8 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
     assert doubted_effects(search, state, errors(), errors()) == {friction.name: drag.name}  # type: ignore[arg-type]
 
 
-def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
-    """Everything where the held-out error is larger with it; drift where waves are of first order: it goes with the
-    square of the waves as well; other effects do not."""
+def test_what_is_in_doubt_for_what_was_not_fitted():
+    """Everything where the held-out error is larger with it, or what acts in the motion that has it."""
     good = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, None)
     drift, friction = Candidate("wave_drift", "pitch", ()), Candidate("coulomb_friction", "surge", ())
     search = SimpleNamespace(
@@ -169,7 +167,6 @@ def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
         rejected={},
         found={one.name: SimpleNamespace(verdict=good) for one in (drift, friction)},
         setup=SimpleNamespace(candidates=[drift, friction]),
-        declared_in_second_order=None,
     )
     state: Any = SimpleNamespace(chosen=(drift, friction))
     assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {}  # type: ignore[arg-type]
@@ -178,10 +175,6 @@ def test_what_is_in_doubt_for_what_was_not_fitted_or_left_out():
     assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), worse) == both  # type: ignore[arg-type]
     of_motion = doubted_effects(search, state, errors(surge=0.3, pitch=0.1), better)  # type: ignore[arg-type]
     assert of_motion == {drift.name: HELD_OUT_ERROR}
-    search.declared_in_second_order = "a state"
-    assert doubted_effects(search, state, errors(surge=0.3, pitch=0.1), errors(surge=0.31, pitch=0.1)) == {
-        drift.name: SECOND_ORDER
-    }  # type: ignore[arg-type]
 
 
 def test_a_decay_that_begins_in_motion_is_told_where_that_matters():

@@ -23,7 +23,8 @@ from calibration.residuals.measured_seas import Options
 from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.errors import CheckpointWarning
-from jaxhydro.loads.base import AbstractLoad, Action, Parameter
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.parameters import Parameter
 
 
 class Killed(Exception):
@@ -146,7 +147,7 @@ DAMAGE = {
     "another shape": lambda path: changed(path, arrays={"0": np.zeros(1)}),
     "another type": lambda path: changed(path, arrays={"0": np.zeros(3, int)}),
     "a word for a number": lambda path: changed(path, reached={"seconds": "long"}),
-    "seas that there are none of": lambda path: changed(path, reached={"order": "third"}),
+    "a key more": lambda path: changed(path, reached={"order": "third"}),
     "a key less": lambda path: changed(path, about={"reached": {}}),
     "no states": lambda path: changed(path, reached={"states": []}),
     "a list for a document": lambda path: changed(path, about={"reached": []}),

@@ -40,6 +40,7 @@ def campaign() -> Campaign:
     return load_campaign(DECAYS)
 
 
+@pytest.mark.slow
 def test_records_of_nearly_the_same_length_are_traced_once(campaign, monkeypatch) -> None:
     traces = []
     motion = DecayProblem.motion

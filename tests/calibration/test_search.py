@@ -1,7 +1,8 @@
-"""Global searches: the coefficients of a simulated decay from a far start; seeds, budgets, stops, bad input."""
+"""Multi-start search: the coefficients of a simulated decay from a far start; seeds, budgets, stops, bad input."""
 
 import dataclasses
 import math
+from pathlib import Path
 
 import jax.numpy as jnp
 import numpy as np
@@ -12,39 +13,35 @@ import jaxhydro as jh
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.fitting.decay_fit import DecayFit, Progress, run_fit
-from calibration.global_search import CMAES, METHODS, AbstractSearch, Budget, DifferentialEvolution, Genetic, MultiStart, Task
-from calibration.global_search.base import FAILED_OBJECTIVE, even_batch
+from calibration.global_search.multistart import MultiStart
 from calibration.global_search.objective import coordinates, ranges
 from calibration.global_search.run_search import Found, SearchInterrupted, search, set_up_search
+from calibration.global_search.task import FAILED_OBJECTIVE, Budget, Task, even_batch
 from calibration.residuals.decays import Unknowns, first_guess
 from jaxhydro.errors import InputError
 
 NOISE, OFFSET = 2e-4, 3e-3  # rad
-# one size of batch, CMA-ES's apart: less to compile
-_METHODS: tuple[AbstractSearch, ...] = (
-    MultiStart(starts=33),
-    CMAES(),
-    Genetic(population=33),
-    DifferentialEvolution(population=11),
-)
-CHOSEN = {method.name: method for method in _METHODS}
+STARTS = 33  # one batch
 ENOUGH = Budget(seconds=60.0, simulations=3000.0, objective=0.005)  # the noise alone is 0.002
 LABELS = list(SHIP_TRUE)
 
 
-@pytest.fixture(scope="module")
-def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+def far_campaign(folder: Path) -> Campaign:
     """A noisy roll decay of a body without members, its sensor off by OFFSET."""
     time, roll = roll_decay(12.0, 30.0)
     noisy = roll + OFFSET + NOISE * np.random.default_rng(3).standard_normal(len(time))
     tests = {"roll": ({"kind": "decay", "degree_of_freedom": "roll", "use": "fit"}, time, {"roll": noisy})}
     # the declared values are far from the truth, and not in the middle of what is searched
     document = SHIP | {"added_mass": {"A44": 60.0}, "linear_damping": {"B44": 12.0}, "quadratic_damping": {"B44": 5.0}}
-    return load_campaign(write(tmp_path_factory.mktemp("ship"), document, tests, noise={"roll": NOISE}))
+    return load_campaign(write(folder, document, tests, noise={"roll": NOISE}))
 
 
 @pytest.fixture(scope="module")
-def truth(campaign: Campaign) -> float:
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Campaign:
+    return far_campaign(tmp_path_factory.mktemp("ship"))
+
+
+def true_objective(campaign: Campaign) -> float:
     """J of the true coefficients, releases fitted."""
     problem, records = set_up_search(campaign)
     x = jnp.array([p.transform.inverse(SHIP_TRUE[p.label]) for p in problem.space.free])
@@ -53,25 +50,20 @@ def truth(campaign: Campaign) -> float:
     return fit.objective()
 
 
-@pytest.fixture(scope="module")
-def found(campaign: Campaign) -> dict[str, Found]:
-    """Every method once."""
-    return {name: search(campaign, method=method, seed=1, budget=ENOUGH) for name, method in CHOSEN.items()}
-
-
-@pytest.mark.parametrize("name", CHOSEN)
-def test_every_method_finds_the_coefficients(name: str, found: dict[str, Found], truth: float) -> None:
-    one = found[name]
-    assert one.method == name and one.ended == "reached" and truth < one.objective <= ENOUGH.objective
+def test_a_search_finds_the_coefficients(campaign: Campaign) -> None:
+    one = search(campaign, starts=STARTS, seed=1, budget=ENOUGH)
+    assert one.method == "multistart" and one.ended == "reached"
+    assert true_objective(campaign) < one.objective <= ENOUGH.objective
     assert set(one.values) == set(SHIP_TRUE)
     period = [jh.natural_modes(model_of(SHIP, values)).of("roll") for values in (one.values, SHIP_TRUE)]
     assert period[0] == pytest.approx(period[1], rel=2e-3)
     assert one.values["quadratic_damping.B44"] == pytest.approx(SHIP_TRUE["quadratic_damping.B44"], rel=0.2)
+    check_history(one)
 
 
-@pytest.mark.parametrize("name", CHOSEN)
-def test_the_history_falls_and_ends_where_the_search_did(name: str, found: dict[str, Found]) -> None:
-    one, history = found[name], found[name].history
+def check_history(one: Found) -> None:
+    """It falls, and ends where the search did."""
+    history = one.history
     assert (np.diff(history.objective) <= 0).all() and history.objective[-1] == one.objective
     assert (np.diff(history.simulations) >= 0).all() and history.simulations[-1] == one.simulations
     assert (np.diff(history.seconds) >= 0).all() and history.seconds[-1] == one.seconds
@@ -79,33 +71,26 @@ def test_the_history_falls_and_ends_where_the_search_did(name: str, found: dict[
     assert history.until(0.5 * one.objective) is None
 
 
-@pytest.mark.parametrize("name", CHOSEN)
-def test_the_same_seed_gives_the_same_search_and_leaves_others_chance_alone(name: str, campaign: Campaign) -> None:
+def test_the_same_seed_gives_the_same_search_and_leaves_others_chance_alone(campaign: Campaign) -> None:
     def state() -> np.ndarray:
         return np.random.get_state()[1].copy()  # noqa: NPY002
 
     budget, before = Budget(math.inf, 400.0), state()
-    one, same, other = (search(campaign, method=CHOSEN[name], seed=seed, budget=budget) for seed in (7, 7, 8))
+    one, same, other = (search(campaign, starts=STARTS, seed=seed, budget=budget) for seed in (7, 7, 8))
     assert one.values == same.values and one.objective == same.objective and one.simulations == same.simulations
-    assert one.values != other.values
+    assert one.values != other.values and one.ended == "budget" and 400 <= one.simulations < 400 + 36
     np.testing.assert_array_equal(state(), before)
 
 
-@pytest.mark.parametrize("name", CHOSEN)
-def test_a_budget_of_simulations_is_kept_to_within_a_batch(name: str, campaign: Campaign) -> None:
-    one = search(campaign, method=CHOSEN[name], seed=2, budget=Budget(math.inf, 400.0))
-    assert one.ended == "budget" and 400 <= one.simulations < 400 + 36
-
-
 def test_a_budget_of_seconds_ends_a_search(campaign: Campaign) -> None:
-    one = search(campaign, method=CHOSEN["de"], seed=2, budget=Budget(1.0))
+    one = search(campaign, starts=STARTS, finalists=STARTS, seed=2, budget=Budget(1.0))
     assert one.ended == "budget" and 1.0 <= one.seconds < 2.0
 
 
-def test_multi_start_settles_where_the_truth_is(campaign: Campaign, truth: float) -> None:
+def test_multi_start_settles_where_the_truth_is(campaign: Campaign) -> None:
     said: list[Progress] = []
-    one = search(campaign, method=MultiStart(starts=33, finalists=1), seed=3, progress=said.append)
-    assert one.ended == "settled" and one.objective == pytest.approx(truth, rel=1e-3)
+    one = search(campaign, starts=STARTS, finalists=1, seed=3, progress=said.append)
+    assert one.ended == "settled" and one.objective == pytest.approx(true_objective(campaign), rel=1e-3)
     assert said[-1].stage == "start 1 of 1: noise level" and said[-1].objective == one.objective
     model = jh.build(campaign.platform).with_values(one.values)  # what `calibrate(start=...)` begins from
     assert jh.natural_modes(model).of("roll") == pytest.approx(jh.natural_modes(model_of(SHIP, SHIP_TRUE)).of("roll"), rel=1e-3)
@@ -119,14 +104,12 @@ def test_ctrl_c_gives_what_was_reached(campaign: Campaign) -> None:
         if sum(math.isfinite(p.objective) for p in said) == 2:
             raise KeyboardInterrupt
 
-    for name in CHOSEN:
-        said.clear()
-        with pytest.raises(SearchInterrupted) as caught:
-            search(campaign, method=CHOSEN[name], seed=1, progress=stop)
-        partial = caught.value.partial
-        assert partial is not None and partial.ended == "interrupted" and math.isfinite(partial.objective)
-        assert set(partial.values) == set(SHIP_TRUE)
-        assert all(p.stage and 0 <= p.fraction <= 1 for p in said)
+    with pytest.raises(SearchInterrupted) as caught:
+        search(campaign, starts=STARTS, seed=1, progress=stop)
+    partial = caught.value.partial
+    assert partial is not None and partial.ended == "interrupted" and math.isfinite(partial.objective)
+    assert set(partial.values) == set(SHIP_TRUE)
+    assert all(p.stage and 0 <= p.fraction <= 1 for p in said)
 
 
 def test_ctrl_c_before_anything_is_reached(campaign: Campaign) -> None:
@@ -134,7 +117,7 @@ def test_ctrl_c_before_anything_is_reached(campaign: Campaign) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(SearchInterrupted) as caught:
-        search(campaign, method=CHOSEN["de"], progress=stop)
+        search(campaign, starts=STARTS, progress=stop)
     assert caught.value.partial is None
 
 
@@ -167,7 +150,7 @@ def test_descents_that_are_lost_are_given_up(campaign: Campaign) -> None:
     """A release that is no number makes every descent's simulations none: the search ends without an answer, and says so."""
     record = dataclasses.replace(campaign.records[0], values={"roll": campaign.records[0].values["roll"] * np.nan})
     with pytest.raises(ValueError, match="expected enough for one simulation"):
-        search(dataclasses.replace(campaign, records=(record,)), method=MultiStart(starts=33, finalists=2))
+        search(dataclasses.replace(campaign, records=(record,)), starts=STARTS, finalists=2)
 
 
 def test_points_of_the_cube_are_shares_of_logarithmic_ranges(campaign: Campaign) -> None:
@@ -193,44 +176,25 @@ def test_ranges_keep_to_what_is_given_and_what_is_physical(campaign: Campaign) -
 
 def test_batches_are_even() -> None:
     assert [even_batch(n) for n in (1, 11, 36, 45, 64, 99, 165)] == [1, 11, 36, 23, 32, 33, 33]
-    found = {name: method().batch_size(11) for name, method in METHODS.items()}
-    assert found == {"multistart": 32, "cma-es": 11, "ga": 33, "de": 33}
+    assert MultiStart().batch_size(11) == 32
 
 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"method": "cmaes"}, "method: expected one of multistart, cma-es, ga, de, found 'cmaes'. Did you mean 'cma-es'?"),
+        ({"starts": 0}, "starts: expected a number above 0, found 0"),
+        ({"finalists": -1}, "finalists: expected a number above 0, found -1"),
         ({"seed": -1}, "seed: expected a whole number from 0, found -1"),
         ({"seed": 1.5}, "seed: expected a whole number from 0, found 1.5"),
         ({"budget": Budget(0.0)}, "budget: expected seconds and simulations above 0, found 0.0"),
         ({"budget": Budget(math.nan)}, "budget: expected seconds and simulations above 0, found nan"),
-        ({"budget": Budget(math.inf), "method": "ga"}, "budget: expected a limit, as ga does not end of its own"),
         ({"factor": 1.0}, "factor: expected a number above 1, found 1.0"),
-        ({"method": "cma-es", "free": ["added_mass.A44"]}, "cma-es: expected two coefficients or more, found 1"),
     ],
 )
 def test_bad_options_are_told(options: dict, words: str, campaign: Campaign) -> None:
     with pytest.raises(ValueError) as caught:
         search(campaign, **options)
     assert words in str(caught.value)
-
-
-def test_options_of_a_method_are_above_zero() -> None:
-    for make, words in (
-        (lambda: MultiStart(starts=0), "multistart: expected starts above 0, found 0"),
-        (lambda: CMAES(step=-0.1), "cma-es: expected step above 0, found -0.1"),
-    ):
-        with pytest.raises(ValueError) as caught:
-            make()
-        assert words in str(caught.value)
-
-
-def test_a_missing_package_is_told(campaign: Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(ValueError, match="expected the package pymoo") as caught:
-        search(campaign, method="ga")
-    assert "jaxhydro[search]" in str(caught.value)
 
 
 def test_nothing_to_search_is_told(campaign: Campaign) -> None:

@@ -13,7 +13,7 @@ from calibration.campaign.records import load_records
 from calibration.campaign.tracked_point import move_to_reference
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
-from jaxhydro.loads import SensorReference
+from jaxhydro.sensors import SensorReference
 
 SCALE = 50.0
 POINT = (0.04, 0.0, -0.3)  # m at the scale of the files

@@ -63,6 +63,7 @@ def test_what_is_written_is_what_python_finds(ship: tuple[Path, Path, Likelihood
     assert "makes a page of them" in said
 
 
+@pytest.mark.slow
 def test_what_does_not_fit_together_is_told(ship: tuple[Path, Path, Likelihood], tmp_path: Path) -> None:
     folder, results, _ = ship
     saved = json.loads((results / "calibration.json").read_text())

@@ -1,18 +1,14 @@
 """The band of a campaign's first-order waves: stated, or by the size of the hull."""
 
-import dataclasses
 import json
-import shutil
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from calibration import load_campaign
-from calibration.campaign.manifest import Manifest, Recording, read_manifest
+from calibration.campaign.manifest import Manifest, read_manifest
 from calibration.campaign.wave_band import wave_band
-from calibration.discovery import wave_records
 from calibration.residuals.measured_seas import options_of
 from jaxhydro.errors import InputError
 
@@ -52,26 +48,3 @@ def test_of_a_campaign(tmp_path) -> None:
     (tmp_path / "campaign.yaml").write_text(json.dumps({**document, "wave_band": [0.2, 0.05]}))
     with pytest.raises(InputError, match="wave_band: expected two numbers, the first less than the second"):
         read_manifest(tmp_path)
-
-
-@pytest.mark.parametrize("order", [1, 2, None])
-def test_the_order_of_waves_is_what_the_campaign_states(order, tmp_path):
-    folder = Path(__file__).resolve().parents[1] / "fixtures" / "golden" / "campaigns" / "complete"
-    campaign = load_campaign(shutil.copytree(folder, tmp_path / "campaign"))
-    stated = campaign.manifest.model_copy(update={"records": Recording(order=order)})
-    campaign = dataclasses.replace(campaign, manifest=stated)
-    assert options_of(campaign).order == (order or 2)
-    looked = []
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(wave_records, "_shares", lambda *run: looked.append(run) or (None, None))
-        options, words = wave_records.options_for(campaign)
-    assert options == options_of(campaign) and words == ()
-    assert bool(looked) == (order is None)  # records are looked at only where nothing is stated
-
-
-def test_an_order_that_waves_do_not_have_is_told(tmp_path):
-    folder = Path(__file__).resolve().parents[1] / "fixtures" / "golden" / "campaigns" / "complete"
-    path = shutil.copytree(folder, tmp_path / "campaign") / "campaign.yaml"
-    path.write_text(path.read_text() + "records: {order: 3}\n")
-    with pytest.raises(InputError, match=r"records.order: expected .*1.*2.*, found 3"):
-        load_campaign(path)

@@ -149,6 +149,7 @@ def test_paths_that_are_near(here: Path) -> None:
         ("jaxhydro plat", ["platforms"]),
         ("jaxhydro calibrate --me", ["--method"]),
         ("jaxhydro calibrate --law ch", ["choose"]),
+        ("jaxhydro calibrate --method mul", ["multistart"]),
         ("jaxhydro simulate vol", ["volturnus-s", "volturnus-s-focal"]),
         ("jaxhydro simulate my-camp", []),  # then the shell completes names of files
     ],
@@ -159,6 +160,12 @@ def test_shells_complete_what_is_typed(line: str, words: list[str], monkeypatch:
     monkeypatch.setenv("COMP_WORDS", line)
     monkeypatch.setenv("COMP_CWORD", str(len(line.split()) - 1))
     assert RUNNER.invoke(cli.app, [], prog_name="jaxhydro").output.split() == words
+
+
+@pytest.mark.parametrize("word", ["ga", "de", "cma-es", "multi"])
+def test_searches_that_are_baselines_are_refused(word: str, tmp_path: Path) -> None:
+    said = " ".join(run("calibrate", tmp_path, "--out", tmp_path / "o", "--method", word, status=2).replace("│", " ").split())
+    assert f"multistart expected, found '{word}'" in said and ("benchmarks.validate" in said) is (word != "multi")
 
 
 def test_the_demo_says_where_it_writes() -> None:

@@ -82,9 +82,10 @@ def test_a_sea_without_the_transfer_function_is_refused() -> None:
     with pytest.raises(ValueError, match=r"prepare it with `Model\.transfer`"):
         acts(model, np.zeros(6), np.zeros(6), (None,), bare, 12.0)
     with pytest.raises(ValueError, match="two loads"):
-        assert model.with_load(DriftTransfer.of(Transfer.of(GRID, table()))).transfer is None
+        assert model.with_effect(DriftTransfer.of(Transfer.of(GRID, table()))).transfer is None
 
 
+@pytest.mark.slow
 def test_a_simulation_drifts_by_it() -> None:
     """The slow surge of a platform on soft springs, share 1 against 0, is the force over the stiffness."""
     mean = np.zeros((6, 9, 9), complex)
@@ -93,7 +94,7 @@ def test_a_simulation_drifts_by_it() -> None:
     waves = jh.spectrum_components(lambda w: jh.jonswap(w, 3.0, 9.0), 400.0, model.environment, low=0.06, cutoff=0.18, seed=1)
     sea, times = jh.IrregularSea(waves, model.environment), np.arange(0.0, 400.0, 1.0)
     load = DriftTransfer.of(Transfer.of(GRID, mean))
-    surge = [np.asarray(jh.simulate(one, times, sea)["surge"]) for one in (model, model.with_load(load))]
+    surge = [np.asarray(jh.simulate(one, times, sea)["surge"]) for one in (model, model.with_effect(load))]
     stiffness = float(np.asarray(linearised(model, jh.equilibrium(model))[1])[0, 0])
     expected = 3e4 * float((np.asarray(waves.amplitude) ** 2).sum()) / stiffness
     assert (surge[1] - surge[0])[200:].mean() == pytest.approx(expected, rel=0.15)

@@ -1,6 +1,5 @@
 """Motion in time: order of the schemes, exact motions, gradients, equilibrium and natural modes."""
 
-import dataclasses
 import math
 from functools import cache
 
@@ -336,7 +335,7 @@ def test_acceleration_and_its_derivatives() -> None:
 @pytest.mark.parametrize("directions", ["body", "earth"])
 def test_slope_of_the_rate_with_attitude(directions: str) -> None:
     """Forward derivatives against central differences, where the moments of the added mass turn as well."""
-    model = dataclasses.replace(hull(), directions=directions)
+    model = hull().with_conventions(directions=directions)
     state = eqx.tree_at(lambda s: s.velocity, model.rest(), jnp.array([0.3, 0.1, 0.2, 0.01, 0.02, 0.01]))
 
     @eqx.filter_jit

@@ -398,7 +398,7 @@ def test_a_wrong_mass_is_another_body() -> None:
     body = model.body
     error = MassError.null(body.mass, body.centre)
     found = {"mass": 7e5, "centre_x": 0.8, "centre_z": -1.1, "inertia_roll": 3e8, "inertia_pitch": -4e8, "inertia_yaw": 2e8}
-    wrong = model.with_load(error).with_values({f"mass_properties.{name}": value for name, value in found.items()})
+    wrong = model.with_effect(error).with_values({f"mass_properties.{name}": value for name, value in found.items()})
     inertia = np.asarray(body.inertia) + np.diag([3e8, -4e8, 2e8])
     assert_alike(wrong, changed(model, 8.7e6, np.asarray(body.centre) + np.array([0.8, 0, -1.1]), inertia))
 
@@ -406,7 +406,7 @@ def test_a_wrong_mass_is_another_body() -> None:
 def test_a_cable_that_is_carried_is_a_point_of_the_body() -> None:
     """Its mass alone: the body with a point mass at the height, by parallel axes."""
     model = floating()
-    carried = model.with_load(Umbilical.null(20.0)).with_values({"umbilical.mass": 5e5})
+    carried = model.with_effect(Umbilical.null(20.0)).with_values({"umbilical.mass": 5e5})
     centre, point = np.asarray(model.body.centre), np.array([0, 0, 20.0])
     joint = (8e6 * centre + 5e5 * point) / 8.5e6
 

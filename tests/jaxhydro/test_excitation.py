@@ -20,9 +20,10 @@ from calibration.discovery.effects.listed import NoticeableScales
 from jaxhydro.cli import app as cli
 from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_excitation import read_excitation
-from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia, WaveGaugePosition
+from jaxhydro.loads import ComputedExcitation, EndInertia, StripInertia
 from jaxhydro.sweep import load_sweep
 from jaxhydro.sweep.execute import _platform_text, prepared
+from jaxhydro.water import WaveGaugePosition
 from jaxhydro.waves import Clock
 from jaxhydro.waves.excitation import Excitation
 
@@ -64,12 +65,13 @@ def test_the_force_is_the_sum_over_components(order: int, heading: float) -> Non
                 assert_allclose(found, exact, atol=error * np.abs(exact).max())
 
 
+@pytest.mark.slow
 def test_it_takes_the_place_of_the_strips_own() -> None:
     """Share s: s of the table's, 1 - s of what acceleration and pressure do to strips and ends; added mass is as it was."""
     strips = only(build(COLUMN, PONTOON), StripInertia, EndInertia)
     table = ComputedExcitation.of(Excitation.of(GRID, forces()), 0.0)
     sea, none = irregular(2).direct(), (None,) * 3
-    model = strips.with_load(table)
+    model = strips.with_effect(table)
     own, _ = acts(strips, AWAY, REST, none[:2], sea, 20.0)
     rotation = np.asarray(jh.rotations.rotation(jnp.asarray(AWAY[3:])))
     earth = by_sum(irregular(), 20.0, forces(), AWAY[:2])
@@ -79,7 +81,7 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
         assert_allclose(found, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
     still = [
         np.asarray(one.rate(jnp.zeros(()), one.rest(), jh.StillWater()).velocity)
-        for one in (build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_load(ComputedExcitation.of(table.excitation)))
+        for one in (build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_effect(ComputedExcitation.of(table.excitation)))
     ]
     assert_allclose(still[1], still[0], rtol=1e-12, atol=1e-12)
 
@@ -119,11 +121,12 @@ def test_a_sea_without_it_is_refused() -> None:
     with pytest.raises(ValueError, match=r"prepare it with `Model\.excitation`"):
         acts(model, REST, REST, (None,), bare, 12.0)
     with pytest.raises(ValueError, match="two loads"):
-        assert model.with_load(ComputedExcitation.of(Excitation.of(GRID, forces()))).excitation is None
+        assert model.with_effect(ComputedExcitation.of(Excitation.of(GRID, forces()))).excitation is None
     with pytest.raises(ValueError, match="two ascending frequencies or more"):
         Excitation.of(GRID[::-1], forces())
 
 
+@pytest.mark.slow
 def test_a_simulation_follows_it() -> None:
     """Share 1 of a table that is zero leaves drag alone, and without that nothing; at share 0 nothing changes."""
     model = jh.load_model("volturnus-s-focal")
@@ -133,7 +136,7 @@ def test_a_simulation_follows_it() -> None:
     silent = ComputedExcitation.of(Excitation.of(GRID, 0 * forces()))
     heave = [
         np.asarray(jh.simulate(one, times, sea)["heave"])
-        for one in (model, model.with_load(silent), model.with_load(ComputedExcitation.of(silent.excitation, 0.0)))
+        for one in (model, model.with_effect(silent), model.with_effect(ComputedExcitation.of(silent.excitation, 0.0)))
     ]
     assert heave[1].std() < 1e-6 * heave[0].std()
     assert_allclose(heave[2], heave[0], rtol=1e-9, atol=1e-12)

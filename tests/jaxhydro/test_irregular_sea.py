@@ -147,6 +147,7 @@ def model() -> jh.Model:
     return jh.load_model("volturnus-s-focal")
 
 
+@pytest.mark.slow
 def test_simulation_on_supports_against_direct_summation(model: jh.Model) -> None:
     """The same 60 s of sea by Runge-Kutta in both seas, and by Adams-Bashforth."""
     waves = sea(duration=60.0)
@@ -172,6 +173,7 @@ def test_order_of_adams_bashforth(model: jh.Model) -> None:
     assert_allclose(orders, 4.0, atol=0.35)
 
 
+@pytest.mark.slow
 def test_gradients_through_a_sea(model: jh.Model) -> None:
     """reverse = forward = finite difference to 1e-6, by Adams-Bashforth, for a drag and an added-mass coefficient."""
     waves = sea(duration=60.0)
@@ -195,6 +197,7 @@ def test_gradients_through_a_sea(model: jh.Model) -> None:
     assert_allclose(forward, differences, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_platform_that_drifts_gets_a_larger_box(model: jh.Model) -> None:
     """A release 40 m off, beyond the box that is tried first: the same motion as in a sea prepared wide at once."""
     waves = sea(order=1, duration=60.0)

@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from functools import cache
+from functools import cache, reduce
 
 import equinox as eqx
 import jax
@@ -28,7 +28,6 @@ from jaxhydro.loads import (
     CoupledDamping,
     CoveredEnds,
     CubicDamping,
-    Current,
     DriftTransfer,
     EndDrag,
     EndInertia,
@@ -45,8 +44,6 @@ from jaxhydro.loads import (
     PowerDrag,
     QuadraticDamping,
     RadiationMemory,
-    SensorLag,
-    SensorReference,
     SlowDrag,
     StaticForce,
     Stiffness,
@@ -57,10 +54,11 @@ from jaxhydro.loads import (
     WaveDrift,
     WaveDriftDamping,
     WaveExcitation,
-    WaveGaugePosition,
-    WaveReflection,
     Weight,
 )
+from jaxhydro.parameters import AbstractEffect
+from jaxhydro.sensors import SENSOR_EFFECTS, SensorLag, SensorReference
+from jaxhydro.water import WATER_EFFECTS, Current, WaveGaugePosition, WaveReflection
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.transfer import Transfer
 
@@ -193,9 +191,9 @@ def everything() -> jh.Model:
     model = build(**EVERYTHING)
     coupled = np.zeros((6, 6))
     coupled[2, 4] = coupled[4, 2] = 3e6  # N
-    model = model.with_load(HydrostaticCoupling(stiffness=jnp.asarray(coupled), values={}))
+    model = model.with_effect(HydrostaticCoupling(stiffness=jnp.asarray(coupled), values={}))
     for load in effects(model):
-        model = model.with_load(load)
+        model = model.with_effect(load)
     model = in_water(model)
     parts = {label: label.split(".") for label in model.values}
     return model.with_values(
@@ -204,12 +202,14 @@ def everything() -> jh.Model:
 
 
 def only(model: jh.Model, *kinds: type) -> jh.Model:
-    """The model with some of its loads."""
-    return model_of(model, *(load for load in model.loads if isinstance(load, kinds)))
+    """The model with some of its effects."""
+    return model_of(model, *(effect for effect in model.effects if isinstance(effect, kinds)))
 
 
-def model_of(model: jh.Model, *loads: AbstractLoad) -> jh.Model:
-    return dataclasses.replace(model, loads=loads)
+def model_of(model: jh.Model, *effects: AbstractEffect) -> jh.Model:
+    """The model with these effects in place of its own."""
+    bare = dataclasses.replace(model, loads=(), water=(), sensors=())
+    return reduce(jh.Model.with_effect, effects, bare)
 
 
 @eqx.filter_jit
@@ -247,19 +247,21 @@ def sample(seed: int, n: int = 3) -> tuple[jax.Array, jax.Array]:
 
 # the contract
 
+EFFECTS = LOADS | WATER_EFFECTS | SENSOR_EFFECTS
+
 SEA = jh.regular_wave(3.0, 9.0, jh.Environment(RHO, 200.0, G), heading=0.4, phase=0.3)
 
 
 def test_the_example_has_every_registered_load() -> None:
     """Nothing escapes the contract below."""
-    assert {type(load) for load in everything().loads} == set(LOADS.values())
+    assert {type(effect) for effect in everything().effects} == set(EFFECTS.values())
 
 
-@pytest.mark.parametrize("name", LOADS)
+@pytest.mark.parametrize("name", EFFECTS)
 def test_contract(name: str) -> None:
     """Null is exactly silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
-    model = only(everything(), LOADS[name])
-    (load,) = model.loads
+    model = only(everything(), EFFECTS[name])
+    (load,) = model.effects
     positions, velocities = sample(1)
     for label, value in load.values.items():
         about = load.about(label)

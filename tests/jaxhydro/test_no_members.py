@@ -56,6 +56,7 @@ def response_to(omega: np.ndarray) -> dict[str, np.ndarray]:
     return {"surge": surge, "heave": heave}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2])
 def test_an_irregular_sea(tmp_path: Path, order: int) -> None:
     """After the transient the motion is that of the frequency domain, of first order whatever the sea's."""
@@ -71,6 +72,7 @@ def test_an_irregular_sea(tmp_path: Path, order: int) -> None:
     assert_allclose(found[late, 2] - found[late, 2].mean(), heave - heave.mean(), atol=0.03 * heave.std())
 
 
+@pytest.mark.slow
 def test_a_sea_without_any_force_of_waves(tmp_path: Path) -> None:
     """Nothing moves, and nothing fails."""
     model = load_model(platform_in(tmp_path, excitation=False))

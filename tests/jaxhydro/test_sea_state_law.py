@@ -45,6 +45,7 @@ def test_a_power_of_height_and_period(models) -> None:
     assert plain.in_sea(SeaState(8.0, 12.0)) is plain
 
 
+@pytest.mark.slow
 def test_exponents_are_parameters_like_others(models) -> None:
     """Named, bounded, silent at their null; the force's slope to one is the coefficient's share times the logarithm."""
     _, laws = models
@@ -100,6 +101,7 @@ def test_peak_period_of_a_symmetric_peak() -> None:
     assert peak_period(f, np.exp(-(((f - 0.1) / 0.01) ** 2))) == pytest.approx(10.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_simulations_take_the_coefficients_of_their_sea() -> None:
     """`simulate` in a sea equals the plain model with the coefficients that the power law gives for it."""
     plain = jh.load_model("volturnus-s-focal")

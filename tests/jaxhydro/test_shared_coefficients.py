@@ -90,6 +90,7 @@ def test_gradients_add() -> None:
             assert_allclose(together[f"{owner}.{name}"], expected, rtol=1e-12, atol=1e-12 * float(jnp.abs(expected).max()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "law",
     [HIGH_PASS, KEULEGAN_CARPENTER, {"law": "constant"}],

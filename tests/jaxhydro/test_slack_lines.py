@@ -68,6 +68,7 @@ def test_a_pretension_of_zero_is_no_slack_line() -> None:
     assert not told(data)
 
 
+@pytest.mark.slow
 def test_the_command_line_says_it_before_it_runs(tmp_path) -> None:
     file = tmp_path / "platform.yaml"
     file.write_text(yaml.safe_dump(platform(115.0, 115.0, 115.0)), encoding="utf-8")

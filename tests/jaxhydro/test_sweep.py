@@ -217,7 +217,9 @@ def test_what_simulate_notes_of_a_sea_is_noted_of_a_sweep() -> None:
     (named,) = noted(plan(scatter=[{"hs": 0.5, "tp": 3, "gamma": 2}], **usual), model)
     assert named.startswith("in the only sea state less than") and "least in Hs 0.5 m, Tp 3 s, gamma 2, " in named
     assert not noted(plan(scatter=[{"hs": 9, "tp": 14}], **usual | {"order": 1}), model)
-    bare = SimpleNamespace(cylinders=None, diffraction="ramp", environment=model.environment, pace=1.0)
+    bare = SimpleNamespace(
+        cylinders=None, conventions=jh.Conventions(diffraction="ramp"), environment=model.environment, pace=1.0
+    )
     (note,) = noted(plan(scatter=quiet, **usual), bare)
     assert note == "no member of this platform diffracts waves: 1 + Ca everywhere"
 

@@ -293,6 +293,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same(file, whole, tmp_path) -> 
     assert_bitwise(tmp_path / "o", whole)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2])
 def test_runs_at_once_are_runs_one_by_one(whole, order) -> None:
     """The way of GPUs, here on the CPU: to rounding. Those of another heading are a group of their own."""
@@ -400,6 +401,7 @@ def test_a_store_that_was_not_finished_being_made_is_made_anew(file, tmp_path) -
 # --- gradients
 
 
+@pytest.mark.slow
 def test_a_life_changes_with_drag_as_its_derivative_says(file) -> None:
     """Forward mode through the simulations, against central differences of whole sweeps."""
     sweep = load_sweep(file).model_copy(update={"seeds": 2, "scatter": load_sweep(file).scatter[:2]})

@@ -19,19 +19,16 @@ import jaxhydro as jh
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
-    Current,
     EndDrag,
     PowerDrag,
-    SensorLag,
-    SensorReference,
     SlowDrag,
     StripDrag,
     WaveDrift,
     WaveDriftDamping,
     WaveExcitation,
-    WaveGaugePosition,
-    WaveReflection,
 )
+from jaxhydro.sensors import SensorLag, SensorReference
+from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
 from jaxhydro.waves import Clock, PlaneWaves, WaveSea
 
 WATER = jh.Environment(RHO, 200.0, G)
@@ -83,7 +80,7 @@ def water(sea: jh.AbstractSea, time, points, load: AbstractLoad | None = None) -
 def test_drag_in_a_current() -> None:
     """1/2 rho Cd D T |U| U on a column that is held, oblique; as much on one that is moved the other way in still water."""
     plain = only(build(COLUMN), StripDrag)
-    flowing = plain.with_load(with_values(Current.null(), x=0.9, y=-1.2))
+    flowing = plain.with_effect(with_values(Current.null(), x=0.9, y=-1.2))
     expected = 0.5 * RHO * CD_T * AREA * 1.5 * np.array([0.9, -1.2])
     assert_allclose(force(flowing)[:2], expected, rtol=1e-11)
     assert_allclose(force(plain, [-0.9, 1.2, 0, 0, 0, 0])[:2], expected, rtol=1e-11)
@@ -93,7 +90,7 @@ def test_a_current_is_galilean() -> None:
     """Whoever goes with the stream feels none; any motion in it is that of the difference, in an attitude, too."""
     plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
     stream = np.array([0.9, -1.2, 0.0])
-    flowing = plain.with_load(with_values(Current.null(), x=0.9, y=-1.2))
+    flowing = plain.with_effect(with_values(Current.null(), x=0.9, y=-1.2))
     in_body = np.concatenate([Rotation.from_euler("ZYX", POSITION[:2:-1]).as_matrix().T @ stream, np.zeros(3)])
     assert_allclose(force(flowing, in_body, POSITION), 0.0, atol=1e-5)
     expected = force(plain, VELOCITY - in_body, POSITION)
@@ -127,7 +124,7 @@ def test_a_delay_is_late() -> None:
     """y_rec(t) = y(t - delay), through the model; None where no load is about clocks."""
     model = build(COLUMN)
     assert model.clock_lag() is None
-    late = model.with_load(with_values(SensorLag.null(), delay=0.7))
+    late = model.with_effect(with_values(SensorLag.null(), delay=0.7))
     assert float(late.clock_lag()) == 0.7
     assert (force(late, VELOCITY, POSITION) == force(model, VELOCITY, POSITION)).all()
 
@@ -274,7 +271,7 @@ def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
 
     bare, whole = (cost(plain, one) for one in (dataclasses.replace(sea, envelope=None), sea))
     assert bare[0] == whole[0] and (bare[1] == whole[1]).all()
-    assert cost(plain.with_load(WaveDrift.null()), sea)[0] > whole[0]
+    assert cost(plain.with_effect(WaveDrift.null()), sea)[0] > whole[0]
 
 
 # drag

@@ -239,7 +239,7 @@ def test_diffraction_by_a_fixed_column() -> None:
     for name, coefficient in (("maccamy_fuchs", factor), ("ramp", factor - 0.1 * math.exp(-((ka / 0.3) ** 2))), ("none", 1.9)):
         expected = [(size * coefficient * 1j * np.exp(1j * phase)).real for phase in (0.0, math.pi / 2)]
         assert_allclose(found[name], expected, rtol=1e-9, err_msg=name)
-    modulus = dataclasses.replace(only(jh.build(platform()), StripInertia), lag=False)
+    modulus = only(jh.build(platform()), StripInertia).with_conventions(lag=False)
     assert_allclose(force_at_rest(modulus, wave(period=period, phase=math.pi / 2))[0], -size * abs(factor), rtol=1e-9)
 
 

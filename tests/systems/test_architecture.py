@@ -11,8 +11,11 @@ import pytest
 
 from benchmarks import architecture_page
 from jaxhydro.loads import LOADS
+from jaxhydro.sensors import SENSOR_EFFECTS
+from jaxhydro.water import WATER_EFFECTS
 
 ROOT = Path(__file__).resolve().parents[2]
+FAMILIES = {"loads": LOADS, "water": WATER_EFFECTS, "sensors": SENSOR_EFFECTS}
 
 SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
     "matrix": "*",
@@ -20,6 +23,7 @@ SHARED_BY_LOADS = {  # what a load may import from another load's file, and the 
     "end_inertia": {"spread_ends"},
     "drag": "*",
     "per_dof": "*",
+    "instant": "*",
 }
 EDGE = {  # third-party or built-in, and the only folders or modules that may use it
     "matplotlib": {"jaxhydro.plots", "jaxhydro.sweep.sweep_figures", "calibration.plots"},
@@ -33,7 +37,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "filelock": {"jaxhydro.sweep.store"},
     "jinja2": {"calibration.report.web_page"},
 }
-NUMERICS = ("waves", "hull", "loads", "integrators", "dynamics")
+NUMERICS = ("waves", "hull", "loads", "water", "sensors", "integrators", "dynamics")
 NOT_PURE = {"jaxhydro.dynamics.requested_sea"}  # tells what is wrong with a sea that was asked for
 STANDARD = set(sys.stdlib_module_names) - {"csv", "io", "json", "logging", "os", "pathlib", "random", "sys", "warnings"}
 ARRAYS = {"jax", "jaxtyping", "equinox", "diffrax", "optimistix", "lineax", "numpy"}
@@ -161,10 +165,10 @@ def test_import_brings_in_nothing_of_the_edge() -> None:
     assert run.stdout.split() == []
 
 
-@pytest.mark.parametrize("name", LOADS)
-def test_a_load_names_its_source(name: str) -> None:
+@pytest.mark.parametrize("family, name", [(family, name) for family in FAMILIES for name in FAMILIES[family]])
+def test_an_effect_names_its_source(family: str, name: str) -> None:
     """A source named in its docstring, and in `source` for people."""
-    load = LOADS[name]
-    assert load.source.strip()
-    assert load.__doc__ and load.source.split()[0] in load.__doc__
-    assert load.__module__ == f"jaxhydro.loads.{'hydrostatics' if name == 'buoyancy' else name}"
+    effect = FAMILIES[family][name]
+    assert effect.source.strip()
+    assert effect.__doc__ and effect.source.split()[0] in effect.__doc__
+    assert effect.__module__ == f"jaxhydro.{family}.{'hydrostatics' if name == 'buoyancy' else name}"

@@ -16,14 +16,14 @@ from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.residuals.measured_seas import Options
 from jaxhydro.choices import UnknownName, check, nearest, unknown
+from jaxhydro.dynamics.conventions import Conventions, allowed_values
 from jaxhydro.dynamics.integrate import Method, clock
-from jaxhydro.dynamics.model import CONVENTIONS
 from jaxhydro.dynamics.simulate import default_step, memory_step
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.interop.wamit_tables import to_omega
 from jaxhydro.loads import LOADS
-from jaxhydro.loads.base import Parameter
 from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
+from jaxhydro.parameters import Parameter
 from jaxhydro.platform.convergence import with_elements
 from jaxhydro.waves.components import PlaneWaves
 from jaxhydro.waves.irregular import separated_record
@@ -32,6 +32,8 @@ from jaxhydro.waves.second_order import bound_waves, elevation_spectrum, transfe
 
 CAMPAIGN = "jaxhydro/campaigns/volturnus-s-decays"
 TIMES = np.arange(0.0, 4.0, 1.0)
+
+CONVENTIONS = [field.name for field in dataclasses.fields(Conventions)]
 
 
 @pytest.fixture(scope="module")
@@ -58,27 +60,30 @@ def waves(model):
 )
 def test_a_convention_that_there_is_none_of_is_refused(model, name, wrong, right):
     with pytest.raises(ValueError, match=f"{name}: expected .* found '{wrong}'. Did you mean '{right}'?") as caught:
-        dataclasses.replace(model, **{name: wrong})
+        model.with_conventions(**{name: wrong})
     assert isinstance(caught.value, UnknownName)
-    assert getattr(dataclasses.replace(model, **{name: right}), name) == right
+    assert getattr(model.with_conventions(**{name: right}).conventions, name) == right
 
 
 @pytest.mark.parametrize("name", CONVENTIONS)
 @pytest.mark.parametrize("wrong", ["", None, 1, 0, "True", 2.0, ["mean"], ("mean",), object(), {}])
 def test_what_is_no_word_is_refused(model, name, wrong):
     with pytest.raises(UnknownName, match=f"{name}: expected"):
-        dataclasses.replace(model, **{name: wrong})
+        Conventions(**{name: wrong})
 
 
 def test_every_convention_of_the_model_is_checked(model):
-    """All its static fields but the remarks, and every value that there is, in any order of making."""
+    """All its static fields but the remarks, and every value that there is; an unknown convention is refused by its name."""
     static = {field.name for field in dataclasses.fields(model) if field.metadata.get("static")}
-    assert static == {*CONVENTIONS, "remarks"}
-    for name, allowed in CONVENTIONS.items():
-        for value in allowed:
-            assert getattr(dataclasses.replace(model, **{name: value}), name) == value
+    assert static == {"conventions", "remarks"}
+    for name in CONVENTIONS:
+        assert getattr(Conventions(), name) == allowed_values(name)[0]
+        for value in allowed_values(name):
+            assert getattr(model.with_conventions(**{name: value}).conventions, name) == value
     with pytest.raises(UnknownName, match="wetting"):
-        jh.Model(model.environment, model.body, model.hull, model.loads, wetting="Mean")
+        Conventions("Mean")
+    with pytest.raises(UnknownName, match=r"no convention 'weting'; .* Did you mean 'wetting'\?"):
+        model.with_conventions(weting="mean")
 
 
 def test_seas_refuse_what_they_do_not_know(model, waves):

@@ -163,9 +163,9 @@ def test_elements_and_diffraction_in_place_of_the_platforms() -> None:
     coarse, fine = (model_of(platform, elements=count) for count in (1, 4))
     pontoons = sum(len(member.heading) for member in platform.members if member.group == "pontoon")
     assert len(fine.hull.elements.length) - len(coarse.hull.elements.length) == 3 * pontoons
-    assert model_of(platform).diffraction == "maccamy_fuchs"
+    assert model_of(platform).conventions.diffraction == "maccamy_fuchs"
     none = model_of(platform, arguments.Diffraction.none)  # as the command line gives it
-    assert none.diffraction == "none" and type(none.diffraction) is str and none.cylinders is None
+    assert none.conventions.diffraction == "none" and type(none.conventions.diffraction) is str and none.cylinders is None
 
 
 def test_bands_and_tables() -> None:

@@ -34,8 +34,8 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.observe import motion_behind, observe
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
-from jaxhydro.loads import SensorLag, SensorReference
 from jaxhydro.rotations import rotation
+from jaxhydro.sensors import SensorLag, SensorReference
 
 OPTIONS = Options(order=1, diffraction="none", cutoff=0.2)
 CHANNELS = {"surge": "m", "heave": "m", "pitch": "rad"}
@@ -46,7 +46,7 @@ NOISE = {"surge": 1e-3, "heave": 1e-3, "pitch": 1e-5}
 
 def with_sensors(model: Model, point: tuple[float, float] = POINT, lag: float = LAG) -> Model:
     """The model with a tracked point off the reference point and motions that are recorded late."""
-    model = model.with_load(SensorReference.null()).with_load(SensorLag.null())
+    model = model.with_effect(SensorReference.null()).with_effect(SensorLag.null())
     return model.with_values({"sensor_reference.x": point[0], "sensor_reference.z": point[1], "sensor_lag.delay": lag})
 
 
@@ -68,6 +68,7 @@ def motion() -> Grid:
     return Grid(jnp.zeros(()), jnp.asarray(step), jnp.asarray(2000), *map(jnp.asarray, rows))
 
 
+@pytest.mark.slow
 def test_readings_of_a_point_and_of_a_late_clock(body: Model, motion: Grid) -> None:
     """Against the displacement of the point by rotation matrices, and the motion a lag earlier; counted from the origin."""
     sensed, times = with_sensors(body), jnp.arange(5.0, 90.0, 0.37)

@@ -50,6 +50,7 @@ def platform(setup: dict) -> jh.Platform:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dof, channel", [("surge", "PtfmSurge"), ("heave", "PtfmHeave"), ("pitch", "PtfmPitch")])
 def test_decay_against_openfast(dof: str, channel: str) -> None:
     """Periods within half a per cent and the motion within 2 % of its start over ten cycles, time steps apart."""

@@ -4,7 +4,10 @@ import pytest
 
 from benchmarks.evidence import openfast_sea as of
 
-pytestmark = pytest.mark.skipif(not of.FOLDER.exists(), reason=f"OpenFAST's runs are not at {of.FOLDER}")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not of.FOLDER.exists(), reason=f"OpenFAST's runs are not at {of.FOLDER}"),
+]
 
 
 @pytest.mark.parametrize("case", ["c1", "c2", "c1mcf", "c1st", "c3"])

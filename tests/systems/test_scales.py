@@ -116,6 +116,7 @@ def moved(model: Model, size: float, sea=None, **start: float) -> np.ndarray:
     return np.asarray(jh.simulate(model, times, sea, position=position).position)
 
 
+@pytest.mark.slow
 def test_a_decay_and_a_regular_wave() -> None:
     found = {}
     for size in (SMALL, 1.0):
@@ -126,6 +127,7 @@ def test_a_decay_and_a_regular_wave() -> None:
         same(small, large, SHARE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2])
 def test_an_irregular_sea(order: int) -> None:
     """The steps and the box that it is prepared for follow the hull."""
@@ -154,7 +156,7 @@ def test_boxes_of_seas_are_of_one_shape() -> None:
 
 def test_bounds_of_lengths_and_times_follow_the_hull() -> None:
     large, small = (
-        model.with_load(Hysteresis.null(["surge", "pitch"])).about("hysteresis.surge.yield_displacement")
+        model.with_effect(Hysteresis.null(["surge", "pitch"])).about("hysteresis.surge.yield_displacement")
         for model in (barge(1.0), barge(SMALL))
     )
     assert small.upper == pytest.approx(max(large.upper * SMALL, small.null))
@@ -187,6 +189,7 @@ def box(size: float, top: float, bottom: float = -4.0) -> Model:
     return built(validate(Platform, data, "box"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("top", [0.0, 0.05, 0.3])
 @pytest.mark.parametrize("size", [1.0, SMALL])
 def test_a_barge_that_ends_at_still_water(size: float, top: float) -> None:

@@ -20,7 +20,6 @@ from jaxhydro.loads import (
     CoupledDamping,
     CoveredEnds,
     CubicDamping,
-    Current,
     DriftTransfer,
     EndDrag,
     HiddenOscillator,
@@ -30,17 +29,16 @@ from jaxhydro.loads import (
     NonlinearHydrostatics,
     QuadraticDamping,
     RadiationMemory,
-    SensorLag,
-    SensorReference,
     StaticForce,
     StripDrag,
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
     WaveExcitation,
-    WaveGaugePosition,
-    WaveReflection,
 )
+from jaxhydro.parameters import AbstractEffect
+from jaxhydro.sensors import SensorLag, SensorReference
+from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
 
 
 @dataclass(frozen=True)
@@ -78,7 +76,7 @@ class Candidate:
     phase_per_unit: PhasePerUnit | None = None
     telling: str = ""
     source: str = ""
-    load: AbstractLoad | None = None
+    load: AbstractEffect | None = None
     sizes: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -125,7 +123,7 @@ PER_MOTION_LOADS: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
     "wave_drift": WaveDrift.null,
     "wave_drift_damping": WaveDriftDamping.null,
 }
-WHOLE_PLATFORM_LOADS: dict[str, Callable[[], AbstractLoad]] = {
+WHOLE_PLATFORM_LOADS: dict[str, Callable[[], AbstractEffect]] = {
     "umbilical": Umbilical.null,
     "current": Current.null,
     "sensor_reference": SensorReference.null,
@@ -179,17 +177,17 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
     for effect in effects:
         mine = [label for label in labels if label.startswith(f"{effect}.")]
         if effect in PER_MOTION_LOADS:
-            model = model.with_load(PER_MOTION_LOADS[effect](_dofs(mine, effect)))
+            model = model.with_effect(PER_MOTION_LOADS[effect](_dofs(mine, effect)))
         elif effect in WHOLE_PLATFORM_LOADS:
-            model = model.with_load(WHOLE_PLATFORM_LOADS[effect]())
+            model = model.with_effect(WHOLE_PLATFORM_LOADS[effect]())
         elif effect == "mass_properties":
-            model = model.with_load(MassError.null(model.body.mass, model.body.centre))
+            model = model.with_effect(MassError.null(model.body.mass, model.body.centre))
         elif effect == "coupled_damping":
-            model = model.with_load(CoupledDamping.null([label.split(".")[1] for label in mine]))
+            model = model.with_effect(CoupledDamping.null([label.split(".")[1] for label in mine]))
         elif effect == "quadratic_damping":
-            model = model.with_load(QuadraticDamping({label: jnp.zeros(()) for label in mine}))
+            model = model.with_effect(QuadraticDamping({label: jnp.zeros(()) for label in mine}))
         elif effect == "wave_excitation":
-            model = model.with_load(WaveExcitation.null([label.split(".", 1)[1] for label in mine]))
+            model = model.with_effect(WaveExcitation.null([label.split(".", 1)[1] for label in mine]))
         elif effect in DRAG_EFFECTS:
             model = with_drag(model)
         else:
@@ -201,6 +199,6 @@ def with_candidates(model: Model, candidates: Sequence[Candidate], nuisances: Se
     """The model with every candidate at its neutral value."""
     for one in candidates:
         if one.load is not None:
-            model = model.with_load(one.load)
+            model = model.with_effect(one.load)
     labels = [label for one in candidates for label in one.labels]
     return with_effects(model, [*labels, *nuisances])

@@ -16,18 +16,15 @@ from jaxhydro.environment import DOFS, STANDARD_GRAVITY
 from jaxhydro.loads import (
     ChangingDrag,
     CoupledDamping,
-    Current,
     EndDrag,
     MassError,
-    SensorLag,
-    SensorReference,
     StripDrag,
     Umbilical,
     WaveExcitation,
-    WaveGaugePosition,
-    WaveReflection,
 )
-from jaxhydro.loads.wave_reflection import COEFFICIENT, DEFAULT_DELAY, DELAY, MAX_DELAY, SEEN
+from jaxhydro.sensors import SensorLag, SensorReference
+from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
+from jaxhydro.water.wave_reflection import COEFFICIENT, DEFAULT_DELAY, DELAY, MAX_DELAY, SEEN
 from jaxhydro.waves.dispersion import wavenumber
 
 REFERENCE_LENGTH = 27.0  # m, of a platform of 20 000 t

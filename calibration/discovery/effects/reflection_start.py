@@ -8,7 +8,7 @@ from calibration.discovery.effects.peaks import highest_peaks
 from calibration.discovery.eliminated_least_squares import row_weights
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.study import Study
-from jaxhydro.loads.wave_reflection import DELAY, MAX_DELAY, SEEN
+from jaxhydro.water.wave_reflection import DELAY, MAX_DELAY, SEEN
 
 DELAY_SPACING = 0.05  # s, between the delays that are compared
 # waves that the gauge did not measure, or did

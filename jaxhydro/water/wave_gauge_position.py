@@ -5,13 +5,14 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.parameters import Parameter
+from jaxhydro.water.water_effect import AbstractWaterEffect
 from jaxhydro.waves.sea import AbstractSea
 
 MAX_OFFSET = 50.0  # m
 
 
-class WaveGaugePosition(AbstractLoad):
+class WaveGaugePosition(AbstractWaterEffect):
     """Shift of the sea along the waves by an error of the gauge position.
 
     eta(x, t) = eta_said(x - d, t): the gauge stood d further along the waves (to where they travel) than was said.
@@ -24,12 +25,12 @@ class WaveGaugePosition(AbstractLoad):
     """
 
     values: dict[str, Float[Array, ""]]
-    moves: ClassVar[bool] = True
+    comes_last: ClassVar[bool] = True
     source: ClassVar[str] = "Sharma and Dean 1981, SPE Journal 21 (the waves that are moved)"
 
     @classmethod
     def null(cls) -> "WaveGaugePosition":
-        """Load at its neutral value: the gauge where it was stated."""
+        """Effect at its neutral value: the gauge where it was stated."""
         return cls({"wave_gauge_position.distance": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:

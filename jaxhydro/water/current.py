@@ -5,12 +5,13 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.parameters import Parameter
+from jaxhydro.water.water_effect import AbstractWaterEffect
 
 MAX_SPEED = 5.0  # m/s
 
 
-class Current(AbstractLoad):
+class Current(AbstractWaterEffect):
     """Steady current, uniform over depth, that acts through drag.
 
     u_c = (U, V, 0) everywhere: it adds to the velocity past every strip and end, and so acts through their drag.
@@ -27,11 +28,11 @@ class Current(AbstractLoad):
 
     @classmethod
     def null(cls) -> "Current":
-        """Load at its neutral value: no current."""
+        """Effect at its neutral value: no current."""
         return cls({"current.x": jnp.zeros(()), "current.y": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:
         return Parameter("m/s", f"velocity of the current along earth's {label[-1]}", -MAX_SPEED, MAX_SPEED)
 
-    def stream(self) -> Float[Array, "3"]:
+    def current(self) -> Float[Array, "3"]:
         return jnp.stack([*(jnp.asarray(self.values[f"current.{axis}"]) for axis in "xy"), jnp.zeros(())])

@@ -25,9 +25,9 @@ class StripConventions(BaseModel):
         coupled = all(getattr(load, "coupled", True) for load in model.loads)
         return cls.model_validate(
             {
-                "directions": model.directions,
+                "directions": model.conventions.directions,
                 "drag_speed": "vector" if coupled else "component",
-                "centripetal": model.centripetal,
+                "centripetal": model.conventions.centripetal,
             }
         )
 
@@ -40,7 +40,8 @@ class StripConventions(BaseModel):
             replace(load, coupled=coupled) if hasattr(load, "coupled") else load  # type: ignore[call-arg]
             for load in model.loads
         )
-        return replace(model, directions=self.directions, centripetal=self.centripetal, loads=loads)
+        changed = model.with_conventions(directions=self.directions, centripetal=self.centripetal)
+        return replace(changed, loads=loads)
 
     def __str__(self) -> str:
         return ", ".join(f"{key}: {str(value).lower()}" for key, value in self.model_dump().items())

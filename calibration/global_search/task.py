@@ -1,11 +1,9 @@
-"""Base of all global searches: budget, counted objective, history."""
+"""Task of a global search: counted objective, budget, history."""
 
-import abc
 import time as clock
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Protocol
 
 import jax.numpy as jnp
 import numpy as np
@@ -161,24 +159,14 @@ class Task:
         return History(*(np.array(column) for column in zip(*marks)))
 
 
-@dataclass(frozen=True)
-class AbstractSearch(abc.ABC):
-    """A way to look for the least J over the unit cube. Its fields are its options, numbers above 0 (else ValueError)."""
+class SearchMethod(Protocol):
+    """A way to look for the least J over the unit cube."""
 
     name: ClassVar[str]
-    descends: ClassVar[bool] = False  # by least squares: it fits the records' releases itself, and ends of its own
-    needs: ClassVar[str | None] = None  # a package that is not always installed
 
-    def __post_init__(self) -> None:
-        for option in fields(self):
-            if not (value := getattr(self, option.name)) > 0:
-                raise ValueError(f"{self.name}: expected {option.name} above 0, found {value!r}")
-
-    @abc.abstractmethod
     def batch_size(self, size: int) -> int:
-        """How many points it asks for at once, of `size` coefficients."""
+        """Number of points that it asks for at once, of `size` coefficients."""
 
-    @abc.abstractmethod
     def run(self, task: Task, random: np.random.Generator) -> None:
         """Search until done, or until the task raises BudgetSpent. All chance comes from `random`."""
 

@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.parameters import Parameter
+from jaxhydro.water.water_effect import AbstractWaterEffect
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.support_sea import Reflection, SupportSea
@@ -74,7 +75,7 @@ class ReflectedSea(AbstractSea):
         return replace(self, sea=self.sea.moved(distance), origin=self.origin + distance)
 
 
-class WaveReflection(AbstractLoad):
+class WaveReflection(AbstractWaterEffect):
     """Reflection of the waves by a beach.
 
     eta(x, t) = eta_g(x, t) + r (eta_g(-x, t - T) - s eta_g(x, t - T)): the sea of the wave record, r times its mirror image
@@ -98,7 +99,7 @@ class WaveReflection(AbstractLoad):
 
     @classmethod
     def null(cls, delay: float = DEFAULT_DELAY) -> "WaveReflection":
-        """Load at its neutral value: no reflection; `delay` (s) is where it starts."""
+        """Effect at its neutral value: no reflection; `delay` (s) is where it starts."""
         return cls({COEFFICIENT: jnp.zeros(()), DELAY: jnp.asarray(float(delay)), SEEN: jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:

@@ -5,13 +5,14 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.parameters import Parameter
 from jaxhydro.rotations import rotation
+from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
 
 MAX_OFFSET = 200.0  # m
 
 
-class SensorReference(AbstractLoad):
+class SensorReference(AbstractSensorEffect):
     """Motion sensors that track another point than the reference point.
 
     y = p + R o - o: the surge, sway and heave that are recorded are those of a point at o = (x, 0, z) in body axes.
@@ -27,7 +28,7 @@ class SensorReference(AbstractLoad):
 
     @classmethod
     def null(cls) -> "SensorReference":
-        """Load at its neutral value: the reference point itself."""
+        """Effect at its neutral value: the reference point itself."""
         return cls({"sensor_reference.x": jnp.zeros(()), "sensor_reference.z": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:

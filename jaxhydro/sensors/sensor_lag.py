@@ -5,12 +5,13 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Parameter
+from jaxhydro.parameters import Parameter
+from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
 
 MAX_LAG = 60.0  # s
 
 
-class SensorLag(AbstractLoad):
+class SensorLag(AbstractSensorEffect):
     """Lag of the recorded motions behind the waves.
 
     y_rec(t) = y(t - delay): what is recorded at t is the motion a delay earlier; all channels alike, the waves on time.
@@ -26,7 +27,7 @@ class SensorLag(AbstractLoad):
 
     @classmethod
     def null(cls) -> "SensorLag":
-        """Load at its neutral value: no lag."""
+        """Effect at its neutral value: no lag."""
         return cls({"sensor_lag.delay": jnp.zeros(())})
 
     def about(self, label: str) -> Parameter:

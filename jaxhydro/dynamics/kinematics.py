@@ -1,0 +1,201 @@
+"""Motion, submerged geometry and flow of a platform at an instant, from its position and velocity."""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from jaxhydro.dynamics.conventions import Conventions
+from jaxhydro.environment import Environment
+from jaxhydro.hull.hull import Hull, Wetted
+from jaxhydro.hull.submerged import EndShape, Lines, StripShape
+from jaxhydro.loads.instant import Instant
+from jaxhydro.rotations import rotation, turned
+from jaxhydro.waves.flow import Cylinders, EndFlow, Flow, StripFlow
+from jaxhydro.waves.sea import AbstractSea
+
+
+class _Submerged(NamedTuple):
+    """Submerged part of a hull.
+
+    Attributes:
+        elements: Submerged part of each load element.
+        covered: Wet length (m) of each strip, (n,).
+        reach: Distance (m) of each strip from the start of its element, (n,).
+        extent: Size (m) of each strip along its two directions, (2, n).
+        ends: Submerged fraction of each end and face, (m,).
+    """
+
+    elements: Wetted
+    covered: Float[Array, " n"]
+    reach: Float[Array, " n"]
+    extent: Float[Array, "2 n"]
+    ends: Float[Array, " m"]
+
+
+def instant(
+    time: Float[Array, ""],
+    position: Float[Array, "6"],
+    velocity: Float[Array, "6"],
+    sea: AbstractSea,
+    *,
+    environment: Environment,
+    hull: Hull,
+    conventions: Conventions,
+    cylinders: Cylinders | None = None,
+    current: Float[Array, "3"] | None = None,
+    replaced: Float[Array, ""] | None = None,
+) -> Instant:
+    """Motion, submerged geometry and flow at an instant.
+
+    Args:
+        time: Time (s).
+        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
+        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
+        sea: The sea that the platform meets.
+        environment: Water and gravity.
+        hull: The hull.
+        conventions: Form of the strip model.
+        cylinders: Strips, then ends, that diffract the waves.
+        current: Steady current (m/s, earth axes).
+        replaced: Fraction of the strips' inertial wave load that other loads replace.
+
+    Returns:
+        What the loads read.
+    """
+    matrix = rotation(position[3:])
+    hull = hull if conventions.directions == "body" else hull.turned(matrix.T)
+    submerged = _submerged(time, position, matrix, sea, hull, conventions)
+    lines, still = _lines(velocity, submerged, hull, conventions)
+    if current is not None:
+        still = still + _along(current @ matrix, hull)
+    flow = sea.flow(time, _points(position, matrix, submerged, hull, conventions), cylinders)
+    if flow is not None and replaced is not None:
+        flow = flow.weakened(1 - replaced)
+    strip_flow, end_flow = _flow_past(flow, still, submerged, matrix, hull)
+    covered, extent, shape = submerged.covered, submerged.extent, hull.strips.shape
+    return Instant(
+        time,
+        position,
+        matrix,
+        velocity,
+        environment,
+        hull,
+        submerged.elements,
+        StripShape(covered * shape * extent[0] * extent[1], covered * extent[::-1]),
+        EndShape.of(hull, submerged.elements, covered, extent),
+        strip_flow,
+        end_flow,
+        lines,
+        sea.drift(time),
+        None if replaced is None else sea.excitation(time, _origin(position, matrix, conventions)[0]),
+        _lid(flow, matrix, hull),
+    )
+
+
+def _origin(
+    position: Float[Array, "6"], matrix: Float[Array, "3 3"], conventions: Conventions
+) -> tuple[Float[Array, "2"], Float[Array, "2 3"]]:
+    """Horizontal place (m) where the platform meets the waves, and the map of its points to horizontal ones."""
+    if conventions.waves_at == "displaced":
+        return position[:2], matrix[:2]
+    return jnp.zeros(2), jnp.eye(3)[:2]
+
+
+def _submerged(
+    time: Float[Array, ""],
+    position: Float[Array, "6"],
+    matrix: Float[Array, "3 3"],
+    sea: AbstractSea,
+    hull: Hull,
+    conventions: Conventions,
+) -> _Submerged:
+    """Submerged part of the hull's elements, strips, ends and faces."""
+    strips, ends, count = hull.strips, hull.ends, hull.elements.start.shape[1]
+    roots = jnp.concatenate([hull.elements.start, ends.position[:, : hull.ends_without_faces]], axis=1)
+    if conventions.wetting == "mean":
+        vertical, depth = jnp.array([0.0, 0.0, 1.0]), -roots[2]
+    else:
+        vertical = matrix[2]
+        depth = -(position[2] + vertical @ roots)
+        place, follows = _origin(position, matrix, conventions)
+        surface = sea.surface(time, place[:, None] + follows @ hull.gauges)
+        depth = depth if surface is None else depth + surface[jnp.array(hull.gauge_of, dtype=int)]
+    elements, of = hull.wetted(vertical, depth[:count]), jnp.array(strips.element, dtype=int)
+    covered, reach = elements.length[of] * strips.weight, elements.reach[of] * strips.fraction
+    wet = jnp.concatenate([hull.ends_wetted(depth[count:]), jnp.ones(len(ends.strip))])
+    return _Submerged(elements, covered, reach, strips.size + strips.taper * reach, wet)
+
+
+def _lines(
+    velocity: Float[Array, "6"], submerged: _Submerged, hull: Hull, conventions: Conventions
+) -> tuple[Lines, Float[Array, " l"]]:
+    """Distances and accelerations of lines, and the velocity (m/s) of still water relative to them, (l,)."""
+    of_faces = submerged.reach[jnp.array(hull.ends.strip, dtype=int)]
+    on_ends = jnp.concatenate([jnp.zeros(hull.ends_without_faces), of_faces])
+    away = hull.join(jnp.stack([submerged.reach, submerged.reach]), on_ends)
+    still, turning = (velocity @ hull.motion).reshape(2, -1)
+    if conventions.centripetal:
+        p, q, r = velocity[3:]
+        square = jnp.stack([p * p, q * q, r * r, p * q, p * r, q * r])
+        inward, outgoing = (square @ hull.inward).reshape(2, -1)
+        inward = inward + away * outgoing
+    else:
+        inward = jnp.zeros_like(away)
+    return Lines(away, inward), -(still + turning * away)
+
+
+def _along(vector: Float[Array, "3"], hull: Hull) -> Float[Array, " l"]:
+    """Components of a vector (body axes) along all lines, (l,)."""
+    return hull.join((vector[:, None, None] * hull.strips.directions).sum(axis=0), vector @ hull.ends.axis)
+
+
+def _points(
+    position: Float[Array, "6"], matrix: Float[Array, "3 3"], submerged: _Submerged, hull: Hull, conventions: Conventions
+) -> Float[Array, "3 n"]:
+    """Points (m, earth axes) where the flow is needed: strips, ends without faces, `Hull.leaning`."""
+    strips, lids = hull.strips, [] if hull.leaning is None else [hull.leaning.point]
+    on_strips = strips.start + submerged.reach * strips.axis
+    points = jnp.concatenate([on_strips, hull.ends.position[:, : hull.ends_without_faces], *lids], axis=1)
+    displaced = position[:3, None] + turned(matrix, points)
+    level = points if conventions.waves_at == "mean" else displaced
+    return jnp.concatenate([level[:2], (points if conventions.wetting == "mean" else displaced)[2:]])
+
+
+def _flow_past(
+    flow: Flow | None, still: Float[Array, " l"], submerged: _Submerged, matrix: Float[Array, "3 3"], hull: Hull
+) -> tuple[StripFlow, EndFlow]:
+    """Flow past strips and ends.
+
+    Args:
+        flow: Flow at `_points`; None in still water.
+        still: Velocity (m/s) of still water relative to the lines, (l,).
+        submerged: Submerged part of the hull.
+        matrix: Rotation from body to earth axes.
+        hull: The hull.
+    """
+    own, own_end = hull.split(still)
+    if flow is None:
+        return StripFlow(own, None), EndFlow(own_end, None, None, submerged.ends)
+    ends, n, whole = hull.ends, len(hull.strips.element), hull.ends_without_faces
+    axes = matrix if flow.axes is None else flow.axes.T @ matrix
+    toward = (axes @ hull.strips.directions.reshape(3, 2 * n)).reshape(len(axes), 2, n)
+    toward_end = axes @ ends.axis
+
+    def across(field: Float[Array, "a k"]) -> Float[Array, "2 n"]:
+        return (toward * field[:, None, :n]).sum(axis=0)
+
+    diffracted, tuned = (None if field is None else across(field) for field in (flow.diffracted, flow.tuned))
+    strips = StripFlow(own + across(flow.velocity), across(flow.acceleration), diffracted, tuned, flow.pressure[:n])
+    at = jnp.concatenate([jnp.arange(n, n + whole), jnp.array(ends.strip, dtype=int)]) if ends.strip else slice(n, n + whole)
+    velocity, acceleration = ((toward_end * field[:, at]).sum(axis=0) for field in (flow.velocity, flow.acceleration))
+    return strips, EndFlow(own_end + velocity, acceleration, flow.pressure[at], submerged.ends)
+
+
+def _lid(flow: Flow | None, matrix: Float[Array, "3 3"], hull: Hull) -> tuple[Float[Array, " k"], Float[Array, "3 k"]] | None:
+    """Pressure over density (m²/s²) and acceleration (m/s², body axes) at `Hull.leaning`, if any."""
+    if flow is None or hull.leaning is None:
+        return None
+    first = len(hull.strips.element) + hull.ends_without_faces
+    axes = matrix if flow.axes is None else flow.axes.T @ matrix
+    return flow.pressure[first:], axes.T @ flow.acceleration[:, first:]

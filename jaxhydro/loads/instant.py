@@ -1,0 +1,62 @@
+"""Motion, submerged geometry and flow at one instant, as loads read them."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from jaxhydro.environment import Environment
+from jaxhydro.hull.hull import Hull, Wetted
+from jaxhydro.hull.submerged import EndShape, Lines, StripShape
+from jaxhydro.waves.flow import EndFlow, StripFlow
+
+
+class Instant(eqx.Module):
+    """Motion, submerged geometry and flow at one instant: everything that a load may read.
+
+    It is computed once per evaluation of the equation of motion.
+
+    Attributes:
+        time: Time (s).
+        position: Surge, sway, heave (m), roll, pitch, yaw (rad) of the reference point.
+        rotation: Rotation matrix from body to earth axes.
+        velocity: Velocity of the reference point and angular velocity, body axes (m/s, rad/s).
+        environment: Water and gravity.
+        hull: The hull.
+        wetted: Submerged part of each load element.
+        strip_shape: Submerged part of each strip.
+        end_shape: Areas of ends and faces.
+        strip_flow: Flow past each strip.
+        end_flow: Flow past each end and face.
+        lines: Distances and centripetal accelerations of strips and ends.
+        drift: Squared wave envelopes (m²) of `AbstractSea.drift`, or None.
+        excitation: First-order force (N, N m) of `AbstractSea.excitation`, or None.
+        lid: Pressure over density (m²/s²) and acceleration (m/s², body axes) of the water at the points of `Hull.leaning`.
+    """
+
+    time: Float[Array, ""]
+    position: Float[Array, "6"]
+    rotation: Float[Array, "3 3"]
+    velocity: Float[Array, "6"]
+    environment: Environment
+    hull: Hull
+    wetted: Wetted
+    strip_shape: StripShape
+    end_shape: EndShape
+    strip_flow: StripFlow
+    end_flow: EndFlow
+    lines: Lines
+    drift: Float[Array, " d"] | None = None
+    excitation: Float[Array, "6"] | None = None
+    lid: tuple[Float[Array, " k"], Float[Array, "3 k"]] | None = None
+
+    def earth_velocity(self) -> Float[Array, "6"]:
+        """Velocity of the reference point and angular velocity in earth axes (m/s, rad/s)."""
+        return jnp.concatenate([self.rotation @ self.velocity[:3], self.rotation @ self.velocity[3:]])
+
+    def diffracting(self) -> Bool[Array, " n"]:
+        """Whether each strip diffracts the waves."""
+        return jnp.array(self.hull.strips.diffracts) > 0
+
+    def over_strips(self, elements: Float[Array, "2 e"]) -> Float[Array, "2 n"]:
+        """Values per load element repeated for each of its strips: (2, e) to (2, n)."""
+        return elements[:, jnp.array(self.hull.strips.element, dtype=int)]
