@@ -1,5 +1,6 @@
 """By what an effect is believed: what counts in every band, and gains in what was not fitted."""
 
+import json
 import math
 from dataclasses import replace
 from types import SimpleNamespace
@@ -21,6 +22,7 @@ from calibration.discovery.acceptance import (
     worsened_motion,
 )
 from calibration.discovery.candidate_trials import RefittedCandidate, in_order_of_belief
+from calibration.discovery.checkpoint import _packed, _rebuilt
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
 from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
@@ -380,3 +382,13 @@ def test_there_is_one_pseudo_inverse() -> None:
         np.testing.assert_array_equal(
             symmetric_inverse(matrix), np.linalg.pinv(matrix * scale, rcond=1e-12, hermitian=True) * scale
         )
+
+
+def test_every_reason_has_a_sentence_of_its_own():
+    """And is kept as JSON: a checkpoint has it."""
+    sentences = {describe_refusal(Refusal(kind, (1.0, 2.0), "drag")) for kind in RefusalKind}
+    assert len(sentences) == len(RefusalKind) and all(sentences)
+    for kind in RefusalKind:
+        refusal = Refusal(kind, (1.0, 2.0), "drag", ComparedData.BLOCKS, later=True)
+        assert _rebuilt(Refusal, json.loads(json.dumps(_packed(refusal, []))), {}, {}) == refusal
+        assert describe_refusal(refusal).startswith("with what was found after it, ")
