@@ -126,10 +126,25 @@ def listed(effect: str, motion: str | None) -> str:
     return f"{effect} {motion}" if motion else effect
 
 
+def stored(verdict: Any) -> dict[str, Any]:
+    """A verdict as JSON has it, with its reason in words."""
+    from calibration.results.refusal_sentences import describe_refusal
+
+    return verdict._asdict() | {"refused": "" if verdict.refused is None else describe_refusal(verdict.refused)}
+
+
+def restored(verdict: dict[str, Any]) -> Any:
+    """A verdict that was stored, with its reason in words."""
+    from calibration.discovery.acceptance import Verdict
+
+    return Verdict(**verdict | {"refused": verdict["refused"] or None})
+
+
 def of_case(name: str) -> dict[str, Any]:
     """What a diagnosis says of one campaign."""
     from calibration.campaign.load_campaign import load_campaign
     from calibration.discovery.diagnose import diagnose
+    from calibration.results.refusal_sentences import describe_refusal
 
     campaign = load_campaign(folder_of(name))
     result = diagnose(campaign.model, campaign)
@@ -141,15 +156,15 @@ def of_case(name: str) -> dict[str, Any]:
         "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (one.evidence for one in result.effects)],
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
         "in_doubt": [one.in_doubt for one in result.effects],
-        "refused": {listed(one.effect, one.degree_of_freedom): one.reason for one in result.rejected},
+        "refused": {listed(one.effect, one.degree_of_freedom): describe_refusal(one.reason) for one in result.rejected},
         "left": [[one.test, one.use, one.channel, one.rms, one.noise, one.relative, one.bands] for one in result.anatomy_after],
         "tried": {
-            f"{one.round} {listed(one.effect, one.degree_of_freedom)}": one.verdict._asdict()
+            f"{one.round} {listed(one.effect, one.degree_of_freedom)}": stored(one.verdict)
             for one in result.scores
             if one.verdict is not None
         },
         "taken_out": {
-            listed(one.effect, one.degree_of_freedom): one.taken_out._asdict()
+            listed(one.effect, one.degree_of_freedom): stored(one.taken_out)
             for one in result.rejected
             if one.taken_out is not None
         },
@@ -197,7 +212,6 @@ def found(result: dict[str, Any]) -> list[str]:
 def doubts(result: dict[str, Any]) -> list[str | None]:
     """What each effect found is in doubt for, None where it is for nothing: worked out from errors, and from what was tried
     where a result is from before diagnoses told."""
-    from calibration.discovery.acceptance import Verdict
     from calibration.discovery.diagnosis import HELD_OUT_ERROR
     from calibration.discovery.doubts import held_out_error_rose, outdone_effects
 
@@ -205,14 +219,14 @@ def doubts(result: dict[str, Any]) -> list[str | None]:
         return [HELD_OUT_ERROR] * len(result["effects"])
     if "in_doubt" in result:
         return list(result["in_doubt"])
-    tried: dict[int, dict[str, Verdict]] = {}
+    tried: dict[int, dict[str, Any]] = {}
     for words, one in result["tried"].items():
         number, name = words.split(" ", 1)
-        tried.setdefault(int(number), {})[name] = Verdict(**one)
+        tried.setdefault(int(number), {})[name] = restored(one)
     names = [listed(*pair) for pair in zip(result["effects"], result["motions"], strict=True)]
     let_in = {name: one for some in tried.values() for name, one in some.items() if name in names and not one.refused}
     worth = {name: one.bic + one.net for name, one in let_in.items()}
-    taken_out = {name: Verdict(**one) for name, one in result.get("taken_out", {}).items()}
+    taken_out = {name: restored(one) for name, one in result.get("taken_out", {}).items()}
     found = outdone_effects(worth, tried.get(max(tried, default=0), {}) | taken_out)
     return [found.get(name) for name in names]
 

@@ -165,6 +165,7 @@ def diagnosed(which: str) -> dict[str, Any]:
     among the candidates. Killed, it goes on."""
     from calibration.campaign.load_campaign import load_campaign
     from calibration.discovery.diagnose import diagnose
+    from calibration.results.refusal_sentences import describe_refusal
 
     campaign = load_campaign(WITH_TABLES if which == "tables" else CAMPAIGN)
     if which == "decays":
@@ -202,7 +203,7 @@ def diagnosed(which: str) -> dict[str, Any]:
             }
             for one in result.effects
         ],
-        "rejected": [[one.effect, one.degree_of_freedom, one.reason] for one in result.rejected],
+        "rejected": [[one.effect, one.degree_of_freedom, describe_refusal(one.reason)] for one in result.rejected],
         "scores": [
             [s.round, s.effect, s.degree_of_freedom, s.gain, s.holdout, s.refitted, s.refitted_holdout] for s in result.scores
         ],

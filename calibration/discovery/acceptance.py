@@ -9,6 +9,7 @@ import numpy as np
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, predict_gain
 from calibration.discovery.linearisations import RELATIVE_FLOOR, Linearisation, Prior
+from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.study import Study
 from calibration.formatting import percent
 from calibration.identifiability.information import pseudo_inverse
@@ -21,10 +22,6 @@ MIN_HELD_OUT_GAIN = 10.0  # decrease of held-out -2 ln L: very strong evidence (
 MIN_SIGNIFICANCE = 3.0  # standard deviations
 MIN_MOTION_SHARE = 0.015  # of a motion: smallest decrease of its error that matters ...
 MIN_FLOOR_MULTIPLE = 3.0  # ... or this many times the floor, if less
-NEGLIGIBLE = (
-    f"no error falls by {100 * MIN_MOTION_SHARE:.1f} % of the motion, nor by {MIN_FLOOR_MULTIPLE:.0f} times what can be seen"
-)
-FITTED, HELD_OUT, BLOCKS = "fitted tests", "held-out tests", "blocks left out in turn"
 MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
 MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
 
@@ -154,7 +151,7 @@ class Verdict(NamedTuple):
         net: Decrease of -2 ln L of these data.
         clear: Parameters over their standard deviations.
         matters: Largest decrease of an error over the smallest that matters.
-        refused: Why the effect is rejected; "" where it is accepted.
+        refused: Why the effect is rejected; None where it is accepted.
     """
 
     bic: float
@@ -163,7 +160,7 @@ class Verdict(NamedTuple):
     net: float
     clear: float
     matters: float
-    refused: str
+    refused: Refusal | None
 
     @property
     def worth(self) -> float:
@@ -193,16 +190,20 @@ def assess_effect(
     net, clear, matters = grounds.likelihood_gain, significance(study, one, after, prior), grounds.relevance()
     values = {label: study.value(label, after.look.place.x) for label in one.positive}
     wrong = [label for label, value in values.items() if value < 0 and is_significant(study, label, one, after, prior)]
-    refused = f"{wrong[0]} comes out as {values[wrong[0]]:.3g}, which physics does not allow" if wrong else ""
-    where = FITTED if not grounds.unseen else HELD_OUT if grounds.study is study else BLOCKS
-    refused = refused or reason_to_reject(bic, held if told else None, net, clear, matters, where)
-    if refused in ("", NEGLIGIBLE):  # which is said where nothing else speaks against it
+    where = ComparedData.HELD_OUT if grounds.study is study else ComparedData.BLOCKS
+    where = where if grounds.unseen else ComparedData.FITTED
+    impossible = Refusal(RefusalKind.IMPOSSIBLE_VALUE, (float(values[wrong[0]]),), wrong[0]) if wrong else None
+    refused = impossible or reason_to_reject(bic, held if told else None, net, clear, matters, where)
+    # that it hardly matters is said where nothing else speaks against it
+    if refused is None or refused.kind == RefusalKind.NEGLIGIBLE:
         refused = worsened_motion(study, one.dof, before.left, after.left) or refused
     return Verdict(bic, held, grounds.unseen, net, clear, matters, refused)
 
 
-def reason_to_reject(bic: float, held: float | None, net: float, clear: float, matters: float, where: str) -> str:
-    """Reason why an effect is rejected, in words; "" where none applies.
+def reason_to_reject(
+    bic: float, held: float | None, net: float, clear: float, matters: float, where: ComparedData
+) -> Refusal | None:
+    """Reason why an effect is rejected, or None.
 
     Args:
         bic: Decrease of BIC in the fitted tests.
@@ -210,28 +211,26 @@ def reason_to_reject(bic: float, held: float | None, net: float, clear: float, m
         net: Decrease of -2 ln L of the compared data.
         clear: Parameters over their standard deviations.
         matters: Largest decrease of an error over the smallest that matters.
-        where: Which data were compared: `FITTED`, `HELD_OUT` or `BLOCKS`.
+        where: Which data were compared.
     """
-    apart = held is not None and where == HELD_OUT
+    apart = held is not None and where == ComparedData.HELD_OUT
     if bic < (least := MIN_BIC_GAIN if apart else MIN_LIKELIHOOD_GAIN):
-        asked = f"{least:.0f} are asked" if apart else f"{least:.0f} are asked where nothing held out can tell"
-        return f"it gains too little in the fitted tests (BIC {bic:+.0f}, {asked})"
+        # blocks and fitted tests alike are no tests that were held out
+        compared = ComparedData.HELD_OUT if apart else ComparedData.FITTED
+        return Refusal(RefusalKind.LITTLE_BIC_GAIN, (bic, least), compared=compared)
     if held is not None and held < MIN_HELD_OUT_SHARE:
-        change = f"falls by {100 * held:.0f} % only" if held >= 0 else f"grows by {-100 * held:.0f} %"
-        return f"the squared error of the {where} {change}"
+        return Refusal(RefusalKind.HELD_OUT_ERROR, (float(held),), compared=where)
     if held is not None and net < MIN_HELD_OUT_GAIN:
-        return f"all in all the {where} do not gain by it (-2 ln L {-net:+.0f})"
+        return Refusal(RefusalKind.HELD_OUT_LIKELIHOOD, (float(net),), compared=where)
     if apart and bic + net < MIN_LIKELIHOOD_GAIN:
-        return f"it gains too little in fitted and held-out tests together (BIC {bic:+.0f}, -2 ln L {-net:+.0f})"
+        return Refusal(RefusalKind.LITTLE_TOTAL_GAIN, (bic, float(net)), compared=where)
     if clear < MIN_SIGNIFICANCE:
-        return f"its parameters are no more than {clear:.1f} standard deviations from none"
-    if matters < 1:
-        return NEGLIGIBLE
-    return ""
+        return Refusal(RefusalKind.INSIGNIFICANT, (clear,), compared=where)
+    return Refusal(RefusalKind.NEGLIGIBLE, compared=where) if matters < 1 else None
 
 
-def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, after: ResidualSummary) -> str:
-    """Reason to reject an effect with which its own motion is followed worse; "" where there is none.
+def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, after: ResidualSummary) -> Refusal | None:
+    """Reason to reject an effect with which its own motion is followed worse, or None.
 
     The objective (sum of RMSE / standard deviation) is compared over all tests and over the held-out ones. Likelihoods give
     slow motion little weight, since unknown forces could cause it (`Study.expected`); engineers ask for it.
@@ -244,12 +243,11 @@ def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, afte
     """
     mine = study.main & np.array([one.channel == (dof or one.channel) and one.spread > 0 for one in study.series])
     spread = np.array([one.spread if one.spread > 0 else 1.0 for one in study.series])
-    for some, where in ((mine, "all tests"), (mine & ~study.used, f"the {HELD_OUT}")):
+    for some, where in ((mine, ComparedData.ALL), (mine & ~study.used, ComparedData.HELD_OUT)):
         was, now = (float((left.error / spread)[some].sum()) for left in (before, after))
         if now > was + MIN_MOTION_SHARE:
-            what, its = ("what moves is", "J") if dof is None else (f"{dof} is", "J of it")
-            return f"{what} followed worse with it ({its} in {where}: {was:.3f} without it, {now:.3f} with it)"
-    return ""
+            return Refusal(RefusalKind.WORSE_MOTION, (was, now), dof or "", where)
+    return None
 
 
 def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary) -> list[str]:

@@ -14,6 +14,7 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_start
 from calibration.discovery.eliminated_least_squares import FirstOrderGain, predict_gain
 from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.refusal import Refusal
 from calibration.discovery.set_up import StudySetup
 
 REFIT_ITERATIONS = 8  # iterations of a candidate's refit
@@ -93,15 +94,15 @@ class CandidateScoring(EffectFits):
                 return True
         return False
 
-    def reject(self, one: Candidate, why: str, taken_out: Verdict | None = None) -> None:
+    def reject(self, one: Candidate, why: Refusal | None, taken_out: Verdict | None = None) -> None:
         """Record why a candidate is not in the model.
 
         Args:
             one: The candidate.
-            why: The reason; "" records nothing.
+            why: The reason; None records nothing.
             taken_out: The verdict that removed it, where it was in the model.
         """
-        if why:
+        if why is not None:
             self.rejected[one.name] = Rejected(one.effect, one.dof, why, taken_out)
 
     def refit_candidate(self, state: FitState, scored: ScoredCandidate, number: int, fraction: float) -> RefittedCandidate:

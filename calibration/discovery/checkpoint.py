@@ -8,6 +8,7 @@ import json
 import types
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
 
@@ -216,6 +217,8 @@ def _rebuilt(kind: Any, value: Any, arrays: Mapping[str, np.ndarray], candidates
             raise ValueError(f"{kind.__name__} of {', '.join(value)}")
         hints = get_type_hints(kind)
         return kind(**{name: inner(hints[name], value[name]) for name in names})
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return kind(value)
     if origin is tuple and isinstance(value, list):
         return tuple(inner(args[0], one) for one in value)
     if origin is dict and isinstance(value, dict):

@@ -6,6 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from calibration.discovery.acceptance import Verdict
+from calibration.discovery.refusal import Refusal
 from calibration.residuals.measured_seas import Options
 from calibration.result import Calibration, Estimate
 
@@ -81,13 +82,13 @@ class Rejected:
     Attributes:
         effect: Its name in the catalogue.
         degree_of_freedom: The motion it acts in, or None.
-        reason: Why it was rejected, in words.
+        reason: Why it was rejected.
         taken_out: The verdict that removed it from the model, where it was in it.
     """
 
     effect: str
     degree_of_freedom: str | None
-    reason: str
+    reason: Refusal
     taken_out: Verdict | None = None
 
 

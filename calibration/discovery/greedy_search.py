@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from calibration.discovery.acceptance import (
     MIN_HELD_OUT_GAIN,
     MIN_LIKELIHOOD_GAIN,
     MIN_SIGNIFICANCE,
-    NEGLIGIBLE,
     FitState,
     ResidualSummary,
 )
@@ -20,6 +20,7 @@ from calibration.discovery.candidate_trials import AcceptedEffect, RefittedCandi
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import predict_gain, prior_residuals
+from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
 
@@ -78,7 +79,8 @@ class Search(CandidateScoring):
         some = [item for item in ranked if item.promise > enough]
         for item in ranked:
             weak = item.promise <= enough
-            self.reject(item.candidate, f"{'explains too little' if weak else 'others explain more'} at first order")
+            kind = RefusalKind.WEAK_AT_FIRST_ORDER if weak else RefusalKind.OUTDONE_AT_FIRST_ORDER
+            self.reject(item.candidate, Refusal(kind))
         known = [item for item in ranked if item.starting_values]  # worth a trial whatever they are at first order
         some = [item for item in some if not item.starting_values]
         state, after = self.best_of_shortlist(state, [*known, *some[:SHORTLIST]], number, done)
@@ -105,7 +107,7 @@ class Search(CandidateScoring):
         for item in short:
             highest = max((one.worth for one in tried if not one.verdict.refused), default=0.0)
             if item.promise < MIN_RELATIVE_PROMISE * highest and not item.starting_values:
-                self.reject(item.candidate, "explains far less than others")
+                self.reject(item.candidate, Refusal(RefusalKind.FAR_WEAKER))
             else:
                 tried.append(self.refit_candidate(state, item, number, done + 0.02 * (len(tried) + 1)))
         for one in tried:
@@ -133,7 +135,7 @@ class Search(CandidateScoring):
             near = tuple(one.candidate.name for one in rest if one.indistinguishable_from(best))
             self.found[new.name] = AcceptedEffect(best.score, state, after, verdict, near)
             for one in rest:
-                self.reject(one.candidate, f"{new.name} explains more")
+                self.reject(one.candidate, Refusal(RefusalKind.OUTDONE, name=new.name))
             self.rejected.pop(new.name, None)
             return state, after
         return state, None
@@ -159,11 +161,12 @@ class Search(CandidateScoring):
             look = self.study.linearise(self.with_starting_values(state.look.place, one.labels), self.active(rest))
             without = self.refit(look, rest, f"without {one.name}", 0.97)
             verdict, later = self.assess(without, state, one, last=True), state.chosen[state.chosen.index(one) + 1 :]
-            if verdict.refused == NEGLIGIBLE and verdict.worth > max(self.found[other.name].verdict.worth for other in later):
-                verdict = verdict._replace(refused="")
+            negligible = verdict.refused is not None and verdict.refused.kind == RefusalKind.NEGLIGIBLE
+            if negligible and verdict.worth > max(self.found[other.name].verdict.worth for other in later):
+                verdict = verdict._replace(refused=None)
                 spared.append(one)
-            if verdict.refused:
-                self.reject(one, f"with what was found after it, {verdict.refused}", verdict)
+            if verdict.refused is not None:
+                self.reject(one, replace(verdict.refused, later=True), verdict)
                 state = without
             else:
                 self.found[one.name] = self.found[one.name]._replace(verdict=verdict)
@@ -204,7 +207,7 @@ class Search(CandidateScoring):
         if verdict.net < -MIN_HELD_OUT_GAIN:
             return state
         # scores and BIC are of errors, and none tells of it
-        self.found[one.name] = AcceptedEffect(math.nan, state, after, verdict._replace(bic=math.nan, refused=""), ())
+        self.found[one.name] = AcceptedEffect(math.nan, state, after, verdict._replace(bic=math.nan, refused=None), ())
         self.rejected.pop(one.name, None)
         names = " and ".join(label.split(".")[1].replace("_", " ") for label in off)
         self.notes.append(

@@ -27,6 +27,7 @@ from calibration.results.diagnosis_file import (
     SavedLatentForce,
     Unexplained,
 )
+from calibration.results.refusal_sentences import describe_refusal
 from calibration.results.result_folder import DIAGNOSIS_FILE, draw, outdated, write_motion
 from calibration.results.write_calibration import dataset
 from jaxhydro.files import staged
@@ -70,7 +71,7 @@ def document(diagnosis: Diagnosis) -> DiagnosisFile:
             verdict=diagnosis.verdict,
             effects=[_effect(one) for one in diagnosis.effects],
             rejected=[
-                RejectedEffect(effect=one.effect, degree_of_freedom=one.degree_of_freedom, reason=one.reason)
+                RejectedEffect(effect=one.effect, degree_of_freedom=one.degree_of_freedom, reason=describe_refusal(one.reason))
                 for one in diagnosis.rejected
             ],
             unexplained=Unexplained(

@@ -15,6 +15,7 @@ from test_outputs import SCHEMAS, Page, changed, contents
 
 import jaxhydro as jh
 from calibration.discovery.diagnosis import Diagnosis
+from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.plots import diagnosis_figures as plots
 from calibration.report import diagnosis_tables as tables
 from calibration.report import diagnosis_words as words
@@ -61,7 +62,8 @@ def test_the_document_says_what_the_contract_says(result: Diagnosis, written: Pa
     assert (force["value"], force["standard_deviation"], force["unit"]) == (81000.0, 2100.0, "N")
     assert effect["evidence"] == {"score": 812.0, "delta_bic": 604.0, "holdout_gain": 0.61, "clear": 38.6}
     assert effect["share_of_residual_explained"] == 0.93 and effect["indistinguishable_from"] == ["hysteresis (surge)"]
-    assert missing["rejected"][0] == {"effect": "current", "degree_of_freedom": None, "reason": "held-out error grew by 2 %"}
+    reason = "the squared error of the held-out tests grows by 2 %"
+    assert missing["rejected"][0] == {"effect": "current", "degree_of_freedom": None, "reason": reason}
     assert FORCE in read["augmented"]["parameters"] and FORCE not in read["baseline"]["parameters"]
     for key, one in (("baseline", result.baseline), ("augmented", result.augmented)):
         assert read[key]["objective"]["fit"] == pytest.approx(one.objective("fit")) and read[key]["converged"] is True
@@ -264,7 +266,7 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
         "44000 ± 1500",
         "-52 %",
         "What was rejected",
-        "held-out error grew",
+        "error of the held-out tests grows by 2 %",
         "Notes",
         "surge-2 repeats surge-1",
         "321 s",
@@ -288,7 +290,7 @@ def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Pat
         telling_test=evil,
         indistinguishable=(evil,),
     )
-    rejected = tuple(replace(r, effect=evil, reason=evil) for r in result.rejected)
+    rejected = tuple(replace(r, effect=evil, reason=Refusal(RefusalKind.OUTDONE, name=evil)) for r in result.rejected)
     anatomy = tuple(replace(f, test=evil, words=evil) for f in result.anatomy_before)
     strange = replace(
         result,

@@ -15,7 +15,7 @@ from calibration import calibrate
 from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery import checkpoint
 from calibration.discovery import greedy_search as search
-from calibration.discovery.acceptance import NEGLIGIBLE, ResidualSummary, Verdict, abandoned_decays
+from calibration.discovery.acceptance import ResidualSummary, Verdict, abandoned_decays
 from calibration.discovery.candidate_trials import AcceptedEffect, ScoredCandidate
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.effects.candidates import Candidate, with_effects
@@ -25,8 +25,10 @@ from calibration.discovery.eliminated_least_squares import FirstOrderGain
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.greedy_search import Search
 from calibration.discovery.linearisations import Point, Prior
+from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.set_up import set_up_study
 from calibration.residuals.measured_seas import Options
+from calibration.results.refusal_sentences import describe_refusal
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
@@ -259,7 +261,7 @@ def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
     )
     found = found_in(campaign_of(tmp_path, lambda x, v: -500.0 * x**3), candidates=[own])
     assert [one.effect for one in found.effects] == ["nonlinear_hydrostatics"]
-    assert "explains too little" in next(one.reason for one in found.rejected if one.effect == "runaway")
+    assert "explains too little" in next(describe_refusal(one.reason) for one in found.rejected if one.effect == "runaway")
 
 
 @pytest.mark.slow
@@ -321,26 +323,32 @@ def test_what_was_weighed_wrongly_is_told(monkeypatch, inertia, deviation, told)
         refit=lambda *_: after,
         prior=lambda chosen: free if chosen else nearly,
         likelihood_gain=lambda *_: 0.0,
-        assess=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, "no error falls"),
+        assess=lambda *_, **__: Verdict(-20.0, 0.0, True, 0.0, 0.0, 0.0, Refusal(RefusalKind.NEGLIGIBLE)),
     )
     found = Search.with_mass_properties(under_way, state([0.1, 0.9 * inertia]))
     assert (found is after) == told == ("mass_properties" in under_way.found)
     if told:
         evidence = under_way.found["mass_properties"].verdict
-        assert evidence.refused == "" and np.isnan(evidence.bic)  # which is of errors
+        assert evidence.refused is None and np.isnan(evidence.bic)  # which is of errors
         assert under_way.notes[0].startswith("inertia pitch is further from what is declared")
 
 
 @pytest.mark.parametrize(
     ("bic", "refused", "stays"),
-    [(150.0, NEGLIGIBLE, True), (90.0, NEGLIGIBLE, False), (150.0, "grows", False), (90.0, "", True)],
+    [
+        (150.0, RefusalKind.NEGLIGIBLE, True),
+        (90.0, RefusalKind.NEGLIGIBLE, False),
+        (150.0, RefusalKind.INSIGNIFICANT, False),
+        (90.0, None, True),
+    ],
 )
 def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, refused, stays):
     """Where it hardly matters with them in the model: it is they that share what is its own."""
     first, last = (Candidate(name, None, (name,)) for name in ("sea_state_dependent_drag", "nonlinear_hydrostatics"))
     look = SimpleNamespace(place=None)
     whole, without = (SimpleNamespace(chosen=chosen, look=look) for chosen in ((first, last), (last,)))
-    of_last, of_first = Verdict(60.0, 0.5, True, 120.0, 9.0, 1.2, ""), Verdict(bic, 0.5, True, 60.0, 9.0, 0.9, refused)
+    why = None if refused is None else Refusal(refused)
+    of_last, of_first = Verdict(60.0, 0.5, True, 120.0, 9.0, 1.2, None), Verdict(bic, 0.5, True, 60.0, 9.0, 0.9, why)
     under_way = SimpleNamespace(
         found={one.name: AcceptedEffect(1.0, None, None, of_last, ()) for one in (first, last)},
         rejected={},
@@ -354,7 +362,7 @@ def test_what_gains_more_than_later_effects_is_not_needless_beside_them(bic, ref
     )
     assert Search.without_needless_effects(under_way, whole) is (whole if stays else without)
     assert bool(under_way.rejected) is not stays and bool(under_way.notes) is (stays and bool(refused))
-    assert not stays or under_way.found[first.name].verdict == of_first._replace(refused="")
+    assert not stays or under_way.found[first.name].verdict == of_first._replace(refused=None)
 
 
 def test_a_decay_that_the_seas_take_away_is_said():

@@ -1,5 +1,6 @@
 """By what an effect is believed: what counts in every band, and gains in what was not fitted."""
 
+import json
 import math
 from dataclasses import replace
 from types import SimpleNamespace
@@ -12,11 +13,7 @@ from numpy.testing import assert_allclose
 from calibration.campaign.records import Record
 from calibration.discovery import acceptance as acceptance
 from calibration.discovery.acceptance import (
-    BLOCKS,
-    FITTED,
-    HELD_OUT,
     MIN_MOTION_SHARE,
-    NEGLIGIBLE,
     HeldOutComparison,
     ResidualSummary,
     Verdict,
@@ -25,6 +22,7 @@ from calibration.discovery.acceptance import (
     worsened_motion,
 )
 from calibration.discovery.candidate_trials import RefittedCandidate, in_order_of_belief
+from calibration.discovery.checkpoint import _packed, _rebuilt
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
 from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
@@ -35,10 +33,15 @@ from calibration.discovery.frequency_bands import FourierRows, band_powers, cut_
 from calibration.discovery.gather import gather_sea
 from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
+from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.study import Study
+from calibration.results.refusal_sentences import describe_refusal
 
 CUT = cut_into_bands(400.0, 0.1, 4000, 14, 1.0)
 TIME = 0.1 * np.arange(4000)
+
+LITTLE = Refusal(RefusalKind.LITTLE_BIC_GAIN, (5.0, 6.0))
+WORSE = Refusal(RefusalKind.WORSE_MOTION, (0.4, 0.5), "surge")
 
 
 def test_powers_of_white_noise_are_its_variance_in_every_band():
@@ -124,12 +127,12 @@ def errors(**motions: float) -> Any:
 def test_what_something_refused_outdoes_is_in_doubt():
     """By the last round alone, and only where that let nothing in."""
 
-    def verdict(bic: float, refused: str) -> Verdict:
+    def verdict(bic: float, refused: Refusal | None) -> Verdict:
         return Verdict(bic, 0.9, True, -100.0, 30.0, 5.0, refused)
 
-    tried = {"drag": verdict(335.0, "the held-out tests do not gain"), "memory": verdict(20.0, "too little")}
+    tried = {"drag": verdict(335.0, LITTLE), "memory": verdict(20.0, LITTLE)}
     assert outdone_effects({"lag": 158.0, "umbilical": 1300.0}, tried) == {"lag": "drag"}
-    assert outdone_effects({"lag": 158.0, "current": 60.0}, tried | {"current": verdict(40.0, "")}) == {}
+    assert outdone_effects({"lag": 158.0, "current": 60.0}, tried | {"current": verdict(40.0, None)}) == {}
     assert outdone_effects({"lag": 400.0}, tried) == {} == outdone_effects({"lag": 400.0}, {})
     assert outdone_effects({"mass": np.nan}, tried) == {}  # told though no error shows it
 
@@ -137,13 +140,13 @@ def test_what_something_refused_outdoes_is_in_doubt():
 def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
     friction, drag = Candidate("coulomb_friction", "surge", ()), Candidate("amplitude_dependent_drag", None, ())
     memory = Candidate("radiation_memory", "pitch", ())
-    good, small = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, ""), Verdict(8.0, 0.2, True, -6.0, 4.0, 2.0, "too little")
+    good, small = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, None), Verdict(8.0, 0.2, True, -6.0, 4.0, 2.0, LITTLE)
 
     def score(number: int, one: Candidate, verdict: Verdict | None) -> Score:
         return Score(number, one.effect, one.dof, 1.0, 1, 1.0, None, None, verdict)
 
     scores = [score(1, drag, good), score(2, friction, good), score(3, memory, small)]
-    rejected = {memory.name: Rejected("radiation_memory", "pitch", "too little")}
+    rejected = {memory.name: Rejected("radiation_memory", "pitch", LITTLE)}
     search = SimpleNamespace(
         scores=scores,
         rejected=rejected,
@@ -152,14 +155,14 @@ def test_what_was_taken_out_of_the_model_counts_among_what_was_refused():
     )
     state: Any = SimpleNamespace(chosen=(friction,))
     assert doubted_effects(search, state, errors(), errors()) == {}  # type: ignore[arg-type]
-    taken_out = small._replace(bic=350.0, refused="all in all the held-out tests do not gain by it")
-    rejected[drag.name] = Rejected(drag.effect, None, "", taken_out)
+    taken_out = small._replace(bic=350.0, refused=LITTLE)
+    rejected[drag.name] = Rejected(drag.effect, None, LITTLE, taken_out)
     assert doubted_effects(search, state, errors(), errors()) == {friction.name: drag.name}  # type: ignore[arg-type]
 
 
 def test_what_is_in_doubt_for_what_was_not_fitted():
     """Everything where the held-out error is larger with it, or what acts in the motion that has it."""
-    good = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, "")
+    good = Verdict(63.0, 0.6, True, 132.0, 4.0, 2.0, None)
     drift, friction = Candidate("wave_drift", "pitch", ()), Candidate("coulomb_friction", "surge", ())
     search = SimpleNamespace(
         scores=[],
@@ -244,9 +247,9 @@ def test_gain_is_of_what_is_asked():
     assert HeldOutComparison(study, np.array([True, True]), nothing, nothing, False).error_reduction() == (0.0, False)
 
 
-@pytest.mark.parametrize(("refused", "said"), [("", "worse"), (NEGLIGIBLE, "worse"), ("grows", "grows")])
+@pytest.mark.parametrize(("refused", "said"), [(None, WORSE), (Refusal(RefusalKind.NEGLIGIBLE), WORSE), (LITTLE, LITTLE)])
 def test_that_an_effect_hardly_matters_is_said_where_nothing_else_speaks_against_it(refused, said, monkeypatch):
-    for name, value in {"reason_to_reject": refused, "worsened_motion": "worse", "significance": 9.0}.items():
+    for name, value in {"reason_to_reject": refused, "worsened_motion": WORSE, "significance": 9.0}.items():
         monkeypatch.setattr(acceptance, name, lambda *_, value=value: value)
     study = SimpleNamespace(used=np.array([True]))
     state = SimpleNamespace(likelihood=np.zeros(1), left=None, look=SimpleNamespace(place=SimpleNamespace(x=None)))
@@ -263,7 +266,8 @@ def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
     study = study_of(series("surge", 0.01, spread=2.0), of_sea, series("surge", 0.01, use="fit"))
 
     def refused(dof: str | None, *after: float) -> str:
-        return worsened_motion(study, dof, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after))
+        found = worsened_motion(study, dof, left([1, 1, 1], [0.8, 0.1, 0.1]), left([1, 1, 1], after))
+        return describe_refusal(found) if found else ""
 
     assert refused("surge", 0.5, 0.9, 0.1) == "" == refused("surge", 0.82, 0.1, 0.1) == refused("pitch", 2.0, 2.0, 2.0)
     said = "surge is followed worse with it (J of it in {}: {} without it, {} with it)"
@@ -303,31 +307,31 @@ def test_what_matters_of_a_decay(channel, least):
 @pytest.mark.parametrize(
     ("numbers", "where", "said"),
     [
-        ({"bic": 9, "net": 60}, HELD_OUT, ""),
+        ({"bic": 9, "net": 60}, ComparedData.HELD_OUT, ""),
         (
             {"bic": 9, "net": 60},
-            FITTED,
+            ComparedData.FITTED,
             "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)",
         ),
         (
             {"bic": 9, "net": 60},
-            BLOCKS,
+            ComparedData.BLOCKS,
             "too little in the fitted tests (BIC +9, 30 are asked where nothing held out can tell)",
         ),
-        ({"bic": 5, "net": 60}, HELD_OUT, "too little in the fitted tests (BIC +5, 6 are asked)"),
-        ({"bic": 9, "net": 15}, HELD_OUT, "too little in fitted and held-out tests together (BIC +9, -2 ln L -15)"),
-        ({"bic": 43, "net": -197}, HELD_OUT, "do not gain by it (-2 ln L +197)"),
-        ({"bic": 43, "net": -197, "held": 0.0}, HELD_OUT, "squared error of the held-out tests falls by 0 % only"),
-        ({"bic": 43, "held": -1.42}, HELD_OUT, "squared error of the held-out tests grows by 142 %"),
-        ({"bic": 43, "held": 0.1}, BLOCKS, "squared error of the blocks left out in turn falls by 10 % only"),
-        ({"bic": 43, "clear": 2.0}, HELD_OUT, "2.0 standard deviations from none"),
-        ({"bic": 43, "matters": 0.9}, HELD_OUT, "no error falls by"),
+        ({"bic": 5, "net": 60}, ComparedData.HELD_OUT, "too little in the fitted tests (BIC +5, 6 are asked)"),
+        ({"bic": 9, "net": 15}, ComparedData.HELD_OUT, "in fitted and held-out tests together (BIC +9, -2 ln L -15)"),
+        ({"bic": 43, "net": -197}, ComparedData.HELD_OUT, "do not gain by it (-2 ln L +197)"),
+        ({"bic": 43, "net": -197, "held": 0.0}, ComparedData.HELD_OUT, "squared error of the held-out tests falls by 0 % only"),
+        ({"bic": 43, "held": -1.42}, ComparedData.HELD_OUT, "squared error of the held-out tests grows by 142 %"),
+        ({"bic": 43, "held": 0.1}, ComparedData.BLOCKS, "squared error of the blocks left out in turn falls by 10 % only"),
+        ({"bic": 43, "clear": 2.0}, ComparedData.HELD_OUT, "2.0 standard deviations from none"),
+        ({"bic": 43, "matters": 0.9}, ComparedData.HELD_OUT, "no error falls by"),
     ],
 )
 def test_what_an_effect_has_to_reach(numbers, where, said):
     """Little in the fitted tests is enough where tests that were not fitted agree; much is not where they do not."""
     reason = reason_to_reject(**{"held": 0.7, "net": 100.0, "clear": 6.0, "matters": 2.0, **numbers}, where=where)
-    assert said in reason if said else not reason
+    assert said in describe_refusal(reason) if reason and said else reason is None and not said
 
 
 def test_blocks_are_consecutive_and_whole():
@@ -378,3 +382,13 @@ def test_there_is_one_pseudo_inverse() -> None:
         np.testing.assert_array_equal(
             symmetric_inverse(matrix), np.linalg.pinv(matrix * scale, rcond=1e-12, hermitian=True) * scale
         )
+
+
+def test_every_reason_has_a_sentence_of_its_own():
+    """And is kept as JSON: a checkpoint has it."""
+    sentences = {describe_refusal(Refusal(kind, (1.0, 2.0), "drag")) for kind in RefusalKind}
+    assert len(sentences) == len(RefusalKind) and all(sentences)
+    for kind in RefusalKind:
+        refusal = Refusal(kind, (1.0, 2.0), "drag", ComparedData.BLOCKS, later=True)
+        assert _rebuilt(Refusal, json.loads(json.dumps(_packed(refusal, []))), {}, {}) == refusal
+        assert describe_refusal(refusal).startswith("with what was found after it, ")

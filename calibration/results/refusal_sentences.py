@@ -1,0 +1,53 @@
+"""Sentences on why an effect is not in the model."""
+
+from calibration.discovery.acceptance import MIN_FLOOR_MULTIPLE, MIN_MOTION_SHARE
+from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
+
+COMPARED = {
+    ComparedData.FITTED: "fitted tests",
+    ComparedData.HELD_OUT: "held-out tests",
+    ComparedData.BLOCKS: "blocks left out in turn",
+}
+
+
+def describe_refusal(one: Refusal) -> str:
+    """Reason why an effect is not in the model, in words."""
+    return ("with what was found after it, " if one.later else "") + _reason(one)
+
+
+def _reason(one: Refusal) -> str:
+    values, where = one.values, COMPARED.get(one.compared, "all tests")
+    match one.kind:
+        case RefusalKind.IMPOSSIBLE_VALUE:
+            return f"{one.name} comes out as {values[0]:.3g}, which physics does not allow"
+        case RefusalKind.LITTLE_BIC_GAIN:
+            told = one.compared == ComparedData.HELD_OUT
+            asked = f"{values[1]:.0f} are asked" + ("" if told else " where nothing held out can tell")
+            return f"it gains too little in the fitted tests (BIC {values[0]:+.0f}, {asked})"
+        case RefusalKind.HELD_OUT_ERROR:
+            percent = 100 * values[0]
+            return f"the squared error of the {where} " + (
+                f"falls by {percent:.0f} % only" if percent >= 0 else f"grows by {-percent:.0f} %"
+            )
+        case RefusalKind.HELD_OUT_LIKELIHOOD:
+            return f"all in all the {where} do not gain by it (-2 ln L {-values[0]:+.0f})"
+        case RefusalKind.LITTLE_TOTAL_GAIN:
+            gains = f"BIC {values[0]:+.0f}, -2 ln L {-values[1]:+.0f}"
+            return f"it gains too little in fitted and held-out tests together ({gains})"
+        case RefusalKind.INSIGNIFICANT:
+            return f"its parameters are no more than {values[0]:.1f} standard deviations from none"
+        case RefusalKind.NEGLIGIBLE:
+            least = f"{100 * MIN_MOTION_SHARE:.1f} % of the motion"
+            return f"no error falls by {least}, nor by {MIN_FLOOR_MULTIPLE:.0f} times what can be seen"
+        case RefusalKind.WORSE_MOTION:
+            what, its = (f"{one.name} is", "J of it") if one.name else ("what moves is", "J")
+            tests = where if one.compared == ComparedData.ALL else f"the {where}"
+            return f"{what} followed worse with it ({its} in {tests}: {values[0]:.3f} without it, {values[1]:.3f} with it)"
+        case RefusalKind.WEAK_AT_FIRST_ORDER:
+            return "explains too little at first order"
+        case RefusalKind.OUTDONE_AT_FIRST_ORDER:
+            return "others explain more at first order"
+        case RefusalKind.FAR_WEAKER:
+            return "explains far less than others"
+        case RefusalKind.OUTDONE:
+            return f"{one.name} explains more"
