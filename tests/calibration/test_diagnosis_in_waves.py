@@ -251,7 +251,7 @@ def test_seas_are_as_the_campaign_states(tmp_path: Path) -> None:
     for test in found.augmented.tests:
         for one in test.series:
             assert errors[test.id][one.channel]["relative"] == pytest.approx(one.relative, rel=0.02)
-            assert one.relative < 0.005  # which noise of 1 mm in waves and motions leaves
+            assert one.relative < 0.01  # noise of 1 mm in waves and motions leaves 0.2 % of surge
 
 
 @pytest.mark.slow
