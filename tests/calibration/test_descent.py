@@ -60,7 +60,6 @@ def study():
         8,
         SimpleNamespace(data=SimpleNamespace(dofs=(0,))),
         (),
-        (),
         series,
         tuple(SimpleNamespace(use=use) for use in uses),
         np.full((3, 2), np.inf),
