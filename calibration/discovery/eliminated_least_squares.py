@@ -12,7 +12,6 @@ References:
     Box and Cox 1964, Journal of the Royal Statistical Society B 26, 211-252.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +19,9 @@ from scipy.special import boxcox
 
 from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.study import Study
+from calibration.fitting.normal_equations import OWN_ROUNDING, ArrowMatrix, own_of
 from calibration.identifiability.information import pseudo_inverse
+from calibration.residuals.abstract_residual import Unknowns
 
 BOX_COX_POWER = 0.2  # p; 0 is the logarithm
 STEEP_PRIOR_DEVIATIONS = 3.0  # standard deviations beyond which a prior is steep
@@ -74,51 +75,29 @@ def row_weights(study: Study, residual: np.ndarray) -> np.ndarray:
     return each.ravel()[study.pool] * study.share
 
 
-class DecayBlock(NamedTuple):
-    """Part of the normal equations that belongs to one decay.
-
-    Attributes:
-        own: Gauss-Newton matrix of its own unknowns (o, o).
-        cross: Cross block with the parameters (o, q).
-        slope: Gradient of its own unknowns (o,).
-        fitted: Whether the decay is fitted.
-    """
-
-    own: np.ndarray
-    cross: np.ndarray
-    slope: np.ndarray
-    fitted: bool
-
-
 class NormalEquations(NamedTuple):
-    """Gauss-Newton equations of parameters and of every decay's own unknowns (arrow form).
+    """Gauss-Newton equations of parameters and of every decay's own unknowns.
 
     Attributes:
-        matrix: Matrix of the parameters (q, q).
-        slope: Gradient of the parameters (q,).
-        blocks: One block for every decay.
+        matrix: Gauss-Newton matrix.
+        gradient: Gradient.
+        fitted: Which decays are fitted (r,).
     """
 
-    matrix: np.ndarray
-    slope: np.ndarray
-    blocks: list[DecayBlock]
+    matrix: ArrowMatrix
+    gradient: Unknowns
+    fitted: np.ndarray
 
-    def reduced(self, damping: float = 0.0) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    def reduced(self, damping: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Matrix and gradient of the parameters with the fitted decays' own unknowns eliminated.
 
         Returns:
-            Matrix (q, q), gradient (q,), and by decay what recovers its own unknowns (o, q + 1).
+            Matrix (q, q), gradient (q,), and by decay what recovers its own unknowns (r, o, q + 1).
         """
-        matrix, slope = self.matrix + damping * np.diag(np.diag(self.matrix)), self.slope
-        back = []
-        for block in self.blocks:
-            size = len(block.own)
-            ridge = damping * np.diag(np.diag(block.own)) + 1e-12 * np.trace(block.own) / size * np.eye(size)
-            back.append(np.linalg.solve(block.own + ridge, np.column_stack([block.cross, block.slope])))
-            if block.fitted:
-                matrix = matrix - block.cross.T @ back[-1][:, :-1]
-                slope = slope - block.cross.T @ back[-1][:, -1]
-        return matrix, slope, back
+        size = np.diagonal(self.matrix.own, axis1=1, axis2=2)
+        ridge = damping * size + OWN_ROUNDING * size.mean(axis=1, keepdims=True) if size.size else size
+        matrix, slope, back = self.matrix.eliminated(self.gradient, ridge, self.fitted.astype(float))
+        return matrix + damping * np.diag(np.diag(self.matrix.shared)), slope, back
 
 
 def normal_equations(study: Study, look: Linearisation, weight: np.ndarray, used: np.ndarray, prior: Prior) -> NormalEquations:
@@ -134,25 +113,18 @@ def normal_equations(study: Study, look: Linearisation, weight: np.ndarray, used
     active = list(look.active)
     far, steep = (one[active] for one in prior_residuals(study, look.place, prior))
     mine = weight * used[study.row_series]
-    matrix = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(steep**2)
+    shared = look.slopes.T @ (mine[:, None] * look.slopes) + np.diag(steep**2)
     slope = look.slopes.T @ (mine * look.residual) + steep * far
-    blocks = []
+    (records, size), q = study.own_width.shape, len(active)
+    own, cross, own_slope = np.zeros((records, size, size)), np.zeros((records, q, size)), np.zeros((records, size))
     for i, span in enumerate(study.spans):
-        own, slopes, w = look.own[span], look.slopes[span], weight[span]
-        blocks.append(
-            DecayBlock(
-                own.T @ (w[:, None] * own) + np.diag(1 / study.own_width[i] ** 2),
-                own.T @ (w[:, None] * slopes),
-                own.T @ (w * look.residual[span]) + look.place.own[i] / study.own_width[i] ** 2,
-                bool(used[study.row_series[span]].any()),
-            )
-        )
-    return NormalEquations(matrix, slope, blocks)
-
-
-def decay_unknown_steps(study: Study, back: Sequence[np.ndarray], step: np.ndarray) -> np.ndarray:
-    """Steps of the decays' own unknowns (r, o) for a step of the parameters (q,)."""
-    return np.array([-(one[:, -1] + one[:, :-1] @ step) for one in back]).reshape(study.own_width.shape)
+        weighed = weight[span, None] * look.own[span]
+        own[i] = weighed.T @ look.own[span] + np.diag(1 / study.own_width[i] ** 2)
+        cross[i] = look.slopes[span].T @ weighed
+        own_slope[i] = weighed.T @ look.residual[span] + look.place.own[i] / study.own_width[i] ** 2
+    fitted = np.array([used[study.row_series[span]].any() for span in study.spans], bool)
+    gradient = Unknowns(slope, own_slope)  # type: ignore[arg-type]
+    return NormalEquations(ArrowMatrix(shared, cross, own), gradient, fitted)
 
 
 def symmetric_inverse(matrix: np.ndarray) -> np.ndarray:
@@ -167,8 +139,7 @@ def damped_step(
     found = normal_equations(study, look, row_weights(study, look.residual), used, prior)
     matrix, slope, back = found.reduced(damping)
     step = -symmetric_inverse(matrix) @ slope
-    fitted = np.array([block.fitted for block in found.blocks], float)[:, None]
-    return step, decay_unknown_steps(study, back, step) * fitted
+    return step, -own_of(back, -step) * found.fitted[:, None]
 
 
 def linear_residual(study: Study, look: Linearisation, step: np.ndarray, own: np.ndarray) -> np.ndarray:
@@ -248,6 +219,6 @@ def predict_gain(study: Study, look: Linearisation, prior: Prior) -> FirstOrderG
         matrix, slope, back = found.reduced()
         covariance = symmetric_inverse(matrix)
         step = -covariance @ slope
-        residual = linear_residual(study, look, step, decay_unknown_steps(study, back, step))
+        residual = linear_residual(study, look, step, -own_of(back, -step))
     gain = minus_two_log_likelihood(study, look.residual) - minus_two_log_likelihood(study, residual)
     return FirstOrderGain(step, gain, study.used, covariance)

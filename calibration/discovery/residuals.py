@@ -45,19 +45,7 @@ def decay_slopes(
     problem: DecayProblem, frame: Frame, own: Float[Array, "r o"]
 ) -> tuple[Float[Array, "r c t"], Float[Array, "r c t k"]]:
     """Residuals of decays (r, c, t), and slopes along directions and own unknowns (r, c, t, k)."""
-    q = frame.basis.shape[1]
-
-    def of_record(inputs):
-        own, record = inputs
-
-        def residual(both):
-            r = problem.residual(frame.origin + frame.basis @ both[:q], both[q:], record)
-            return r, r
-
-        slopes, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([jnp.zeros(q), own]))
-        return r, slopes
-
-    return jax.lax.map(of_record, (own, problem.data))
+    return jax.lax.map(lambda one: problem.slopes(frame.origin, one[0], one[1], frame.basis), (own, problem.data))
 
 
 class SeaRecord(eqx.Module):

@@ -8,9 +8,8 @@ from jaxtyping import Array, Float
 
 from calibration.fitting.part import AbstractPart, Kind, ResidualErrors
 from calibration.formatting import listed, percent
-from calibration.identifiability.directions import WeightedProducts
 from calibration.identifiability.information import pseudo_inverse
-from calibration.identifiability.standard_deviations import correlated_samples, gauss_newton_matrix
+from calibration.identifiability.standard_deviations import WeightedProducts, correlated_samples, gauss_newton_matrix
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.seas import SeaProblem
 from calibration.residuals.shooting import BlockProblem, set_up_blocks, simulate_blocks, slowest

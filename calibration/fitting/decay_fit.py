@@ -14,7 +14,7 @@ from calibration.fitting.decay_part import DecayPart, series_of
 from calibration.fitting.fit import Fit, Report
 from calibration.fitting.fit_conclusion import calibration_of, records_not_followed, source_of
 from calibration.fitting.normal_equations import cost_of
-from calibration.fitting.progress import Progress, finished
+from calibration.fitting.progress import Progress, run_interruptibly
 from calibration.parameters.space import ParameterSpace, match_free_labels, parameter_space
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayProblem, crossing_period, first_guess, gather_decays
@@ -72,7 +72,7 @@ def calibrate(
     def finish() -> Calibration:
         return conclude(campaign, fit.decays.problem.model, fit, clock.monotonic() - begun)
 
-    return finished(fit, lambda: run_fit(fit), finish)
+    return run_interruptibly(fit, lambda: run_fit(fit), finish)
 
 
 def prepare_fit(

@@ -9,9 +9,8 @@ import numpy as np
 
 from calibration.campaign.records import Record
 from calibration.fitting.part import AbstractPart, Kind, Loss, ResidualErrors, mean_square
-from calibration.identifiability.directions import WeightedProducts
 from calibration.identifiability.information import MIN_VARIANCE
-from calibration.identifiability.standard_deviations import correlated_samples
+from calibration.identifiability.standard_deviations import WeightedProducts, correlated_samples
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayData, DecayProblem
 from calibration.result import Series, TestFit

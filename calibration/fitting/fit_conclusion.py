@@ -15,9 +15,10 @@ from calibration.campaign.wave_band import band_sentence
 from calibration.fitting.fit import Fit
 from calibration.fitting.unit_hints import unit_hints
 from calibration.formatting import listed, percent_span
-from calibration.identifiability.directions import Identifiability, parameter_family
+from calibration.identifiability.directions import Identifiability
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION
 from calibration.identifiability.standard_deviations import Spread
+from calibration.parameters.families import parameter_family
 from calibration.parameters.space import ParameterSpace, slopes
 from calibration.result import Calibration, Estimate, TestFit
 from jaxhydro.dynamics.model import Model

@@ -13,7 +13,7 @@ from calibration.fitting.decay_part import DecayPart
 from calibration.fitting.fit import Fit
 from calibration.fitting.fit_conclusion import calibration_of, records_not_followed
 from calibration.fitting.part import AbstractPart, Kind, Loss
-from calibration.fitting.progress import Progress, finished
+from calibration.fitting.progress import Progress, run_interruptibly
 from calibration.fitting.sea_fit import tests_in_waves
 from calibration.fitting.sea_part import SeaPart
 from calibration.fitting.static_parts import OffsetPart, PeriodPart
@@ -144,7 +144,7 @@ def calibrate_jointly(
             campaign, joint, uncertainty, [*tests, *in_waves], seconds, kinds=kinds, lost=lost, first=said, last=warnings
         )
 
-    return finished(joint, lambda: joint.run_rounds("round {}", MAX_ROUNDS, TOLERANCE), finish)
+    return run_interruptibly(joint, lambda: joint.run_rounds("round {}", MAX_ROUNDS, TOLERANCE), finish)
 
 
 def _of_kinds(campaign: Campaign, joint: Fit, loss: Loss) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from calibration.identifiability.directions import WeightedProducts
+from calibration.identifiability.standard_deviations import WeightedProducts
 from calibration.residuals.abstract_residual import AbstractGroupedResidual, AbstractResidual, Unknowns
 
 Kind = Literal["decays", "waves", "offsets", "periods"]

@@ -39,7 +39,7 @@ class Interrupted(KeyboardInterrupt):
         self.partial = partial
 
 
-def finished(fit: Fit, run: Callable[[], None], finish: Callable[[], Calibration]) -> Calibration:
+def run_interruptibly(fit: Fit, run: Callable[[], None], finish: Callable[[], Calibration]) -> Calibration:
     """Run a fit and return its result.
 
     Raises:

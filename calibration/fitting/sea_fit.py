@@ -21,10 +21,10 @@ from calibration.fitting.law_parameters import (
     with_drag_law,
     with_sea_state_laws,
 )
-from calibration.fitting.progress import Progress, finished
+from calibration.fitting.progress import Progress, run_interruptibly
 from calibration.fitting.sea_part import SeaPart
 from calibration.fitting.sea_remarks import sea_remarks
-from calibration.identifiability.directions import parameter_family
+from calibration.parameters.families import parameter_family
 from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.measured_seas import (
     Options,
@@ -164,7 +164,7 @@ def calibrate_in_waves(
         last = (*sea_remarks(fit.model, tests), *part.notes(), *warnings)
         return calibration_of(campaign, fit, uncertainty, tests, clock.monotonic() - begun, kinds=IN_WAVES, last=last)
 
-    return finished(fit, lambda: fit.run_rounds("round {} in waves", MAX_ROUNDS, TOLERANCE), finish)
+    return run_interruptibly(fit, lambda: fit.run_rounds("round {} in waves", MAX_ROUNDS, TOLERANCE), finish)
 
 
 def tests_in_waves(

@@ -6,9 +6,8 @@ from typing import ClassVar
 import numpy as np
 
 from calibration.fitting.part import AbstractPart, Kind, Loss, ResidualErrors, mean_square
-from calibration.identifiability.directions import WeightedProducts
 from calibration.identifiability.information import MIN_VARIANCE
-from calibration.identifiability.standard_deviations import correlated_samples
+from calibration.identifiability.standard_deviations import WeightedProducts, correlated_samples
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.seas import SeaProblem, residuals_and_reach
 from jaxhydro.dynamics.model import Model

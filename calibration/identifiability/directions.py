@@ -25,21 +25,17 @@ from calibration.identifiability.information import (
     submatrix,
     varimax,
 )
-from calibration.identifiability.standard_deviations import Spread, sandwich_covariance
+from calibration.identifiability.standard_deviations import Spread, WeightedProducts, sandwich_covariance
 from calibration.identifiability.statements import Collinear, Combination, Direction, Fix, Parameters
+from calibration.parameters.families import parameter_family
 from calibration.parameters.space import VAGUE_DEVIATION, ParameterSpace, slopes
 from jaxhydro.dynamics.model import Model
-from jaxhydro.loads.sea_state_law import is_exponent
-from jaxhydro.platform.drag_laws import coefficient_label
 
-# products, weight, variance, inflation: see `sandwich_covariance`
-WeightedProducts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
 ZERO_VARIANCE = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
 MAX_REPORTED_DIRECTIONS = 4  # weak directions in words
 MIN_VARIANCE_GAIN = 0.01  # of the others' summed variance: what takes less away is no advice
-# a parameter that a direction leaves uncertain by less than this is not named in it
-MIN_NAMED_DEVIATION = 0.5 * IDENTIFIABLE_DEVIATION
+MIN_NAMED_DEVIATION = 0.5 * IDENTIFIABLE_DEVIATION  # of a parameter that is named in a direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,16 +199,6 @@ def identifiability_at(
     parameters = Parameters(space.labels, values, slopes(space, x), units)
     posterior = found.covariance[: len(x), : len(x)]
     return found, identifiability(parameters, shared_information(*parts, len(x)), posterior, source, bound)
-
-
-def parameter_family(label: str) -> str:
-    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on sea or motion."""
-    if is_exponent(label) or coefficient_label(label) is not None:
-        return "exponent"
-    head, _, name = label.rpartition(".")
-    if head == "added_mass" or head.startswith("guided_masses.") or name.startswith("Ca"):
-        return "inertia"
-    return "damping" if head.endswith("damping") or name.startswith("Cd") else "restoring"
 
 
 def active_parameters(

@@ -6,6 +6,10 @@ MIN_VARIANCE = 1e-20  # m2, rad2: a record made without noise is not known to be
 
 IDENTIFIABLE_DEVIATION = 0.25  # a coordinate known to better than this (25 % of a positive parameter) is identifiable
 
+# eigenvalues of scaled matrices, over the largest, that are rounding
+ROUNDING = 1e-13
+WEAK_PRIOR_ROUNDING = 1e-14  # of all unknowns with their priors: a weak prior that is all there is of a coordinate is more
+
 
 def shared_information(
     products: np.ndarray, weight: np.ndarray, variance: np.ndarray, inflation: np.ndarray, shared: int
@@ -47,7 +51,7 @@ def submatrix(matrix: np.ndarray, keep: list[int]) -> np.ndarray:
     return np.where(np.outer(mask, mask), matrix, 0.0)
 
 
-def pseudo_inverse(matrix: np.ndarray, rcond: float = 1e-13) -> np.ndarray:
+def pseudo_inverse(matrix: np.ndarray, rcond: float = ROUNDING) -> np.ndarray:
     """Pseudo-inverse of a positive semi-definite matrix, whatever the units of its rows. What is no more than `rcond` of the
     largest, once scaled, is taken for rounding, and what is not there at all stays at zero."""
     d = np.diag(matrix)

@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calibration.identifiability.information import pseudo_inverse
+from calibration.identifiability.information import WEAK_PRIOR_ROUNDING, pseudo_inverse
 
-# of the largest eigenvalue of a scaled matrix: a weak prior that is all there is of a coordinate is more
-ROUNDING_SHARE = 1e-14
+# products, weight, variance, inflation: see `sandwich_covariance`
+WeightedProducts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 class Spread(NamedTuple):
@@ -76,5 +76,5 @@ def sandwich_covariance(
     scatter = gauss_newton_matrix(np.einsum("rckl,rc->rkl", products, weight**2 * variance * inflation), shared)
     own = np.zeros(len(hessian) - shared)
     square, wide = np.concatenate([ridge**2, own]), np.concatenate([width**2, own])
-    bread = pseudo_inverse(hessian + np.diag(square), ROUNDING_SHARE)
+    bread = pseudo_inverse(hessian + np.diag(square), WEAK_PRIOR_ROUNDING)
     return Spread(bread @ (scatter + np.diag(wide * square**2)) @ bread, shared)

@@ -153,22 +153,39 @@ class DecayProblem(AbstractResidual):
         """Simulated less measured motion of one record (m, rad), up to its `until`; zero where there is no sample."""
         return (self.motion(x, own, record) - record.measured) * (record.time <= record.until) * record.present
 
+    def slopes(
+        self,
+        x: Float[Array, " p"],
+        own: Float[Array, " o"],
+        record: DecayData,
+        basis: Float[Array, "p q"] | None = None,
+        tail: Float[Array, " c"] | None = None,
+    ) -> tuple[Float[Array, "c t"], Float[Array, "c t k"]]:
+        """Residual of one record, and its slopes along directions of the parameters and along its own unknowns.
+
+        Args:
+            x: Coordinates of the parameters.
+            own: Coordinates of the record's own unknowns.
+            record: The record.
+            basis: Directions, in columns; None for one parameter each.
+            tail: Residuals beyond which `cauchy_residual` is used (m, rad).
+        """
+        q = len(x) if basis is None else basis.shape[1]
+
+        def residual(z):
+            r = self.residual(x + (z[:q] if basis is None else basis @ z[:q]), z[q:], record)
+            r = cauchy_residual(r, None if tail is None else tail[:, None])
+            return r, r
+
+        slope, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([jnp.zeros(q), own]))
+        return r, slope
+
     def products(self, unknowns: Unknowns) -> Float[Array, "r c k k"]:
         """Products [J r]^T [J r] by record and channel."""
 
         def of_record(inputs):
             own, record, tail = inputs
-            both = jnp.concatenate([unknowns.shared, own])
-            split = len(unknowns.shared)
-
-            record = shortened(record)
-
-            def residual(z):
-                r = self.residual(z[:split], z[split:], record)
-                r = cauchy_residual(r, None if tail is None else tail[:, None])
-                return r, r
-
-            slope, r = jax.jacfwd(residual, has_aux=True)(both)
+            r, slope = self.slopes(unknowns.shared, own, shortened(record), tail=tail)
             full = jnp.concatenate([slope, r[..., None]], axis=-1)
             return jnp.einsum("ctk,ctl->ckl", full, full)
 

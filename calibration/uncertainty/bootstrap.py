@@ -18,11 +18,11 @@ from jaxtyping import Array, Float
 from scipy.stats import norm
 
 from calibration.fitting.normal_equations import LeastSquares, clipped, normal_equations
-from calibration.identifiability.information import pseudo_inverse
+from calibration.identifiability.information import WEAK_PRIOR_ROUNDING, pseudo_inverse
 from calibration.identifiability.standard_deviations import correlated_samples
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayProblem
-from calibration.uncertainty.likelihood import DEFAULT_LEVEL, RCOND, Likelihood
+from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood
 from jaxhydro.choices import check
 from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
@@ -228,7 +228,9 @@ def _linear(likelihood: Likelihood, measured: np.ndarray, weight: np.ndarray) ->
     score = np.einsum("rctk,drct,drc->drk", slope, residual, weight)
     mean, ridge = map(np.asarray, (fit.mean, fit.ridge))
     shared = score[..., :p].sum(axis=1) + ridge**2 * (likelihood.estimate[:p] - mean)
-    step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ pseudo_inverse(likelihood.hessian, RCOND)
+    step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ pseudo_inverse(
+        likelihood.hessian, WEAK_PRIOR_ROUNDING
+    )
     step *= np.minimum(1.0, MAX_STEP / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
     own = fit.unknowns.own
     return Unknowns(fit.unknowns.shared + step[:, :p], own + step[:, p:].reshape(-1, *own.shape))

@@ -16,7 +16,7 @@ from scipy.stats import norm
 from calibration.campaign.load_campaign import Campaign
 from calibration.fitting.decay_fit import prepare_fit, run_fit
 from calibration.fitting.fit import Fit
-from calibration.identifiability.information import pseudo_inverse
+from calibration.identifiability.information import WEAK_PRIOR_ROUNDING, pseudo_inverse
 from calibration.identifiability.residual_spectra import NoiseColour, Periodogram, fit_colours, periodogram, score_covariance
 from calibration.identifiability.standard_deviations import gauss_newton_matrix
 from calibration.parameters.space import FreeParameter
@@ -29,7 +29,6 @@ from jaxhydro.errors import Problem as Wrong
 from jaxhydro.hull.coefficient_labels import shared_hint
 
 DEFAULT_LEVEL = 0.95
-RCOND = 1e-14  # of all unknowns together, releases that are known far better than coefficients among them
 WHITE_NOISE = NoiseColour(1.0, 0.0, 0.0, 1.0)
 
 
@@ -116,7 +115,7 @@ class Likelihood:
         section 3) with one parameter of interest. Its own prior is left out where the manifest states none.
         """
         i = self.index(label)
-        move = pseudo_inverse(self.hessian, RCOND)[:, i]
+        move = pseudo_inverse(self.hessian, WEAK_PRIOR_ROUNDING)[:, i]
         counted = np.ones(len(move))
         counted[i] = np.isfinite(self.free(label).prior_deviation)
         bread, meat = (
@@ -130,7 +129,7 @@ class Likelihood:
     def scale(self) -> float:
         """What Q is multiplied by to be -2 log likelihood on the average over all directions: n / tr(H^-1 S)."""
         meat = self.scatter + np.diag(self.prior[1])
-        return float(len(meat) / np.trace(pseudo_inverse(self.hessian, RCOND) @ meat))
+        return float(len(meat) / np.trace(pseudo_inverse(self.hessian, WEAK_PRIOR_ROUNDING) @ meat))
 
 
 def coordinates(unknowns: Unknowns) -> np.ndarray:
@@ -174,20 +173,9 @@ def likelihood(campaign: Campaign, result: Calibration) -> Likelihood:
 
 
 @eqx.filter_jit
-def _slopes(problem: DecayProblem, unknowns: Unknowns) -> tuple[Float[Array, "r c t k"], Float[Array, "r c t"]]:
+def _slopes(problem: DecayProblem, unknowns: Unknowns) -> tuple[Float[Array, "r c t"], Float[Array, "r c t k"]]:
     """Residual, and its derivatives to the shared coordinates and the record's own."""
-    split = len(unknowns.shared)
-
-    def of_record(inputs):
-        own, record = inputs
-
-        def residual(z):
-            r = problem.residual(z[:split], z[split:], record)
-            return r, r
-
-        return jax.jacfwd(residual, has_aux=True)(jnp.concatenate([unknowns.shared, own]))
-
-    return jax.lax.map(of_record, (unknowns.own, problem.data))
+    return jax.lax.map(lambda one: problem.slopes(unknowns.shared, *one), (unknowns.own, problem.data))
 
 
 def likelihood_of(fit: Fit) -> Likelihood:
@@ -203,14 +191,14 @@ def likelihood_of(fit: Fit) -> Likelihood:
         The likelihood about the fit.
     """
     data, weight, shared = fit.decays.problem.data, np.asarray(fit.decays.weight), len(fit.decays.problem.space.free)
-    slope, residual = map(np.asarray, _slopes(fit.decays.problem, fit.unknowns))
+    residual, slope = map(np.asarray, _slopes(fit.decays.problem, fit.unknowns))
     # the residual's own row and column, which `assemble` leaves out
     blocks = np.pad(np.einsum("rctk,rctl,rc->rkl", slope, slope, weight), ((0, 0), (0, 1), (0, 1)))
     information = gauss_newton_matrix(blocks, shared)
     size, own = len(information), slope.shape[-1] - shared
     ridge, width = np.asarray(fit.ridge) ** 2, fit.width
     prior = tuple(np.concatenate([x, np.zeros(size - shared)]) for x in (ridge, ridge**2 * width**2))
-    back = pseudo_inverse(information + np.diag(prior[0]), RCOND)
+    back = pseudo_inverse(information + np.diag(prior[0]), WEAK_PRIOR_ROUNDING)
     seen: dict[tuple[str, str], list[tuple[int, int, Periodogram]]] = {}
     for i, record in enumerate(fit.decays.records):
         at = np.r_[:shared, shared + i * own : shared + (i + 1) * own]

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 
 import jaxhydro as jh
 from calibration import calibrate, load_campaign
-from calibration.identifiability.directions import parameter_family
+from calibration.parameters.families import parameter_family
 from calibration.parameters.space import default_free, parameter_space
 from calibration.results.applied_calibration import CAMPAIGN_PARAMETERS
 from jaxhydro.dynamics.statics import equilibrium, natural_modes
