@@ -18,12 +18,12 @@ import numpy as np
 from benchmarks.bench_timing import Row, contest, times
 from benchmarks.population_search import POPULATIONS
 from calibration.campaign.load_campaign import load_campaign
-from calibration.fitting.decay_fit import DecayFit, run_fit
-from calibration.global_search.descents import WindowedFit
+from calibration.fitting.decay_fit import fit_of_decays, run_fit
+from calibration.fitting.fit import Fit
 from calibration.global_search.run_search import Found, set_up_search
 from calibration.global_search.run_search import run as search
 from calibration.global_search.task import Budget, Task
-from calibration.residuals.decays import DecayProblem, Unknowns, first_guess
+from calibration.residuals.decays import DecayProblem
 
 CAMPAIGN = Path(__file__).resolve().parents[1] / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 FACTOR = 10.0  # every coefficient is searched from a tenth to ten times of what the platform declares
@@ -38,7 +38,7 @@ class Descent(NamedTuple):
     records' iterations it simulated. `near` is its first iteration whose J over whole records is within a hundredth of the
     last, and the CPU seconds and the whole iterations up to there."""
 
-    fit: DecayFit
+    fit: Fit
     seconds: float
     whole: tuple[float, ...]
     simulated: float
@@ -50,9 +50,9 @@ def descend(problem: DecayProblem, records) -> Descent:
     marks: list[tuple[str, float, float, float]] = []
 
     def mark(stage: str, iteration: int, objective: float, *rest) -> None:
-        marks.append((stage, time.process_time(), objective, fit.part))
+        marks.append((stage, time.process_time(), objective, fit.decays.share))
 
-    fit = WindowedFit(problem, records, Unknowns(problem.space.start, first_guess(records, problem.data)), mark)
+    fit = fit_of_decays(problem, records, problem.space.start, mark)
     begun = time.process_time()
     run_fit(fit)
     seconds = time.process_time() - begun
@@ -90,7 +90,7 @@ def report(
     first: Descent, again: Descent, target: float, one: float, batched: float, searches: dict[str, Found]
 ) -> tuple[list[Row], list[str]]:
     """The rows and what they mean."""
-    records, unknowns = len(again.fit.records), again.fit.unknowns
+    records, unknowns = len(again.fit.decays.records), again.fit.unknowns
     tangents = unknowns.shared.shape[0] + unknowns.own.shape[1]
     every = records * (1 + tangents)
     iterations, seconds, simulated = again.near

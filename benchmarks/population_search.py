@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from calibration.fitting.decay_fit import FIRST_WINDOW_CYCLES, WINDOW_GROWTH
-from calibration.global_search.descents import compile_fit, fit_from, rank_points, short_fit
+from calibration.global_search.descents import compile_fit, fit_from, rank_points, short_fit, simulations_per_iteration
 from calibration.global_search.objective import coordinates
 from calibration.global_search.task import Task, even_batch
 
@@ -34,13 +34,13 @@ def fit_releases(task: Task) -> Float[Array, "r 3*c"]:
     compile_fit(task)
 
     def report(*_) -> None:
-        task.simulations += fit.simulations_per_iteration * fit.part
+        task.simulations += simulations_per_iteration(fit)
         task.check()
 
     fit = fit_from(task.problem, task.records, x[0], report)
     guess = fit.unknowns.own
     for cycles in (FIRST_WINDOW_CYCLES, WINDOW_GROWTH * FIRST_WINDOW_CYCLES):
-        short_fit(fit, fit.window(cycles))
+        short_fit(fit, fit.decays.window(cycles))
     return fit.unknowns.own if bool(jnp.isfinite(fit.unknowns.own).all()) else guess
 
 

@@ -10,10 +10,11 @@ from calibration.decay_analysis.model_damping import drag_coefficient, model_dam
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.effects.candidates import Candidate
-from calibration.fitting.decay_fit import Interrupted, Progress, calibrate
-from calibration.fitting.fit_uncertainty import identifiability_of
+from calibration.fitting.decay_fit import calibrate
+from calibration.fitting.fit_conclusion import identifiability_of
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.law_choice import SeaLaws, choose_law
+from calibration.fitting.progress import Interrupted, Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.global_search.run_search import Found, SearchInterrupted, search
 from calibration.global_search.task import Budget

@@ -44,7 +44,7 @@ def of_campaign(name: str) -> dict[str, Any]:
     campaign = load_campaign(folder)
     fit = prepare_fit(campaign)
     run_fit(fit)
-    result, likely = conclude(campaign, fit.problem.model, fit, 0.0), likelihood_of(fit)
+    result, likely = conclude(campaign, fit.decays.problem.model, fit, 0.0), likelihood_of(fit)
     known = {k: p for k, p in result.parameters.items() if p.standard_deviation is not None}
     found: dict[str, dict[str, Any]] = {
         "coloured": {k: likely.interval(k) for k in known},
@@ -76,7 +76,7 @@ def of_measured(name: str) -> dict[str, list[float]]:
     campaign = load_campaign(SHARED / "measured" / name)
     fit = prepare_fit(campaign)
     run_fit(fit)
-    likely, result = likelihood_of(fit), conclude(campaign, fit.problem.model, fit, 0.0)
+    likely, result = likelihood_of(fit), conclude(campaign, fit.decays.problem.model, fit, 0.0)
     known = [k for k, p in result.parameters.items() if p.identifiable]
     rows = zip(likely.labels, likely.deviation(), likely.deviation(white=True), strict=True)
     return {k: [float(sd), float(white), float(sd / white)] for k, sd, white in rows if k in known}

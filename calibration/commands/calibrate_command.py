@@ -10,11 +10,12 @@ from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.wave_band import band_sentence
-from calibration.fitting.decay_fit import Interrupted, calibrate
+from calibration.fitting.decay_fit import calibrate
 from calibration.fitting.joint_fit import calibrate_jointly
-from calibration.fitting.joint_state import Loss
 from calibration.fitting.law_choice import SeaLaws, choose_law
 from calibration.fitting.law_parameters import LAWS, is_law_parameter
+from calibration.fitting.part import Loss
+from calibration.fitting.progress import Interrupted
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.global_search.run_search import SearchInterrupted, search
 from calibration.global_search.task import Budget

@@ -9,7 +9,8 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.commands.calibrate_command import load
-from calibration.fitting.decay_fit import Progress, run_fit
+from calibration.fitting.decay_fit import run_fit
+from calibration.fitting.progress import Progress
 from calibration.formatting import number
 from calibration.results.applied_calibration import unknown_values_error
 from calibration.results.calibration_file import CalibrationFile, read_saved
@@ -177,7 +178,7 @@ def _run_bootstrap(likely: Likelihood, draws: int, seed: int) -> dict[str, Boots
     found = {}
     with counting(draws, 0, "resamplings") as count:
         found["blocks"] = bootstrap_blocks(likely, draws, seed, lambda done, _: count(done, "of the residuals in blocks"))
-    groups = repeats({record.id: record.test.repeat_of for record in likely.fit.records})
+    groups = repeats({record.id: record.test.repeat_of for record in likely.fit.decays.records})
     if any(len(group) > 1 for group in groups.values()):
         with counting(draws, 0, "resamplings") as count:
             found["repeats"] = bootstrap_repeats(likely, draws, seed, lambda done, _: count(done, "of repeated tests"))

@@ -17,7 +17,7 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.greedy_search import MAX_EFFECTS, Search
 from calibration.discovery.residual_anatomy import anatomy
 from calibration.discovery.set_up import set_up_study
-from calibration.fitting.decay_fit import Progress
+from calibration.fitting.progress import Progress
 from calibration.residuals.measured_seas import NO_ZERO, Options, options_of
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import CheckpointWarning

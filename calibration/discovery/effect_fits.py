@@ -65,11 +65,11 @@ class EffectFits:
         own = np.asarray(first_guess(study.decay_records, study.decays.data)).copy()
         if study.fitted_decays.any():
             run_fit(plain := prepare_fit(self.campaign), near=True)
-            for label, value in zip(plain.problem.space.labels, np.asarray(plain.unknowns.shared)):
+            for label, value in zip(plain.decays.problem.space.labels, np.asarray(plain.unknowns.shared)):
                 x[study.labels.index(label)] = value
             rows = [r.id for r in study.decay_records]
-            mine, theirs = np.asarray(study.decays.data.unit), np.asarray(plain.problem.data.unit)
-            for k, (record, values) in enumerate(zip(plain.records, np.asarray(plain.unknowns.own))):
+            mine, theirs = np.asarray(study.decays.data.unit), np.asarray(plain.decays.problem.data.unit)
+            for k, (record, values) in enumerate(zip(plain.decays.records, np.asarray(plain.unknowns.own))):
                 i = rows.index(record.id)
                 own[i] = (values.reshape(3, -1) * theirs[k] / mine[i]).ravel()
         return Point(x, own)

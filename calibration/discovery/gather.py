@@ -16,7 +16,7 @@ from calibration.discovery.residuals import SeaRecord
 from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import DecayProblem, dominant_period, gather_decays
+from calibration.residuals.decays import DecayProblem, crossing_period, gather_decays
 from calibration.residuals.measured_seas import Options, moving_channels, sea_step, seas_of
 from calibration.residuals.stretches import samples_after_transient
 from jaxhydro.dynamics.integrate import clock
@@ -69,7 +69,7 @@ def study_of(
     cuts: list[FourierRows] = []
     decays, own_width = None, np.zeros((0, 0))
     if decaying:
-        shortest = min([MAX_FREQUENCY_RATIO / highest, *(dominant_period(r) for r in decaying)])
+        shortest = min([MAX_FREQUENCY_RATIO / highest, *(crossing_period(r) for r in decaying)])
         step = min(shortest / STEPS_PER_PERIOD, memory_step(model))
         decays, found, own_width, rows = gather_decay_series(decaying, model, space, from_rest, step, highest)
         series += found
@@ -131,7 +131,7 @@ def gather_decay_series(
         The problem, series, standard deviations of the decays' own unknowns (r, o), and rows.
     """
     data = gather_decays(records, model, step, exact=True)
-    decays = DecayProblem(model, data, space, from_rest, None if from_rest else equilibrium(model))
+    decays = DecayProblem(model, space, data, from_rest, None if from_rest else equilibrium(model))
     found, own_width = _decay_series(records, data, highest)
     return decays, [one for one, _ in found], own_width, FourierRows.of([cut for _, cut in found], data.time.shape[1])
 

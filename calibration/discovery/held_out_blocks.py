@@ -17,7 +17,7 @@ from calibration.discovery.expected_residuals import expected_rows
 from calibration.discovery.gather import gather_decay_series, gather_sea, highest_frequency
 from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.study import Study
-from calibration.residuals.decays import dominant_period, first_guess
+from calibration.residuals.decays import crossing_period, first_guess
 
 BLOCKS_PER_TEST = 3  # blocks
 MIN_CYCLES_PER_BLOCK = 1.5  # cycles of a decay
@@ -88,7 +88,7 @@ def study_in_blocks(study: Study, records: Sequence[Record]) -> tuple[Study, np.
         part
         for record in study.decay_records
         if record.use == "fit"
-        and record.time[-1] - record.time[0] > BLOCKS_PER_TEST * MIN_CYCLES_PER_BLOCK * dominant_period(record)
+        and record.time[-1] - record.time[0] > BLOCKS_PER_TEST * MIN_CYCLES_PER_BLOCK * crossing_period(record)
         for part in split_record(record)
     ]
     series, cuts, seas, numbers = [], [], [], []

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import DecayData, DecayProblem
+from calibration.residuals.decays import DecayProblem
 from jaxhydro.dynamics.integrate import Grid, integrate
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import observe
@@ -34,16 +34,10 @@ class Frame(NamedTuple):
     basis: Float[Array, "p q"]
 
 
-def _record_residual(
-    problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, " o"], record: DecayData
-) -> Float[Array, "c t"]:
-    return (problem.motion(x, own, record) - record.measured) * record.present
-
-
 @eqx.filter_jit
 def decay_residuals(problem: DecayProblem, x: Float[Array, " p"], own: Float[Array, "r o"]) -> Float[Array, "r c t"]:
     """Simulated minus measured motions of decays, zero where there is no sample (r, c, t)."""
-    return jax.lax.map(lambda one: _record_residual(problem, x, *one), (own, problem.data))
+    return jax.lax.map(lambda one: problem.residual(x, *one), (own, problem.data))
 
 
 @eqx.filter_jit
@@ -57,7 +51,7 @@ def decay_slopes(
         own, record = inputs
 
         def residual(both):
-            r = _record_residual(problem, frame.origin + frame.basis @ both[:q], both[q:], record)
+            r = problem.residual(frame.origin + frame.basis @ both[:q], both[q:], record)
             return r, r
 
         slopes, r = jax.jacfwd(residual, has_aux=True)(jnp.concatenate([jnp.zeros(q), own]))

@@ -1,11 +1,9 @@
-"""Results of a finished fit: estimates, measured and simulated series, remarks."""
+"""Results of a finished fit: estimates, identifiability, remarks."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -14,18 +12,17 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.wave_band import band_sentence
+from calibration.fitting.fit import Fit
 from calibration.fitting.unit_hints import unit_hints
 from calibration.formatting import listed, percent_span
 from calibration.identifiability.directions import Identifiability, parameter_family
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION
 from calibration.identifiability.standard_deviations import Spread
 from calibration.parameters.space import ParameterSpace, slopes
-from calibration.residuals.decays import DecayProblem, Unknowns
-from calibration.result import Estimate, Series, TestFit
+from calibration.result import Calibration, Estimate, TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import natural_modes
-from jaxhydro.environment import DOFS
 
 NOT_FOLLOWED_ERROR = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
 
@@ -56,45 +53,65 @@ def estimates(space: ParameterSpace, model: Model, x: np.ndarray, uncertainty: S
     return found
 
 
-@eqx.filter_jit
-def _motions(problem: DecayProblem, unknowns: Unknowns, x):
-    return jax.lax.map(lambda inputs: problem.motion(x, *inputs), (unknowns.own, problem.data))
+def source_of(records: Sequence[Record]) -> str:
+    """Decays in words: how many, of which motions."""
+    released = [str(record.degree_of_freedom) for record in records]
+    counts = [(dof, released.count(dof)) for dof in dict.fromkeys(released)]
+    return listed([f"{n} {dof} decay{'' if n == 1 else 's'}" for dof, n in counts])
 
 
-def series_of(
-    problem: DecayProblem, records: Sequence[Record], unknowns: Unknowns, before: DecayProblem | None = None
-) -> list[TestFit]:
-    """Every record measured against simulated. `before` is the same with the model that the calibration started from."""
-    data = problem.data
-    after = np.asarray(_motions(problem, unknowns, unknowns.shared))
-    earlier = problem if before is None else before
-    start = np.asarray(_motions(earlier, unknowns, earlier.space.start))
-    offsets = np.asarray(unknowns.own).reshape(len(records), 3, -1)[:, 2] * np.asarray(data.unit)
-    tests = []
-    for i, record in enumerate(records):
-        n, series, first = len(record.time), [], {}
-        for j, dof in enumerate(data.dofs):
-            channel = DOFS[dof]
-            if channel not in record.values:
-                continue
-            offset = float(offsets[i, j])
-            series.append(
-                Series(
-                    channel,
-                    record.values[channel] - offset,
-                    after[i, j, :n] - offset,
-                    offset,
-                    record.noise[channel],
-                    channel == record.degree_of_freedom,
-                )
-            )
-            first[channel] = start[i, j, :n] - offset
-        tests.append(
-            TestFit(
-                record.id, record.use, record.kind, record.degree_of_freedom, record.time, tuple(series), first, record.file
-            )
-        )
-    return tests
+def identifiability_of(fit: Fit) -> Identifiability:
+    """Identifiability of the parameters of a finished fit to decays.
+
+    Args:
+        fit: The finished fit.
+
+    Returns:
+        Which parameters, and which combinations of them, the records determine.
+    """
+    return fit.uncertainty(source_of(fit.decays.records))[1]
+
+
+def calibration_of(
+    campaign: Campaign,
+    fit: Fit,
+    uncertainty: tuple[Spread, Identifiability],
+    tests: Sequence[TestFit],
+    seconds: float,
+    *,
+    kinds: Sequence[str] = ("decay",),
+    lost: Sequence[str] = (),
+    first: Sequence[str] = (),
+    last: Sequence[str] = (),
+) -> Calibration:
+    """Result of a finished fit.
+
+    Args:
+        campaign: The campaign.
+        fit: The fit.
+        uncertainty: Covariance of its coordinates, and what it says.
+        tests: Measured and simulated motions.
+        seconds: Duration of the fit.
+        kinds: Kinds of tests that were fitted.
+        lost: Sentences on records that the model does not follow; with any, the fit did not converge.
+        first: Remarks before those on the parameters.
+        last: Remarks after these.
+    """
+    spread, found = uncertainty
+    parameters = estimates(fit.space, fit.parts[0].problem.model, np.asarray(fit.x), spread)
+    return Calibration(
+        campaign.manifest.name,
+        fit.model,
+        parameters,
+        tuple(tests),
+        fit.converged and not lost,
+        fit.iterations,
+        seconds,
+        tuple(fit.history),
+        (*lost, *first, *remarks(campaign, parameters, found, kinds), *last),
+        campaign.platform.name,
+        found,
+    )
 
 
 def records_not_followed(tests: Sequence[TestFit], declared: Model) -> list[str]:

@@ -8,11 +8,17 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.fitting.decay_fit import Interrupted, Progress, held_out, labels_of, prepare_fit, run_fit, space_of
-from calibration.fitting.fit_conclusion import estimates, records_not_followed, remarks
-from calibration.fitting.joint_state import JointFit, Kind, Loss, Sources
+from calibration.fitting.decay_fit import held_out, labels_of, prepare_fit, run_fit, space_of
+from calibration.fitting.decay_part import DecayPart
+from calibration.fitting.fit import Fit
+from calibration.fitting.fit_conclusion import calibration_of, records_not_followed
+from calibration.fitting.part import AbstractPart, Kind, Loss
+from calibration.fitting.progress import Progress, finished
 from calibration.fitting.sea_fit import tests_in_waves
+from calibration.fitting.sea_part import SeaPart
+from calibration.fitting.static_parts import OffsetPart, PeriodPart
 from calibration.formatting import listed, number, percent, with_deviation
+from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction
 from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
 from calibration.residuals.static import set_up_offsets, set_up_periods
@@ -22,7 +28,9 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.interrupts import stopping
+
+MAX_ROUNDS = 6  # times that the errors of the kinds of data are estimated anew
+TOLERANCE = 1e-4  # relative decrease of the sum of squares that ends a round
 
 
 def calibrate_jointly(
@@ -42,7 +50,7 @@ def calibrate_jointly(
     Decays and tests in waves enter as in `calibrate` and `calibrate_in_waves`. Static tests marked `fit` need a
     `degree_of_freedom`: an unknown force holds that motion, and the motions that go with it are fitted. Natural periods are
     those stated in the manifest. Each kind is weighed by its own error, estimated from its residuals, times the `weight` of
-    a test (see `JointFit`). The decays are fitted first, alone; the joint fit begins there.
+    a test (see `Fit.run_rounds`). The decays are fitted first, alone; the joint fit begins there.
 
     Args:
         campaign: The campaign.
@@ -91,98 +99,69 @@ def calibrate_jointly(
     first_model = declared.with_values(start or {})
     space = space_of(campaign, labels, first_model)
     from_rest, scale = campaign.manifest.zero is not None, campaign.manifest.scale
-    fit = None
-    x = space.start
+    parts: list[AbstractPart] = []
+    unknowns = parameters_only(space.start)
     if decays:
 
         def first(stage: str, iteration: int, value: float, fraction: float) -> None:
             report(stage, iteration, value, 0.3 * fraction, "J")
 
-        fit = prepare_fit(campaign, free=labels, start=start, begin=begin, report=first)
-        run_fit(fit)
-        x = fit.unknowns.shared
+        alone = prepare_fit(campaign, free=labels, start=start, begin=begin, report=first)
+        run_fit(alone)
+        unknowns = alone.unknowns
+        parts.append(DecayPart(alone.decays.problem, alone.decays.records, loss))
     made: Seas = seas_of(campaign, declared.environment, options) if waves else ()
-    reached = space.model(first_model, x)
 
     def problem_in_waves(model: Model) -> SeaProblem:
         step = sea_step(declared, options)
         return set_up_waves(model, made, space, options, from_rest=from_rest, scale=scale, step=step, objective=objective)
 
-    sources = Sources(
-        None if fit is None else fit.problem,
-        problem_in_waves(reached) if waves else None,
-        set_up_offsets(first_model, held, space, from_rest) if held else None,
-        set_up_periods(first_model, stated_periods, space, scale) if stated_periods else None,
-    )
+    if waves:
+        parts.append(SeaPart(problem_in_waves, space.model(first_model, unknowns.shared), pooled=False, loss=loss))
+    if held:
+        parts.append(OffsetPart(set_up_offsets(first_model, held, space, from_rest), loss))
+    if stated_periods:
+        parts.append(PeriodPart(set_up_periods(first_model, stated_periods, space, scale)))
     later = 0.3 if decays else 0.0
 
     def now(stage: str, iteration: int, value: float, share: float) -> None:
         report(stage, iteration, value, later + (1 - later) * share)
 
-    joint = JointFit(sources, fit, space, x, now, loss, problem_in_waves)
+    joint = Fit(parts, unknowns, now)
     counts = {"decay{}": decays, "test{} in waves": waves, "static offset{}": held, "natural period{}": stated_periods}
     words = listed([f"{len(there)} {name.format('s' * (len(there) != 1))}" for name, there in counts.items() if there])
 
     def finish() -> Calibration:
-        return _conclude(campaign, first_model, joint, options, made, words, clock.monotonic() - begun)
+        uncertainty = joint.uncertainty(words)
+        tests = [*joint.decays.tests] if decays else []
+        # outliers are no sign of a wrong model
+        lost = records_not_followed(tests, first_model) if loss == "squares" else []
+        tests += held_out(campaign, first_model, joint.model) if decays else []
+        in_waves, warnings = tests_in_waves(campaign, first_model, joint.model, options, made) if made else ((), ())
+        said = _of_kinds(campaign, joint, loss)
+        kinds, seconds = ("decay", *IN_WAVES, "static"), clock.monotonic() - begun
+        return calibration_of(
+            campaign, joint, uncertainty, [*tests, *in_waves], seconds, kinds=kinds, lost=lost, first=said, last=warnings
+        )
 
-    try:
-        joint.run()
-    except KeyboardInterrupt:
-        stopping()
-        joint.converged = False
-        raise Interrupted(finish() if joint.iterations else None) from None
-    return finish()
-
-
-def _conclude(
-    campaign: Campaign, declared: Model, joint: JointFit, options: Options, made: Seas, words: str, seconds: float
-) -> Calibration:
-    """Parameters with their deviations, and all tests before and after."""
-    x = np.asarray(joint.unknowns.shared)
-    model = joint.space.model(declared, joint.unknowns.shared)
-    spread, known = joint.uncertainty(words)
-    parameters = estimates(joint.space, declared, x, spread)
-    tests = list(joint.tests)
-    lost = records_not_followed(tests, declared) if joint.loss == "squares" else []  # outliers are no sign of a wrong model
-    notes: tuple[str, ...] = ()
-    if tests:
-        tests += held_out(campaign, declared, model)
-    if made:
-        in_waves, notes = tests_in_waves(campaign, declared, model, options, made)
-        tests += in_waves
-    said = remarks(campaign, parameters, known, ("decay", *IN_WAVES, "static"))
-    said = (*_of_kinds(campaign, model, joint), *said)
-    return Calibration(
-        campaign.manifest.name,
-        model,
-        parameters,
-        tuple(tests),
-        joint.converged and not lost,
-        joint.iterations,
-        seconds,
-        tuple(joint.history),
-        (*lost, *said, *notes),
-        campaign.platform.name,
-        known,
-    )
+    return finished(joint, lambda: joint.run_rounds("round {}", MAX_ROUNDS, TOLERANCE), finish)
 
 
-def _of_kinds(campaign: Campaign, model: Model, joint: JointFit) -> tuple[str, ...]:
+def _of_kinds(campaign: Campaign, joint: Fit, loss: Loss) -> tuple[str, ...]:
     """How far off each kind is, periods fitted against stated, and what could not take part."""
     said = []
-    if joint.loss != "squares":
+    if loss != "squares":
         said.append("residuals count by Cauchy's loss: outliers hardly do")
-    for kind, (variance, _) in joint.errors.items():
-        error = np.sqrt(variance)
-        if kind == "waves":
-            assert joint.sources.waves is not None
-            bands = [float(e) for e, b in zip(error, joint.sources.waves.in_bands, strict=True) if b]
+    for part in joint.parts:
+        assert part.errors is not None
+        error = np.sqrt(part.errors.variance[0])
+        if isinstance(part, SeaPart):
+            bands = [float(e) for e, b in zip(error, part.problem.in_bands, strict=True) if b]
             said += [f"estimated error of ln(simulated / measured energy): {number(one, 2)}" for one in bands]
-        elif kind == "offsets":
+        elif isinstance(part, OffsetPart):
             said.append(f"estimated error of a static offset: {percent(float(error[0]))} of the motion that was held")
-    if joint.sources.periods is not None:
-        fitted, scale = natural_modes(model), campaign.manifest.scale**0.5
+    if any(isinstance(part, PeriodPart) for part in joint.parts):
+        fitted, scale = natural_modes(joint.model), campaign.manifest.scale**0.5
         for dof, one in campaign.manifest.calibrate.natural_periods.items():
             stated = with_deviation(one.value * scale, one.standard_deviation * scale)
             said.append(f"natural period in {dof}: {number(fitted.of(dof), 4)} s, stated {stated} s")

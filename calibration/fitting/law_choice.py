@@ -8,8 +8,8 @@ from typing import Any, get_args
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting.decay_fit import Progress
 from calibration.fitting.law_parameters import LAWS, Law, base_label, is_law_parameter
+from calibration.fitting.progress import Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.identifiability.directions import Identifiability
 from calibration.residuals.measured_seas import Options, Seas, options_of, seas_of

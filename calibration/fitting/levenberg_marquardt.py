@@ -1,4 +1,4 @@
-"""Levenberg-Marquardt optimiser with limited steps, on optimistix."""
+"""Levenberg-Marquardt optimiser with limited steps, on optimistix's (cost, gradient, Gauss-Newton matrix)."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -7,115 +7,113 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import lineax as lx
 import optimistix as optx
-from jaxtyping import PyTree
+from jaxtyping import Array, Bool, PyTree
 
+from calibration.fitting.normal_equations import clipped
+from calibration.residuals.abstract_residual import Unknowns
 from jaxhydro.interrupts import stop_if_asked
 
-
-class ClippedDescent(optx.AbstractDescent):
-    """A descent whose step is shortened, not bent, to at most `longest` in its largest component.
-
-    Coordinates are logarithms and relative motions: a step of 1 changes a coefficient by a factor of e.
-    """
-
-    descent: optx.AbstractDescent
-    longest: float
-
-    def init(self, y: PyTree, f_info_struct: Any) -> Any:
-        return self.descent.init(y, f_info_struct)
-
-    def query(self, y: PyTree, f_info: Any, state: Any) -> Any:
-        return self.descent.query(y, f_info, state)
-
-    def step(self, step_size: Any, state: Any) -> tuple[PyTree, optx.RESULTS]:
-        diff, result = self.descent.step(step_size, state)
-        largest = jnp.max(jnp.stack([jnp.max(jnp.abs(leaf), initial=0.0) for leaf in jax.tree.leaves(diff)]))
-        scale = jnp.minimum(1.0, self.longest / jnp.maximum(largest, 1e-300))
-        return jax.tree.map(lambda leaf: scale * leaf, diff), result
-
-
-class ClippedLevenbergMarquardt(optx.AbstractGaussNewton):
-    """Levenberg-Marquardt of clipped steps, its damping relaxed whenever three quarters of the promised decrease come true.
-
-    optimistix's own asks for 99 % and needs twice the iterations on decays.
-    """
-
-    rtol: float
-    atol: float
-    norm: Any
-    descent: ClippedDescent
-    search: optx.AbstractSearch
-    verbose: Any
-
-    def __init__(self, rtol: float, atol: float, longest: float = 0.7):
-        self.rtol, self.atol, self.norm = rtol, atol, optx.max_norm
-        self.descent = ClippedDescent(optx.DampedNewtonDescent(linear_solver=lx.QR()), longest)
-        self.search = _TrustRegion()
-        self.verbose = _silent
-
-
-def _silent(**_: Any) -> None:
-    return None
-
-
-class _TrustRegion(optx.ClassicalTrustRegion):
-    """optimistix's trust region, its cutoffs chosen for residuals relative to the motion."""
-
-    high_cutoff: float = 0.75
-    low_cutoff: float = 0.01
-    high_constant: float = 2.5
-    low_constant: float = 0.25
-
-
+LONGEST_STEP = 0.7  # coordinates are logarithms and relative motions: 1 changes a coefficient by a factor of e
 MAX_ITERATIONS = 60  # iterations at most
 DEFAULT_TRUST = 100.0  # for residuals relative to the motion
 MAX_REFUSED_STEPS = 8  # refused steps in a row after which there is nowhere to go
-SOLVER = ClippedLevenbergMarquardt(rtol=1e-8, atol=1e-8)  # `descend` ends by its own tolerance
+
+# returns optimistix's `FunctionInfo.EvalGradHessian`, with an `ArrowMatrix`, and anything else that goes with it
+Objective = Callable[[Unknowns, PyTree], tuple[Any, PyTree]]
+
+
+class EliminatedDescent(optx.AbstractDescent[Unknowns, optx.FunctionInfo.EvalGradHessian, Any]):
+    """Damped Newton step with each record's own unknowns eliminated, of at most `longest` in its largest component."""
+
+    longest: float = LONGEST_STEP
+
+    def init(self, y: Unknowns, f_info_struct: Any) -> Any:
+        return jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), f_info_struct)
+
+    def query(self, y: Unknowns, f_info: Any, state: Any) -> Any:
+        return f_info
+
+    def step(self, step_size: Any, state: Any) -> tuple[Unknowns, Any]:
+        newton = state.hessian.solve(state.grad, 1 / step_size)
+        return clipped(jax.tree.map(jnp.negative, newton), self.longest), optx.RESULTS.successful
+
+
+# The damping relaxes whenever three quarters of the promised decrease come true: optimistix's own cutoff of 99 % needs twice
+# the iterations on decays.
+SEARCH: optx.AbstractSearch = optx.ClassicalTrustRegion(high_cutoff=0.75, low_cutoff=0.01, high_constant=2.5, low_constant=0.25)
+DESCENT = EliminatedDescent()
+
+
+class _Point(NamedTuple):
+    """The last accepted point."""
+
+    unknowns: Unknowns
+    info: Any  # `FunctionInfo.EvalGradHessian`
+    aux: PyTree
+
+
+class _State(NamedTuple):
+    point: _Point
+    trial: Unknowns
+    search: PyTree
+    first: Bool[Array, ""]
 
 
 class DescentState(NamedTuple):
-    """Where a descent is after an iteration: the unknowns, what the objective returned beside its residuals there, and whether
+    """Where a descent is after an iteration: the unknowns, what the objective returned beside its equations there, and whether
     it ended there of its own."""
 
-    unknowns: PyTree
+    unknowns: Unknowns
     aux: PyTree
     settled: bool
 
 
 @eqx.filter_jit
-def _begin(objective: Callable, unknowns: PyTree, args: PyTree):
-    f_struct, aux_struct = jax.eval_shape(lambda: objective(unknowns, args))
-    return SOLVER.init(objective, unknowns, args, {}, f_struct, aux_struct, frozenset())
+def _begin(objective: Objective, unknowns: Unknowns, args: PyTree, trust: Array) -> _State:
+    shapes = jax.eval_shape(objective, unknowns, args)
+    info, aux = jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
+    search = eqx.tree_at(lambda s: s.step_size, SEARCH.init(unknowns, info), trust)
+    return _State(_Point(unknowns, info, aux), unknowns, search, jnp.array(True))
 
 
 @eqx.filter_jit
-def _step(objective: Callable, unknowns: PyTree, args: PyTree, state: Any):
-    return SOLVER.step(objective, unknowns, args, {}, state, frozenset())
+def _step(objective: Objective, args: PyTree, state: _State) -> tuple[_State, Bool[Array, ""]]:
+    point, trial, search, first = state
+    there = _Point(trial, *objective(trial, args))
+    size, accepted, _, search = SEARCH.step(first, point.unknowns, trial, point.info, there.info, search)
+    point = jax.tree.map(lambda new, old: jnp.where(accepted, new, old), there, point)
+    step, _ = DESCENT.step(size, DESCENT.query(point.unknowns, point.info, None))
+    return _State(point, jax.tree.map(jnp.add, point.unknowns, step), search, jnp.array(False)), accepted
 
 
 def descend(
-    objective: Callable, unknowns: PyTree, args: PyTree, tolerance: float, trust: float = DEFAULT_TRUST
+    objective: Objective, unknowns: Unknowns, args: PyTree, tolerance: float, trust: float = DEFAULT_TRUST
 ) -> Iterator[DescentState]:
-    """Levenberg-Marquardt on the residuals that `objective(unknowns, args)` returns first, iteration by iteration. Its damping
-    begins as 1 / `trust`.
+    """Levenberg-Marquardt iterations on an objective.
 
     It is done where an accepted step gains less than `tolerance` of the sum of squares, where steps are refused however short
     they are, or after `MAX_ITERATIONS` iterations. One compilation serves all calls with arguments of the same shapes.
+
+    Args:
+        objective: Cost, gradient and Gauss-Newton matrix at unknowns, such as `normal_equations`.
+        unknowns: Where it begins.
+        args: Second argument of the objective.
+        tolerance: Smallest relative gain that is worth a further iteration.
+        trust: Inverse of the damping at first.
+
+    Yields:
+        The state after every iteration.
     """
-    state = _begin(objective, unknowns, args)
-    state = eqx.tree_at(lambda s: s.search_state.step_size, state, jnp.asarray(trust))
-    last, refused, accepted = math.inf, 0, 0
+    state = _begin(objective, unknowns, args, jnp.asarray(trust))
+    last, refused = math.inf, 0
     for _ in range(MAX_ITERATIONS):
         stop_if_asked()
-        unknowns, state, _ = _step(objective, unknowns, args, state)
-        cost = float(sum(jnp.sum(x**2) for x in jax.tree.leaves(state.f_info.residual)))
-        taken = int(state.num_accepted_steps) > accepted
-        accepted = int(state.num_accepted_steps)
+        state, accepted = _step(objective, args, state)
+        cost, taken = float(state.point.info.f), bool(accepted)
         refused = 0 if taken else refused + 1
         settled = (taken and last - cost < tolerance * cost) or refused >= MAX_REFUSED_STEPS
         last = cost
-        yield DescentState(unknowns, state.aux, settled and math.isfinite(cost))
+        yield DescentState(state.point.unknowns, state.point.aux, settled and math.isfinite(cost))
         if settled:
             return

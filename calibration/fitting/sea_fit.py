@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import get_args
 
-import numpy as np
-
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.fitting.decay_fit import Interrupted, Progress, labels_of, space_of
-from calibration.fitting.fit_conclusion import estimates, remarks
+from calibration.fitting.block_part import BlockPart
+from calibration.fitting.decay_fit import labels_of, space_of
+from calibration.fitting.fit import Fit
+from calibration.fitting.fit_conclusion import calibration_of
 from calibration.fitting.law_parameters import (
     EXPONENT_DEVIATION,
     Drag,
@@ -21,10 +21,11 @@ from calibration.fitting.law_parameters import (
     with_drag_law,
     with_sea_state_laws,
 )
-from calibration.fitting.sea_descent import SeaFit
+from calibration.fitting.progress import Progress, finished
+from calibration.fitting.sea_part import SeaPart
 from calibration.fitting.sea_remarks import sea_remarks
-from calibration.fitting.shooting_fit import ShootingFit
 from calibration.identifiability.directions import parameter_family
+from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.measured_seas import (
     Options,
     Seas,
@@ -43,9 +44,11 @@ from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.interrupts import stopping
 from jaxhydro.loads.sea_state_law import is_exponent
 from jaxhydro.loads.sea_state_law import reference_of as law_reference
+
+MAX_ROUNDS = 4  # times that the model's error is estimated anew
+TOLERANCE = 1e-3  # relative decrease of the sum of squares that ends a round
 
 
 def calibrate_in_waves(
@@ -145,39 +148,23 @@ def calibrate_in_waves(
             objective=objective,
         )
 
-    fit = (ShootingFit if objective == "blocks" else SeaFit)(set_up, declared, report)
-    try:
-        fit.run()
-    except KeyboardInterrupt:
-        stopping()
-        fit.converged = False
-        if not fit.iterations:
-            raise Interrupted(None) from None
-        raise Interrupted(_conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)) from None
-    return _conclude(campaign, declared, fit, options, made, clock.monotonic() - begun)
+    part: SeaPart | BlockPart
+    if objective == "blocks":
+        part = BlockPart(set_up, declared)
+        unknowns = part.problem.begin()
+    else:
+        part = SeaPart(set_up, declared, pooled=True)
+        unknowns = parameters_only(space.start)
+    fit = Fit([part], unknowns, report)
 
+    def finish() -> Calibration:
+        source = "the tests in waves by blocks" if objective == "blocks" else "the tests in waves"
+        uncertainty = fit.uncertainty(source)
+        tests, warnings = tests_in_waves(campaign, declared, fit.model, options, made)
+        last = (*sea_remarks(fit.model, tests), *part.notes(), *warnings)
+        return calibration_of(campaign, fit, uncertainty, tests, clock.monotonic() - begun, kinds=IN_WAVES, last=last)
 
-def _conclude(campaign: Campaign, declared: Model, fit: SeaFit, options: Options, made: Seas, seconds: float) -> Calibration:
-    """Parameters with their deviations, and all tests in waves before and after."""
-    problem = fit.problem
-    model = problem.space.model(problem.model, fit.x)
-    uncertainty, known = fit.identifiability()
-    parameters = estimates(problem.space, problem.model, np.asarray(fit.x), uncertainty)
-    tests, warnings = tests_in_waves(campaign, declared, model, options, made)
-    notes = (*remarks(campaign, parameters, known, IN_WAVES), *sea_remarks(model, tests), *fit.notes, *warnings)
-    return Calibration(
-        campaign.manifest.name,
-        model,
-        parameters,
-        tests,
-        fit.converged,
-        fit.iterations,
-        seconds,
-        tuple(fit.history),
-        notes,
-        campaign.platform.name,
-        known,
-    )
+    return finished(fit, lambda: fit.run_rounds("round {} in waves", MAX_ROUNDS, TOLERANCE), finish)
 
 
 def tests_in_waves(

@@ -7,48 +7,40 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import FIRST_WINDOW_CYCLES, DecayFit, record_weights, run_fit
+from calibration.fitting.decay_fit import FIRST_WINDOW_CYCLES, fit_of_decays, minimise_window, run_fit
+from calibration.fitting.fit import Fit, Report
 from calibration.global_search.task import FAILED_OBJECTIVE, BudgetSpent, Task
-from calibration.residuals.decays import DecayProblem, Unknowns, first_guess
+from calibration.residuals.decays import DecayProblem
 
 
-class WindowedFit(DecayFit):
-    """A fit that knows which part of the records' time its present stage simulates."""
+def simulations_per_iteration(fit: Fit) -> float:
+    """Simulations that an iteration in the present window counts as.
 
-    part = 1.0
-
-    def minimise(self, stage: str, weight, until, *rest, **named) -> bool:
-        begin = np.asarray(self.problem.data.time[:, 0])
-        self.part = float(np.sum(np.asarray(until) - begin) / np.sum(np.asarray(self.ends) - begin))
-        return super().minimise(stage, weight, until, *rest, **named)
-
-    @property
-    def simulations_per_iteration(self) -> int:
-        """Simulations that a whole iteration counts as: of every record one, and one for each of its unknowns, as finite
-        differences would take; forward mode takes less time than that."""
-        unknowns = self.unknowns
-        return len(self.records) * (1 + unknowns.shared.shape[0] + unknowns.own.shape[1])
+    Of every record one, and one for each of its unknowns, as finite differences would take; forward mode takes less time than
+    that.
+    """
+    unknowns = fit.unknowns
+    return len(fit.decays.records) * (1 + unknowns.shared.shape[0] + unknowns.own.shape[1]) * fit.decays.share
 
 
-def fit_from(problem: DecayProblem, records: Sequence[Record], x: np.ndarray, report) -> WindowedFit:
+def fit_from(problem: DecayProblem, records: Sequence[Record], x: np.ndarray, report: Report = lambda *_: None) -> Fit:
     """A fit that begins, and has its vague priors, at coordinates x."""
-    fit = WindowedFit(problem, records, Unknowns(jnp.asarray(x), first_guess(records, problem.data)), report)
-    mean, precision = fit.prior
+    fit = fit_of_decays(problem, records, jnp.asarray(x), report)
     declared = jnp.array([np.isfinite(p.prior_deviation) for p in problem.space.free], dtype=bool)
-    fit.prior = (jnp.where(declared, mean, jnp.asarray(x)), precision)
+    fit.mean = jnp.where(declared, fit.mean, jnp.asarray(x))
     return fit
 
 
-def short_fit(fit: DecayFit, until: np.ndarray) -> None:
+def short_fit(fit: Fit, until: np.ndarray) -> None:
     """Least squares up to `until`, coefficients and releases free. Next to no prior: it would be the releases' error."""
-    weight = record_weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(len(fit.records)), until)
-    fit.minimise("first cycles", weight, until, 1e-4, (0.0, 0.0), samples=1e12)
+    weight = fit.decays.record_weights(np.ones(len(fit.decays.records)), until)
+    minimise_window(fit, "first cycles", weight, until, 1e-4, (0.0, 0.0), samples=1e12)
 
 
 def rank_points(task: Task, x: np.ndarray) -> np.ndarray:
     """The points (n, p), the best first by J over the first window from a first guess of the releases."""
-    guess = fit_from(task.problem, task.records, x[0], lambda *_: None)
-    return x[np.argsort(task.simulate(x, guess.unknowns.own, guess.window(FIRST_WINDOW_CYCLES)), kind="stable")]
+    guess = fit_from(task.problem, task.records, x[0])
+    return x[np.argsort(task.simulate(x, guess.unknowns.own, guess.decays.window(FIRST_WINDOW_CYCLES)), kind="stable")]
 
 
 def compile_fit(task: Task) -> None:
@@ -60,7 +52,7 @@ def compile_fit(task: Task) -> None:
     with task.untimed():
         fit = fit_from(task.problem, task.records, np.asarray(task.problem.space.start), stop)
         with contextlib.suppress(BudgetSpent):
-            short_fit(fit, task.begins + 1e-3 * (fit.window(FIRST_WINDOW_CYCLES) - task.begins))
+            short_fit(fit, task.begins + 1e-3 * (fit.decays.window(FIRST_WINDOW_CYCLES) - task.begins))
 
 
 class _Diverged(Exception):
@@ -72,7 +64,7 @@ def descend(task: Task, x: np.ndarray, name: str) -> None:
 
     def report(stage: str, *_) -> None:
         task.stage = f"{name}: {stage}"
-        task.simulations += fit.simulations_per_iteration * fit.part
+        task.simulations += simulations_per_iteration(fit)
         if task.simulate(np.asarray(fit.unknowns.shared)[None], fit.unknowns.own)[0] >= FAILED_OBJECTIVE:
             raise _Diverged
 

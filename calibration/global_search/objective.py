@@ -36,15 +36,15 @@ def objectives(
 
     def of_point(x: Float[Array, " p"]) -> Float[Array, ""]:
         def of_record(inputs):
-            own, record, weight, until = inputs
-            record = shortened(record, until)
-            seen = record.present * (record.time <= until)
+            own, record, weight = inputs
+            record = shortened(record)
+            seen = record.present * (record.time <= record.until)
             samples = jnp.maximum(seen.sum(axis=-1), 1.0)
             residual = problem.motion(x, own, record) - record.measured
             mean = (residual * seen).sum(axis=-1, keepdims=True) / samples[:, None]
             return weight @ jnp.sqrt((((residual - mean) * seen) ** 2).sum(axis=-1) / samples)
 
-        return jax.lax.map(of_record, (own, problem.data, weight, until)).sum()
+        return jax.lax.map(of_record, (own, problem.up_to(until).data, weight)).sum()
 
     return jax.vmap(of_point)(x)
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import Progress, prepare_fit
+from calibration.fitting.decay_fit import prepare_fit
+from calibration.fitting.progress import Progress
 from calibration.global_search.multistart import MultiStart
 from calibration.global_search.objective import ranges
 from calibration.global_search.task import Budget, BudgetSpent, History, SearchMethod, Task
@@ -137,8 +138,8 @@ def set_up_search(
     campaign: Campaign, free: Sequence[str] | None = None, factor: float = DEFAULT_FACTOR
 ) -> tuple[DecayProblem, tuple[Record, ...]]:
     """What is searched, and its records. Raises InputError where there is nothing to search, or no bounds."""
-    fit = prepare_fit(campaign, free=free)
-    model, labels, source = fit.problem.model, fit.problem.space.labels, str(campaign.folder / "campaign.yaml")
+    decays = prepare_fit(campaign, free=free).decays
+    model, labels, source = decays.problem.model, decays.problem.space.labels, str(campaign.folder / "campaign.yaml")
     bounds = ranges(model, labels, dict(campaign.manifest.calibrate.bounds), factor, source)
     space = parameter_space(model, labels, bounds, None, source)
-    return replace(fit.problem, space=space), tuple(fit.records)
+    return replace(decays.problem, space=space), decays.records

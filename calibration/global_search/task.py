@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import Progress, scored_channels
+from calibration.fitting.decay_part import scored_channels
+from calibration.fitting.progress import Progress
 from calibration.global_search.objective import coordinates, objectives
 from calibration.residuals.decays import DecayProblem
 from jaxhydro.interrupts import stop_if_asked

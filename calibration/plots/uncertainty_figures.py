@@ -46,7 +46,7 @@ def draws_figure(found: Bootstrap | Samples, first: str, second: str) -> Figure:
     ax = figure.subplots()
     artists = {"draws": ax.plot(*points.T, "o", ms=2, color=SIMULATED, mew=0, alpha=0.6)[0]}
     artists["covariance, 95 %"] = ax.plot(*edge, "--", lw=0.8, color=MEASURED)[0]
-    about = likely.fit.problem.model.about
+    about = likely.fit.decays.problem.model.about
     ax.set_xlabel(_named(first, about(first).unit))
     ax.set_ylabel(_named(second, about(second).unit).replace(" (", "\n("))
     for values, ring_of, limit in ((points[:, 0], edge[0], ax.set_xlim), (points[:, 1], edge[1], ax.set_ylim)):

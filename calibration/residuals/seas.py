@@ -18,7 +18,7 @@ from jaxtyping import Array, Bool, Float, Int
 from calibration.campaign.records import Record
 from calibration.campaign.runs import Run
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import group_products
+from calibration.residuals.abstract_residual import AbstractGroupedResidual
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, peak_period
 from calibration.residuals.sea_errors import bands_of
 from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
@@ -88,17 +88,17 @@ class SeaRun(eqx.Module):
     steps: int = eqx.field(static=True)
 
 
-class SeaProblem(eqx.Module):
+class SeaProblem(AbstractGroupedResidual):
     """A calibration's fixed part in waves. `from_rest`: motions count from the static equilibrium."""
 
     model: Model
+    space: ParameterSpace = eqx.field(static=True)
+    tail: Float[Array, " g"] | None  # of every group, where residuals cease to count by their squares
     runs: tuple[SeaRun, ...]
     rest: Float[Array, "6"] | None  # None where free parameters move the equilibrium
     points: Float[Array, "3 p"]  # m, the hull's extremities
-    space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
     objective: Objective = eqx.field(static=True)
-    tail: Float[Array, " g"] | None = None  # of every group, where residuals cease to count by their squares
 
     def motions(self, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, "t 6"], Float[Array, "t 6"]], ...]:
         """Position of the reference point and readings of the sensors (m, rad), run by run at its times."""
@@ -155,10 +155,6 @@ class SeaProblem(eqx.Module):
                     motions.append(off * math.sqrt(piece.weight / off.size) / jnp.std(piece.measured))
         return (*([jnp.concatenate(energies)] if energies else []), *motions), (jnp.stack(far) <= 0).all()
 
-    def products(self, x: Float[Array, " p"]) -> Float[Array, "g k k"]:
-        """[J r]^T [J r] of every group, k the parameters and one."""
-        return group_products(self.residuals, x, self.tail)
-
 
 @eqx.filter_jit
 def residuals_and_reach(problem: SeaProblem, x: Float[Array, " p"]) -> tuple[tuple[Float[Array, " _"], ...], Bool[Array, ""]]:
@@ -196,7 +192,7 @@ def set_up_waves(
                 state = None if part.state is None else jax.tree.map(jnp.asarray, part.state)
                 found.append(SeaRun(taken.sea, times, jnp.asarray(taken.step), pieces, start, state, taken.steps))
     points, rest = jnp.asarray(model.hull.extremities()), None if space.moves_equilibrium else equilibrium(model)
-    return SeaProblem(model, tuple(found), rest, points, space, from_rest, objective)
+    return SeaProblem(model, space, None, tuple(found), rest, points, from_rest, objective)
 
 
 def _pieces(run: Run, record: Record, scale: float, begin: int, cut: bool) -> list[TestMotion]:

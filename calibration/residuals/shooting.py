@@ -23,8 +23,8 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from calibration.parameters.space import ParameterSpace
+from calibration.residuals.abstract_residual import AbstractResidual, Unknowns
 from calibration.residuals.blocks import Blocks, RunInBlocks
-from calibration.residuals.decays import Unknowns
 from calibration.residuals.seas import SeaProblem, SeaRun
 from jaxhydro.dynamics.integrate import EXTRA_STEPS, Grid, integrate, states
 from jaxhydro.dynamics.model import Model, State
@@ -44,26 +44,20 @@ class BlockResiduals(NamedTuple):
     beyond: Float[Array, " b"]
 
 
-class BlockProblem(eqx.Module):
+class BlockProblem(AbstractResidual):
     """A calibration's fixed part in waves, by blocks.
 
     Its `Unknowns`: `shared` are the parameters' coordinates and every motion's constant, `own` position and rate of every
     block. What is recorded of a motion is its position from `rest`, or from the reference position, plus its constant.
     """
 
+    model: Model
+    space: ParameterSpace = eqx.field(static=True)
     sea: SeaProblem
     blocks: tuple[Blocks, ...]  # of every run
     constant: Float[Array, " m"]  # m, rad: the difference of the means at first
     wide: Float[Array, " m"]  # what a coordinate of 1 adds
     dofs: tuple[int, ...] = eqx.field(static=True)
-
-    @property
-    def model(self) -> Model:
-        return self.sea.model
-
-    @property
-    def space(self) -> ParameterSpace:
-        return self.sea.space
 
     @property
     def observations(self) -> int:
@@ -91,7 +85,7 @@ class BlockProblem(eqx.Module):
         self, x: Float[Array, " p"], constants: Float[Array, " m"], own: Float[Array, " o"], block: Blocks, run: SeaRun
     ) -> tuple[Float[Array, "c t"], Grid, Float[Array, " c"]]:
         """What one block should have read, its motion, and the constants."""
-        model, dofs = self.space.model(self.sea.model, x), jnp.array(self.dofs)
+        model, dofs = self.space.model(self.model, x), jnp.array(self.dofs)
         here = model if run.state is None else model.in_sea(run.state)
         base = jnp.zeros(6)
         if self.sea.from_rest:
@@ -126,11 +120,8 @@ class BlockProblem(eqx.Module):
         found = [s._replace(residual=jnp.pad(s.residual, ((0, 0), (0, 0), (0, longest - s.residual.shape[2])))) for s in found]
         return jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
 
-    def products(self, unknowns: Unknowns, until: Float[Array, " b"]) -> Float[Array, "b c+1 k k"]:
-        """For every block and channel [J r]^T [J r], k the unknowns and one; the last channel is the prior of its own unknowns.
-
-        `until` is there for `condensed`.
-        """
+    def products(self, unknowns: Unknowns) -> Float[Array, "b c+1 k k"]:
+        """Products [J r]^T [J r] by block and channel; the last channel is the prior of the block's own unknowns."""
         p = len(self.space.free)
         x, constants = jnp.split(unknowns.shared, [p])
         m, o = len(constants), unknowns.own.shape[1]
@@ -196,7 +187,7 @@ def set_up_blocks(sea: SeaProblem, period: float) -> BlockProblem:
                 constant.append(float(x.mean() - readings[at, piece.dof].mean()))
                 wide.append(float(x.std()))
         blocks.append(made.stacked())
-    return BlockProblem(sea, tuple(blocks), jnp.asarray(constant), jnp.asarray(wide), dofs)
+    return BlockProblem(sea.model, sea.space, sea, tuple(blocks), jnp.asarray(constant), jnp.asarray(wide), dofs)
 
 
 def slowest(sea: SeaProblem) -> float:

@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 from calibration.campaign.manifest import Period
 from calibration.campaign.records import Record
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import group_products
+from calibration.residuals.abstract_residual import AbstractGroupedResidual
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import characteristic_length, equilibrium, held_at, linearised, strain_energy
 from jaxhydro.environment import DOFS
@@ -22,20 +22,20 @@ EIGENVALUE_SHIFT = 1e-4  # of an eigenvalue, off which inverse iterations are sh
 NEWTON_STEPS = 3  # steps of Newton's method, where sensors track another point
 
 
-class OffsetProblem(eqx.Module):
+class OffsetProblem(AbstractGroupedResidual):
     """Means of static tests in which an unknown force holds one motion where it was measured; the others follow from balance.
 
     A residual is in shares of the held motion, an angle counting as the length (m) times it.
     """
 
     model: Model
+    space: ParameterSpace = eqx.field(static=True)
+    tail: Float[Array, "1"] | None
     measured: Float[Array, "s 6"]  # m, rad; from the position measured as zero
     unit: Float[Array, "s 6"]  # m, rad: what counts as 1
     held: tuple[int, ...] = eqx.field(static=True)
     compared: tuple[tuple[int, int], ...] = eqx.field(static=True)  # test and motion
-    space: ParameterSpace = eqx.field(static=True)
     from_rest: bool = eqx.field(static=True)
-    tail: Float[Array, "1"] | None = None
 
     def readings(self, x: Float[Array, " p"]) -> Float[Array, "s 6"]:
         """What the sensors read in every test (m, rad), from the position measured as zero."""
@@ -56,13 +56,9 @@ class OffsetProblem(eqx.Module):
 
         return jnp.stack([reading(dof, held(dof, q[dof])) for dof, q in zip(self.held, self.measured, strict=True)])
 
-    def residuals(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
+    def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " n"]]:
         off = (self.readings(x) - self.measured) / self.unit
-        return off[tuple(jnp.array(self.compared).T)]
-
-    def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:
-        """One group."""
-        return group_products(lambda x: (self.residuals(x),), x, self.tail)
+        return (off[tuple(jnp.array(self.compared).T)],)
 
 
 def set_up_offsets(model: Model, records: Sequence[Record], space: ParameterSpace, from_rest: bool) -> OffsetProblem:
@@ -79,31 +75,28 @@ def set_up_offsets(model: Model, records: Sequence[Record], space: ParameterSpac
             measured[i, DOFS.index(name)] = float(np.mean(values))
             compared += [(i, DOFS.index(name))] if DOFS.index(name) != dof else []
         unit[i] = max(abs(measured[i, dof]) * lengths[dof], 1e-3) / lengths
-    return OffsetProblem(model, jnp.asarray(measured), jnp.asarray(unit), tuple(held), tuple(compared), space, from_rest)
+    arrays = (jnp.asarray(measured), jnp.asarray(unit))
+    return OffsetProblem(model, space, None, *arrays, tuple(held), tuple(compared), from_rest)
 
 
-class PeriodProblem(eqx.Module):
+class PeriodProblem(AbstractGroupedResidual):
     """Stated natural periods: ln(T / stated) over its relative standard deviation. T is that of the undamped natural mode in
     which the motion has the largest strain energy (`natural_modes`)."""
 
     model: Model
+    space: ParameterSpace = eqx.field(static=True)
+    tail: Float[Array, "1"] | None
     stated: Float[Array, " n"]  # s
     deviation: Float[Array, " n"]  # relative
     dofs: tuple[int, ...] = eqx.field(static=True)
-    space: ParameterSpace = eqx.field(static=True)
-    tail: Float[Array, "1"] | None = None
 
     def periods(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
         """(s)"""
         model = self.space.model(self.model, x)
         return jnp.stack([natural_period(model, dof) for dof in self.dofs])
 
-    def residuals(self, x: Float[Array, " p"]) -> Float[Array, " n"]:
-        return jnp.log(self.periods(x) / self.stated) / self.deviation
-
-    def products(self, x: Float[Array, " p"]) -> Float[Array, "1 k k"]:
-        """One group."""
-        return group_products(lambda x: (self.residuals(x),), x, self.tail)
+    def residuals(self, x: Float[Array, " p"]) -> tuple[Float[Array, " n"]]:
+        return (jnp.log(self.periods(x) / self.stated) / self.deviation,)
 
 
 def natural_period(model: Model, dof: int) -> Float[Array, ""]:
@@ -138,4 +131,4 @@ def set_up_periods(model: Model, stated: Mapping[Any, Period], space: ParameterS
     """Periods by motion, at the scale of the files."""
     values = jnp.array([one.value * scale**0.5 for one in stated.values()])
     deviations = jnp.array([one.standard_deviation / one.value for one in stated.values()])
-    return PeriodProblem(model, values, deviations, tuple(DOFS.index(dof) for dof in stated), space)
+    return PeriodProblem(model, space, None, values, deviations, tuple(DOFS.index(dof) for dof in stated))

@@ -17,9 +17,11 @@ import numpy as np
 from jaxtyping import Array, Float
 from scipy.stats import norm
 
+from calibration.fitting.normal_equations import LeastSquares, clipped, normal_equations
 from calibration.identifiability.information import pseudo_inverse
 from calibration.identifiability.standard_deviations import correlated_samples
-from calibration.residuals.decays import DecayProblem, Unknowns
+from calibration.residuals.abstract_residual import Unknowns
+from calibration.residuals.decays import DecayProblem
 from calibration.uncertainty.likelihood import DEFAULT_LEVEL, RCOND, Likelihood
 from jaxhydro.choices import check
 from jaxhydro.errors import InputError
@@ -83,43 +85,21 @@ class Bootstrap:
         return low, high
 
 
-def newton(
-    problem: DecayProblem, unknowns: Unknowns, weight: Float[Array, "r c"], until: Float[Array, " r"], prior: Prior
-) -> Unknowns:
-    """One Gauss-Newton step on sum w |r|^2 + |ridge (x - mean)|^2, no longer than MAX_STEP; each record's own unknowns are
-    eliminated."""
-    mean, ridge = prior
-    p = len(mean)
-    block = jnp.einsum("rckl,rc->rkl", problem.products(unknowns, until), weight)
-    own = block[:, p:-1, p:-1]
-    # a channel that is not there, or a record that was not drawn, leaves its unknowns where they are
-    size = jnp.diagonal(own, axis1=1, axis2=2)
-    own = own + jax.vmap(jnp.diag)(jnp.where(size > 0, 1e-12 * size, 1.0))
-    across = jnp.concatenate([block[:, p:-1, :p], block[:, p:-1, -1:]], axis=-1)
-    follow = jnp.linalg.solve(own, across)
-    left = block[:, :p, :p] - jnp.einsum("rkp,rkq->rpq", block[:, p:-1, :p], follow[..., :-1])
-    slope = block[:, :p, -1] - jnp.einsum("rkp,rk->rp", block[:, p:-1, :p], follow[..., -1])
-    shared = -jnp.linalg.solve(left.sum(0) + jnp.diag(ridge**2), slope.sum(0) + ridge**2 * (unknowns.shared - mean))
-    mine = -follow[..., -1] - follow[..., :-1] @ shared
-    longest = jnp.maximum(jnp.abs(shared).max(), jnp.abs(mine).max())
-    scale = jnp.minimum(1.0, MAX_STEP / jnp.maximum(longest, 1e-300))
-    return Unknowns(unknowns.shared + scale * shared, unknowns.own + scale * mine)
-
-
 @eqx.filter_jit
 def _steps(
     problem: DecayProblem,
     unknowns: Unknowns,
     measured: Float[Array, "d r c t"],
     weight: Float[Array, "d r c"],
-    until,
     prior: Prior,
 ) -> Unknowns:
-    """`newton` of many draws at once."""
+    """One Gauss-Newton step of many draws at once, none longer than MAX_STEP."""
 
     def one(unknowns, measured, weight):
         here = eqx.tree_at(lambda q: q.data.measured, problem, measured)
-        return newton(here, unknowns, weight, until, prior)
+        info, _ = normal_equations(unknowns, LeastSquares((here,), (weight,), *prior))
+        step = clipped(info.hessian.solve(info.grad), MAX_STEP)
+        return Unknowns(unknowns.shared - step.shared, unknowns.own - step.own)
 
     return jax.vmap(one)(unknowns, measured, weight)
 
@@ -145,7 +125,7 @@ def bootstrap_repeats(likelihood: Likelihood, draws: int = 200, seed: int = 0, p
     References:
         Rao and Wu 1988, Journal of the American Statistical Association 83, 231-241, section 2.
     """
-    records = likelihood.fit.records
+    records = likelihood.fit.decays.records
     groups = repeats({record.id: record.test.repeat_of for record in records})
     if not any(len(group) > 1 for group in groups.values()):
         ids = ", ".join(record.id for record in records)
@@ -158,10 +138,10 @@ def bootstrap_repeats(likelihood: Likelihood, draws: int = 200, seed: int = 0, p
         if n > 1:
             count = random.multinomial(n - 1, np.full(n, 1 / n), size=draws)
             weight[:, [order[id] for id in group]] = count * n / (n - 1)
-    weights = weight[:, :, None] * np.asarray(likelihood.fit.weight)
+    weights = weight[:, :, None] * np.asarray(likelihood.fit.decays.weight)
 
     def inputs(k: slice) -> tuple[np.ndarray, np.ndarray]:
-        measured = np.asarray(likelihood.fit.problem.data.measured)
+        measured = np.asarray(likelihood.fit.decays.problem.data.measured)
         return np.broadcast_to(measured, (len(weights[k]), *measured.shape)), weights[k]
 
     return _drawn(likelihood, "repeats", inputs, draws, seed, dict(groups), progress)
@@ -204,25 +184,25 @@ def bootstrap_blocks(likelihood: Likelihood, draws: int = 200, seed: int = 0, pr
     """
     fit = likelihood.fit
     raised, lengths = _raised(likelihood), {}
-    for i, record in enumerate(fit.records):
+    for i, record in enumerate(fit.decays.records):
         n = len(record.time)
         step = float(record.time[-1] - record.time[0]) / (n - 1)
-        period = 2 * np.pi / float(fit.problem.data.pace[i]) / step
+        period = 2 * np.pi / float(fit.decays.problem.data.pace[i]) / step
         size = max([period, *(2 * correlated_samples(raised[i, j, :n]) for k, j in likelihood.spectra if k == i)])
         lengths[record.id] = max(1, min(round(size), n // 3)), step
     random = np.random.default_rng(seed)
-    fitted = np.asarray(fit.problem.data.measured) + likelihood.residual
-    weight = np.asarray(fit.weight)
+    fitted = np.asarray(fit.decays.problem.data.measured) + likelihood.residual
+    weight = np.asarray(fit.decays.weight)
 
     def inputs(k: slice) -> tuple[np.ndarray, np.ndarray]:
         count = len(range(draws)[k])
         noise = np.zeros((count, *fitted.shape))
-        for i, record in enumerate(fit.records):
+        for i, record in enumerate(fit.decays.records):
             n, length = len(record.time), lengths[record.id][0]
             first = random.integers(0, n - length + 1, size=(count, -(-n // length)))
             at = (first[:, :, None] + np.arange(length)).reshape(count, -1)[:, :n]
             noise[:, i, :, :n] = np.moveaxis(raised[i][:, at], 0, 1)
-        present = np.asarray(fit.problem.data.present)
+        present = np.asarray(fit.decays.problem.data.present)
         return (fitted - noise) * present, np.broadcast_to(weight, (count, *weight.shape))
 
     groups: dict[str, tuple[str, ...] | float] = {id: length * step for id, (length, step) in lengths.items()}
@@ -233,7 +213,7 @@ def _raised(likelihood: Likelihood) -> np.ndarray:
     """Residuals (r, c, t) with what the fit took from them given back, mean zero."""
     raised = np.zeros(likelihood.residual.shape)
     for (i, j), one in likelihood.spectra.items():
-        n = len(likelihood.fit.records[i].time)
+        n = len(likelihood.fit.decays.records[i].time)
         wave = np.fft.rfft(likelihood.residual[i, j, :n]) / np.sqrt(np.maximum(one.freedom, MIN_FREEDOM))
         wave[0] = 0.0
         raised[i, j, :n] = np.fft.irfft(wave, n)
@@ -243,10 +223,10 @@ def _raised(likelihood: Likelihood) -> np.ndarray:
 def _linear(likelihood: Likelihood, measured: np.ndarray, weight: np.ndarray) -> Unknowns:
     """Where the draws should end by the slopes at the estimate: no simulation, and right but for what is not linear."""
     fit, slope = likelihood.fit, likelihood.slope
-    data, p = fit.problem.data, len(fit.problem.space.free)
+    data, p = fit.decays.problem.data, len(fit.decays.problem.space.free)
     residual = likelihood.residual + (np.asarray(data.measured) - measured) * np.asarray(data.present)
     score = np.einsum("rctk,drct,drc->drk", slope, residual, weight)
-    mean, ridge = map(np.asarray, (fit.prior[0], fit.ridge))
+    mean, ridge = map(np.asarray, (fit.mean, fit.ridge))
     shared = score[..., :p].sum(axis=1) + ridge**2 * (likelihood.estimate[:p] - mean)
     step = -np.concatenate([shared, score[..., p:].reshape(len(score), -1)], axis=1) @ pseudo_inverse(likelihood.hessian, RCOND)
     step *= np.minimum(1.0, MAX_STEP / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
@@ -265,7 +245,7 @@ def _drawn(
 ) -> Bootstrap:
     """All draws refitted, CHUNK_SIZE at once."""
     fit = likelihood.fit
-    prior = (jnp.asarray(fit.prior[0]), jnp.asarray(fit.ridge))
+    prior = (jnp.asarray(fit.mean), jnp.asarray(fit.ridge))
     scale, found, unsettled = likelihood.deviation(), [], 0
     for begin in range(0, draws, CHUNK_SIZE):
         series, weights = inputs(slice(begin, min(begin + CHUNK_SIZE, draws)))
@@ -277,7 +257,7 @@ def _drawn(
         unknowns, change = _linear(likelihood, np.asarray(measured), np.asarray(weight)), np.full((CHUNK_SIZE, 1), np.inf)
         for _ in range(MAX_STEPS):
             stop_if_asked()
-            before, unknowns = unknowns, _steps(fit.problem, unknowns, measured, weight, fit.ends, prior)
+            before, unknowns = unknowns, _steps(fit.decays.problem, unknowns, measured, weight, prior)
             change = np.abs(np.asarray(unknowns.shared - before.shared)) / scale
             if (change < MAX_LAST_STEP).all() or not np.isfinite(change).any():
                 break
@@ -287,7 +267,7 @@ def _drawn(
             progress(begin + count, draws)
     coordinate = np.concatenate(found)
     coordinate = coordinate[np.isfinite(coordinate).all(axis=1)]  # a motion that ran away
-    forward = [jax.vmap(p.transform.forward) for p in fit.problem.space.free]
+    forward = [jax.vmap(p.transform.forward) for p in fit.decays.problem.space.free]
     value = np.stack([np.asarray(f(jnp.asarray(x))) for f, x in zip(forward, coordinate.T, strict=True)], axis=1)
     estimate = likelihood.estimate[: len(scale)]
     return Bootstrap(method, likelihood.labels, coordinate, value, estimate, groups, unsettled, seed, likelihood)

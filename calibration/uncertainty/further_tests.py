@@ -9,14 +9,15 @@ import numpy as np
 
 from calibration.campaign.manifest import Test
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import STEPS_PER_PERIOD, DecayFit
-from calibration.fitting.fit_uncertainty import residual_statistics
+from calibration.fitting.decay_fit import STEPS_PER_PERIOD
+from calibration.fitting.fit import Fit
 from calibration.formatting import listed, percent
 from calibration.identifiability.directions import Identifiability, active_parameters, weak_directions
 from calibration.identifiability.information import shared_information, submatrix
 from calibration.identifiability.statements import Direction, Parameters
 from calibration.parameters.space import ParameterSpace
-from calibration.residuals.decays import DecayProblem, Unknowns, gather_decays
+from calibration.residuals.abstract_residual import Unknowns
+from calibration.residuals.decays import DecayProblem, gather_decays
 from calibration.result import TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.simulate import free_decay, memory_step
@@ -97,7 +98,7 @@ def rank_tests(known: Identifiability, candidates: Mapping[str, np.ndarray]) -> 
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
-def effective_noise(fit: DecayFit, tests: Sequence[TestFit]) -> dict[str, float]:
+def effective_noise(fit: Fit, tests: Sequence[TestFit]) -> dict[str, float]:
     """Estimate the independent noise that has the effect of a fit's residuals on the parameters.
 
     It stands for the errors of a further test's samples at the same rate.
@@ -109,15 +110,15 @@ def effective_noise(fit: DecayFit, tests: Sequence[TestFit]) -> dict[str, float]
     Returns:
         Standard deviation of the noise (m, rad), by channel.
     """
-    variance, inflation = residual_statistics(fit, tests)
-    there = np.asarray(fit.problem.data.present).any(axis=-1)
+    variance, inflation = fit.decays.left_errors(tests)
+    there = np.asarray(fit.decays.problem.data.present).any(axis=-1)
     power = (variance * inflation * there).sum(axis=0) / np.maximum(there.sum(axis=0), 1)
-    return {DOFS[dof]: float(np.sqrt(x)) for dof, x in zip(fit.problem.data.dofs, power, strict=True)}
+    return {DOFS[dof]: float(np.sqrt(x)) for dof, x in zip(fit.decays.problem.data.dofs, power, strict=True)}
 
 
 @eqx.filter_jit
-def _products(problem: DecayProblem, unknowns: Unknowns, until):
-    return problem.products(unknowns, until)
+def _products(problem: DecayProblem, unknowns: Unknowns):
+    return problem.products(unknowns)
 
 
 def decay_information(
@@ -162,10 +163,10 @@ def decay_information(
     test = Test.model_validate(stated)
     record = Record(test.id, test.kind, test.use, dof, time, values, None, None, dict(noise), True, 0.0, test, test.file)
     data = gather_decays([record], model, min(float(modes.period.min()) / STEPS_PER_PERIOD, memory_step(model)))
-    problem = DecayProblem(model, data, space, True, None if space.moves_equilibrium else rest)
+    problem = DecayProblem(model, space, data, True, None if space.moves_equilibrium else rest)
     own = np.zeros((3, len(data.dofs)))
     own[0] = [values[DOFS[i]][0] / float(unit) for i, unit in zip(data.dofs, data.unit[0], strict=True)]
     x = jnp.array([p.transform.inverse(float(model.values[p.label])) for p in space.free])
-    products = np.asarray(_products(problem, Unknowns(x, jnp.asarray(own.reshape(1, -1))), jnp.array([time[-1]])))
+    products = np.asarray(_products(problem, Unknowns(x, jnp.asarray(own.reshape(1, -1)))))
     variance = np.array([[noise[DOFS[i]] ** 2 for i in data.dofs]])
     return shared_information(products, 1 / variance, variance, np.ones(variance.shape), len(x))

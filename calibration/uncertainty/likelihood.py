@@ -14,12 +14,14 @@ from jaxtyping import Array, Float
 from scipy.stats import norm
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting.decay_fit import DecayFit, prepare_fit, run_fit
+from calibration.fitting.decay_fit import prepare_fit, run_fit
+from calibration.fitting.fit import Fit
 from calibration.identifiability.information import pseudo_inverse
 from calibration.identifiability.residual_spectra import NoiseColour, Periodogram, fit_colours, periodogram, score_covariance
 from calibration.identifiability.standard_deviations import gauss_newton_matrix
 from calibration.parameters.space import FreeParameter
-from calibration.residuals.decays import DecayProblem, Unknowns
+from calibration.residuals.abstract_residual import Unknowns
+from calibration.residuals.decays import DecayProblem
 from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, suggest
@@ -50,7 +52,7 @@ class Likelihood:
         spectra: Periodogram of the residuals, by record and channel.
     """
 
-    fit: DecayFit
+    fit: Fit
     slope: np.ndarray
     residual: np.ndarray
     information: np.ndarray
@@ -63,7 +65,7 @@ class Likelihood:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        return self.fit.problem.space.labels
+        return self.fit.decays.problem.space.labels
 
     @property
     def estimate(self) -> np.ndarray:
@@ -78,13 +80,13 @@ class Likelihood:
         """Index of a parameter among the free parameters. Raises InputError, which lists them."""
         if label not in self.labels:
             known = f"a free parameter of this fit ({', '.join(self.labels)})"
-            hint = shared_hint(label, self.fit.problem.model.hull.elements.shares) or suggest(label, self.labels)
+            hint = shared_hint(label, self.fit.decays.problem.model.hull.elements.shares) or suggest(label, self.labels)
             raise InputError("uncertainty", [Wrong("parameter", known, repr(label), hint)])
         return self.labels.index(label)
 
     def free(self, label: str) -> FreeParameter:
         """How a parameter is transformed."""
-        return self.fit.problem.space.free[self.index(label)]
+        return self.fit.decays.problem.space.free[self.index(label)]
 
     def value(self, label: str, coordinate: float) -> float:
         """A parameter's value (its own unit) at a coordinate."""
@@ -138,7 +140,7 @@ def coordinates(unknowns: Unknowns) -> np.ndarray:
 
 def restored_fit(
     campaign: Campaign, began: Mapping[str, Any], ended: Mapping[str, float], report: Callable[..., None] = lambda *_: None
-) -> DecayFit:
+) -> Fit:
     """The fit that a calibration to decays was, with its free parameters and priors, where it `ended`; the records' releases
     and offsets, which a calibration does not keep, begin from the records. `began` are values, of free parameters and others,
     that it began from in place of the platform's; `report` is that of `prepare`."""
@@ -146,7 +148,7 @@ def restored_fit(
     # only what is not as declared, so that types stay, and what was compiled for the fit serves again
     start = {k: float(v) for k, v in began.items() if float(v) != float(declared[k])}
     fit = prepare_fit(campaign, free=list(ended), start=start, report=report)
-    there = [p.transform.inverse(float(ended[p.label])) for p in fit.problem.space.free]
+    there = [p.transform.inverse(float(ended[p.label])) for p in fit.decays.problem.space.free]
     fit.unknowns = fit.unknowns._replace(shared=jnp.array(there))
     return fit
 
@@ -180,7 +182,7 @@ def _slopes(problem: DecayProblem, unknowns: Unknowns) -> tuple[Float[Array, "r 
         own, record = inputs
 
         def residual(z):
-            r = (problem.motion(z[:split], z[split:], record) - record.measured) * record.present
+            r = problem.residual(z[:split], z[split:], record)
             return r, r
 
         return jax.jacfwd(residual, has_aux=True)(jnp.concatenate([unknowns.shared, own]))
@@ -188,7 +190,7 @@ def _slopes(problem: DecayProblem, unknowns: Unknowns) -> tuple[Float[Array, "r 
     return jax.lax.map(of_record, (unknowns.own, problem.data))
 
 
-def likelihood_of(fit: DecayFit) -> Likelihood:
+def likelihood_of(fit: Fit) -> Likelihood:
     """Compute the likelihood of a finished fit (`run_fit`).
 
     The errors of a channel are stationary in each record. They have one colour in all records, or in all that were released
@@ -200,17 +202,17 @@ def likelihood_of(fit: DecayFit) -> Likelihood:
     Returns:
         The likelihood about the fit.
     """
-    data, weight, shared = fit.problem.data, np.asarray(fit.weight), len(fit.problem.space.free)
-    slope, residual = map(np.asarray, _slopes(fit.problem, fit.unknowns))
+    data, weight, shared = fit.decays.problem.data, np.asarray(fit.decays.weight), len(fit.decays.problem.space.free)
+    slope, residual = map(np.asarray, _slopes(fit.decays.problem, fit.unknowns))
     # the residual's own row and column, which `assemble` leaves out
     blocks = np.pad(np.einsum("rctk,rctl,rc->rkl", slope, slope, weight), ((0, 0), (0, 1), (0, 1)))
     information = gauss_newton_matrix(blocks, shared)
     size, own = len(information), slope.shape[-1] - shared
-    ridge, width = np.asarray(fit.ridge) ** 2, 1 / np.asarray(fit.prior[1])
+    ridge, width = np.asarray(fit.ridge) ** 2, fit.width
     prior = tuple(np.concatenate([x, np.zeros(size - shared)]) for x in (ridge, ridge**2 * width**2))
     back = pseudo_inverse(information + np.diag(prior[0]), RCOND)
     seen: dict[tuple[str, str], list[tuple[int, int, Periodogram]]] = {}
-    for i, record in enumerate(fit.records):
+    for i, record in enumerate(fit.decays.records):
         at = np.r_[:shared, shared + i * own : shared + (i + 1) * own]
         mine, n = back[np.ix_(at, at)], len(record.time)
         for j, dof in enumerate(data.dofs):
@@ -228,7 +230,7 @@ def likelihood_of(fit: DecayFit) -> Likelihood:
         ):
             colour[kind] = found
             for (i, j, one), variance in zip(seen[kind], variances, strict=True):
-                time = fit.records[i].time
+                time = fit.decays.records[i].time
                 for into, power, of in ((blocks, float(variance), found), (flat, one.variance, WHITE_NOISE)):
                     part = score_covariance(slope[i, j, : len(time)], power, of, step_of(time))
                     into[i, :-1, :-1] += weight[i, j] ** 2 * part

@@ -15,7 +15,8 @@ from jaxtyping import Array, Float
 from scipy.linalg import cholesky, eigh
 
 from calibration.fitting.cores import cores
-from calibration.residuals.decays import DecayProblem, Unknowns
+from calibration.residuals.abstract_residual import Unknowns
+from calibration.residuals.decays import DecayProblem
 from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood, coordinates
 from jaxhydro.interrupts import stop_if_asked, stopping
 
@@ -71,13 +72,13 @@ def potential_energy(likelihood: Likelihood, scale: float) -> Energy:
     the transforms enters. Its gradient J^T W r is a column of the products that the fit works with: one forward-mode pass,
     and nothing goes back through the solver.
     """
-    fit, weight = likelihood.fit, jnp.asarray(likelihood.fit.weight)
-    mean, precision = fit.prior
-    problem, shape, ends = fit.problem, fit.unknowns.own.shape, fit.ends
+    fit, weight = likelihood.fit, jnp.asarray(likelihood.fit.decays.weight)
+    mean, precision = fit.mean, jnp.asarray(1 / fit.width)
+    problem, shape = fit.decays.problem, fit.unknowns.own.shape
     p = len(fit.unknowns.shared)
 
     def both(z: Float[Array, " n"]) -> tuple[Float[Array, ""], Float[Array, " n"]]:
-        return _energy(problem, Unknowns(z[:p], z[p:].reshape(shape)), weight, ends, mean, precision, scale)
+        return _energy(problem, Unknowns(z[:p], z[p:].reshape(shape)), weight, mean, precision, scale)
 
     @jax.custom_vjp
     def energy(z: Float[Array, " n"]) -> Float[Array, ""]:
@@ -87,10 +88,10 @@ def potential_energy(likelihood: Likelihood, scale: float) -> Energy:
     return energy
 
 
-def _energy(problem: DecayProblem, unknowns: Unknowns, weight, until, mean, precision, scale):
+def _energy(problem: DecayProblem, unknowns: Unknowns, weight, mean, precision, scale):
     """Energy and its gradient."""
     p = len(mean)
-    block = scale * jnp.einsum("rckl,rc->rkl", problem.products(unknowns, until), weight)
+    block = scale * jnp.einsum("rckl,rc->rkl", problem.products(unknowns), weight)
     off = precision * (unknowns.shared - mean)
     slope = jnp.concatenate([block[:, :p, -1].sum(0) + precision * off, block[:, p:-1, -1].ravel()])
     energy = 0.5 * (block[:, -1, -1].sum() + off @ off)
@@ -155,10 +156,10 @@ def sample(
     step = jax.jit(lambda state: kernel.sample(state, (), {}))
     rows = _run_chains(step, begun, warmup, draws, progress)
     z, lost = np.array([[at for at, _ in row] for row in rows]), sum(astray for row in rows for _, astray in row)
-    shared = len(fit.problem.space.free)
+    shared = len(fit.decays.problem.space.free)
     coordinate = (centre + z @ (stretch @ root).T)[..., :shared]
     value = np.empty_like(coordinate)
-    for i, one in enumerate(fit.problem.space.free):
+    for i, one in enumerate(fit.decays.problem.space.free):
         value[..., i] = jax.vmap(one.transform.forward)(jnp.asarray(coordinate[..., i].ravel())).reshape(coordinate.shape[:-1])
     r_hat, effective = (np.asarray(f(coordinate)) for f in (split_gelman_rubin, effective_sample_size))
     return Samples(likelihood.labels, coordinate, value, r_hat, effective, lost, seed, draws, likelihood)
@@ -204,7 +205,7 @@ def whitening(likelihood: Likelihood, scale: float) -> tuple[np.ndarray, np.ndar
     """L (n, n) with L L^T the covariance that the energy has at the estimate, and Omega (n, n) that stretches it: Omega L L^T
     Omega^T is the sandwich's. Omega = C V nu^1/2 V^T with the common directions C' V = C V nu, V^T C V = 1."""
     precision = np.zeros(len(likelihood.information))
-    precision[: len(likelihood.labels)] = np.asarray(likelihood.fit.prior[1]) ** 2
+    precision[: len(likelihood.labels)] = 1 / likelihood.fit.width**2
     hessian = scale * likelihood.information + np.diag(precision)
     # what no record sees at all: a channel that one record lacks
     hessian[np.diag_indices_from(hessian)] += np.where(np.diag(hessian) > 0, 0.0, 1.0)

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 
 import jax.numpy as jnp
 import numpy as np
+import optimistix as optx
 from scipy.interpolate import PchipInterpolator
 from scipy.stats import chi2
 
 from calibration.fitting.levenberg_marquardt import descend
+from calibration.fitting.normal_equations import ArrowMatrix, LeastSquares, normal_equations
 from calibration.formatting import number
-from calibration.residuals.decays import Unknowns, condensed_decays
+from calibration.residuals.abstract_residual import Unknowns
 from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood
 from jaxhydro.interrupts import stop_if_asked
 
@@ -69,11 +71,14 @@ class Profile:
 
 
 def _held(unknowns: Unknowns, args):
-    """Residuals with one shared coordinate held at a value: its column is zero, so that no step moves it."""
-    problem, weight, until, (mean, ridge), index, value = args
+    """`normal_equations` with one shared coordinate held at a value: nothing depends on it, so that no step moves it."""
+    fit, index, value = args
     there = unknowns._replace(shared=unknowns.shared.at[index].set(value))
-    rows, products = condensed_decays(there, problem, weight, until)
-    return (rows, ridge * (there.shared - mean)), products
+    info, products = normal_equations(there, fit)
+    free = jnp.ones(len(there.shared)).at[index].set(0.0)
+    gradient = info.grad._replace(shared=info.grad.shared * free)
+    matrix = ArrowMatrix(info.hessian.shared * jnp.outer(free, free), info.hessian.cross * free[:, None], info.hessian.own)
+    return optx.FunctionInfo.EvalGradHessian(info.f, gradient, matrix), products
 
 
 class _Refit:
@@ -86,8 +91,10 @@ class _Refit:
         self.ridge = np.array(fit.ridge)
         if not np.isfinite(likelihood.free(label).prior_deviation):
             self.ridge[self.index] = 0.0  # a vague prior is no record
-        self.mean, self.weight = np.asarray(fit.prior[0]), np.asarray(fit.weight)
-        self.args = (fit.problem, jnp.asarray(self.weight), fit.ends, (jnp.asarray(self.mean), jnp.asarray(self.ridge)))
+        self.mean, self.weight = np.asarray(fit.mean), np.asarray(fit.decays.weight)
+        self.args = LeastSquares(
+            (fit.decays.problem,), (jnp.asarray(self.weight),), jnp.asarray(self.mean), jnp.asarray(self.ridge)
+        )
         self.size = 1.0  # of Q, for a tolerance relative to it: a fit normalises its weights so
         self.gain = MAX_REFIT_SHARE * self.nu * float(chi2.ppf(level, 1))
 
@@ -98,12 +105,12 @@ class _Refit:
 
     def __call__(self, unknowns: Unknowns, value: float) -> tuple[float, Unknowns]:
         """Q and the unknowns with the coordinate at `value`, begun from `unknowns`."""
-        args = (*self.args, jnp.asarray(self.index), jnp.asarray(value))
+        args = (self.args, jnp.asarray(self.index), jnp.asarray(value))
         cost, reached = np.inf, unknowns
         for now in descend(_held, unknowns, args, self.gain / self.size):
             shared = now.unknowns.shared.at[self.index].set(value)
             rest = float(np.sum((self.ridge * (np.asarray(shared) - self.mean)) ** 2))
-            cost = float(np.sum(np.asarray(now.aux)[..., -1, -1] * self.weight)) + rest
+            cost = float(np.sum(np.asarray(now.aux[0])[..., -1, -1] * self.weight)) + rest
             reached = now.unknowns._replace(shared=shared)
         return cost, reached
 
@@ -144,7 +151,7 @@ def profile(likelihood: Likelihood, label: str, level: float = DEFAULT_LEVEL) ->
     limit, middle = float(np.sqrt(chi2.ppf(level, 1))), int(np.argmin(cost))
     ends = [_crossing(x[: middle + 1][::-1], drop[: middle + 1][::-1], limit), _crossing(x[middle:], drop[middle:], limit)]
     lower, upper = (None if end is None else likelihood.value(label, end) for end in ends)
-    about = likelihood.fit.problem.model.about(label)
+    about = likelihood.fit.decays.problem.model.about(label)
     return Profile(
         label,
         about.unit,

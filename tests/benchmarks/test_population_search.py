@@ -10,7 +10,7 @@ from test_search import ENOUGH, check_history, far_campaign, true_objective
 import jaxhydro as jh
 from benchmarks.population_search import CMAES, POPULATIONS, DifferentialEvolution, Genetic, PopulationSearch
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting.decay_fit import Progress
+from calibration.fitting.progress import Progress
 from calibration.global_search.run_search import Found, SearchInterrupted, run, set_up_search
 from calibration.global_search.task import Budget, Task
 

@@ -12,11 +12,15 @@ from ruamel.yaml import YAML
 
 import jaxhydro as jh
 from calibration.campaign.load_campaign import Campaign, load_campaign
-from calibration.fitting.decay_fit import DecayFit, Interrupted, Progress, calibrate, run_fit, set_up_decays
+from calibration.fitting.decay_fit import calibrate, fit_of_decays, run_fit, set_up_decays
+from calibration.fitting.fit import Fit
+from calibration.fitting.normal_equations import LeastSquares, cost_of, normal_equations
+from calibration.fitting.progress import Interrupted, Progress
 from calibration.identifiability.standard_deviations import correlated_samples, sandwich_covariance
 from calibration.parameters.space import default_free, match_free_labels, parameter_space, slopes
 from calibration.parameters.transforms import Interval, LogInterval, Scaled
-from calibration.residuals.decays import DecayProblem, Unknowns, condensed_decays, dominant_period, first_guess, square_root
+from calibration.residuals.abstract_residual import Unknowns
+from calibration.residuals.decays import DecayProblem, crossing_period, first_guess
 from calibration.result import Calibration
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import linearised
@@ -244,7 +248,8 @@ def test_mistakes_in_the_manifest_are_told() -> None:
 # residuals
 
 
-def test_condensed_residuals_have_the_products_of_the_plain_ones(ship_campaign: Campaign) -> None:
+def test_normal_equations_are_those_of_the_plain_residuals(ship_campaign: Campaign) -> None:
+    """Cost, gradient and Gauss-Newton matrix, and a damped step, against the Jacobian of all residuals in a window."""
     problem, records = posed(ship_campaign)
     data = problem.data
     unknowns = Unknowns(problem.space.start, first_guess(records, data))
@@ -252,6 +257,7 @@ def test_condensed_residuals_have_the_products_of_the_plain_ones(ship_campaign: 
     until = jnp.asarray([15.0, 30.0])
     shape = unknowns.own.shape
     p = len(unknowns.shared)
+    ridge, mean = 0.1 + jnp.arange(p) / p, unknowns.shared - 0.3
 
     def plain(z):
         def of_record(inputs):
@@ -260,41 +266,33 @@ def test_condensed_residuals_have_the_products_of_the_plain_ones(ship_campaign: 
             return (motion - record.measured) * record.present * (record.time <= until)
 
         r = jax.lax.map(of_record, (z[p:].reshape(shape), data, until))
-        return (jnp.sqrt(weight)[..., None] * r).ravel()
-
-    def short(z):
-        return condensed_decays(Unknowns(z[:p], z[p:].reshape(shape)), problem, weight, until)[0].ravel()
-
-    def with_slope(f):
-        return jax.jit(jax.jacfwd(lambda z: (f(z),) * 2, has_aux=True))
+        return jnp.concatenate([(jnp.sqrt(weight)[..., None] * r).ravel(), ridge * (z[:p] - mean)])
 
     z = jnp.concatenate([unknowns.shared, unknowns.own.ravel()])
-    both = with_slope(plain)
-    (big, r), (small, s) = both(z), with_slope(short)(z)
-    assert float(jnp.linalg.norm(s)) == pytest.approx(float(jnp.linalg.norm(r)), rel=1e-9)
-    scale = np.abs(big.T @ big).max()
-    np.testing.assert_allclose(small.T @ small, big.T @ big, atol=1e-9 * scale)
-    np.testing.assert_allclose(small.T @ s, big.T @ r, atol=1e-9 * np.abs(big.T @ r).max())
+    both = jax.jit(jax.jacfwd(lambda z: (plain(z),) * 2, has_aux=True))
+    slope, r = both(z)
+    fit = LeastSquares((problem.up_to(until),), (weight,), mean, ridge)
+    found, (products,) = jax.jit(normal_equations)(unknowns, fit)
+    assert float(found.f) == pytest.approx(0.5 * float(r @ r), rel=1e-9)
+    assert cost_of((np.asarray(products),), (np.asarray(weight),)) == pytest.approx(float(r[:-p] @ r[:-p]), rel=1e-9)
+    gradient, matrix = np.concatenate([found.grad.shared, found.grad.own.ravel()]), found.hessian.as_matrix()
+    scale = np.abs(slope.T @ slope).max()
+    np.testing.assert_allclose(matrix, slope.T @ slope, atol=1e-9 * scale)
+    np.testing.assert_allclose(gradient, slope.T @ r, atol=1e-9 * np.abs(slope.T @ r).max())
+    step = found.hessian.solve(found.grad, 0.01 * scale)
+    expected = np.linalg.solve(matrix + 0.01 * scale * np.eye(len(z)), gradient)
+    np.testing.assert_allclose(np.concatenate([step.shared, step.own.ravel()]), expected, rtol=1e-8, atol=1e-12)
     h = 1e-5
     for i in range(len(z)):
         column = (both(z.at[i].add(h))[1] - both(z.at[i].add(-h))[1]) / (2 * h)
-        np.testing.assert_allclose(column, big[:, i], atol=1e-6 * np.abs(big).max())
-
-
-@pytest.mark.parametrize("rank", [0, 1, 3, 6])
-def test_square_root_of_matrices_of_any_rank(rank: int) -> None:
-    a = np.random.default_rng(rank).standard_normal((6, rank)) * np.logspace(0, -4, rank or 1)[:rank]
-    root = np.asarray(square_root(jnp.asarray(a @ a.T)))
-    np.testing.assert_allclose(root, root.T, atol=1e-12)
-    np.testing.assert_allclose(root @ root, a @ a.T, atol=1e-12)
-    assert np.linalg.eigvalsh(root).min() > -1e-12
+        np.testing.assert_allclose(column, slope[:, i], atol=1e-6 * np.abs(slope).max())
 
 
 def test_the_dominant_period_and_the_first_guess(ship_campaign: Campaign) -> None:
     problem, records = posed(ship_campaign)
     period = jh.natural_modes(model_of(SHIP, SHIP_TRUE)).of("roll")
     for record in records:
-        assert dominant_period(record) == pytest.approx(period, rel=0.02)
+        assert crossing_period(record) == pytest.approx(period, rel=0.02)
     own = np.asarray(first_guess(records, problem.data)).reshape(2, 3, 1)
     start = own[:, 0, 0] * np.asarray(problem.data.unit)[:, 0]
     np.testing.assert_allclose(np.degrees(start), [12.0, 6.0 + np.degrees(SHIP_OFFSET)], atol=0.3)
@@ -421,7 +419,7 @@ def test_interruption_gives_what_was_reached(ship_campaign: Campaign) -> None:
 
 
 def test_interruption_before_the_first_iteration(ship_campaign: Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stop(_: DecayFit) -> None:
+    def stop(_: Fit) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("calibration.fitting.decay_fit.run_fit", stop)
@@ -443,10 +441,10 @@ def test_twenty_far_starts_all_arrive(ship_campaign: Campaign, ship) -> None:
             "quadratic_damping.B44": SHIP_TRUE["quadratic_damping.B44"] * 5 ** random.uniform(-1, 1),
         }
         x = jnp.array([p.transform.inverse(values[p.label]) for p in problem.space.free])
-        fit = DecayFit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
-        fit.prior = (x, fit.prior[1])
+        fit = fit_of_decays(problem, records, x)
+        fit.mean = x
         run_fit(fit)
-        objectives.append(fit.objective())
+        objectives.append(fit.decays.objective())
     assert max(objectives) < 1.01 * min(objectives)
     assert min(objectives) == pytest.approx(ship[0].objective("fit"), rel=0.01)
 

@@ -13,15 +13,14 @@ from ruamel.yaml import YAML
 import jaxhydro as jh
 from calibration.campaign.manifest import Test
 from calibration.campaign.records import Record
-from calibration.fitting.decay_fit import DecayFit, run_fit, set_up_decays
-from calibration.fitting.fit_conclusion import series_of
-from calibration.fitting.fit_uncertainty import identifiability_of
+from calibration.fitting.decay_fit import fit_of_decays, run_fit, set_up_decays
+from calibration.fitting.decay_part import series_of
+from calibration.fitting.fit_conclusion import identifiability_of
 from calibration.identifiability.directions import MAX_REPORTED_DIRECTIONS, Identifiability, identifiability
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION, collinearity, shared_information, varimax
 from calibration.identifiability.standard_deviations import sandwich_covariance
 from calibration.identifiability.statements import Parameters
 from calibration.parameters.space import VAGUE_DEVIATION, parameter_space
-from calibration.residuals.decays import Unknowns, first_guess
 from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
 from jaxhydro.dynamics.statics import linearised
 
@@ -275,10 +274,10 @@ def surge():
     space = parameter_space(declared, [*true, "column.Cd_z"])
     at_rest = SimpleNamespace(manifest=SimpleNamespace(zero=True))
     problem = set_up_decays(declared, at_rest, [record], space)
-    fit = DecayFit(problem, [record], Unknowns(space.start, first_guess([record], problem.data)), lambda *_: None)
+    fit = fit_of_decays(problem, [record], space.start)
     run_fit(fit)
     tests = series_of(problem, [record], fit.unknowns)
-    return fit, tests, identifiability_of(fit, tests), space.model(declared, fit.unknowns.shared)
+    return fit, tests, identifiability_of(fit), space.model(declared, fit.unknowns.shared)
 
 
 def test_a_surge_decay_knows_the_added_mass_of_the_hull_and_not_whose_it_is(surge) -> None:
@@ -309,7 +308,7 @@ def test_the_information_of_a_made_decay_is_that_of_the_fitted_one(surge) -> Non
     noise = effective_noise(fit, tests)
     assert noise["surge"] == pytest.approx(NOISE, rel=0.5)
     period = jh.natural_modes(model).of("surge")
-    again = decay_information(model, fit.problem.space, "surge", 6.0, noise, cycles=LENGTH / period, interval=3.3)
+    again = decay_information(model, fit.decays.problem.space, "surge", 6.0, noise, cycles=LENGTH / period, interval=3.3)
     first, second = np.sqrt(np.diag(found.information)), np.sqrt(np.diag(again))
     np.testing.assert_allclose(second[:3], first[:3], rtol=0.03)
 
@@ -320,9 +319,11 @@ def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
     noise = effective_noise(fit, tests) | {"pitch": math.radians(0.01)}
     made = {
         "another surge decay": decay_information(
-            model, fit.problem.space, "surge", 6.0, {"surge": noise["surge"]}, cycles=LENGTH / 128, interval=3.3
+            model, fit.decays.problem.space, "surge", 6.0, {"surge": noise["surge"]}, cycles=LENGTH / 128, interval=3.3
         ),
-        "a pitch decay": decay_information(model, fit.problem.space, "pitch", math.radians(5.0), {"pitch": noise["pitch"]}),
+        "a pitch decay": decay_information(
+            model, fit.decays.problem.space, "pitch", math.radians(5.0), {"pitch": noise["pitch"]}
+        ),
     }
     first, second = rank_tests(found, made)
     assert first.name == "a pitch decay" and first.gain > second.gain + 1
@@ -334,4 +335,4 @@ def test_a_pitch_decay_is_worth_more_than_another_surge_decay(surge) -> None:
 def test_a_candidate_that_measures_nothing_of_its_motion_is_refused(surge) -> None:
     fit, _, _, model = surge
     with pytest.raises(ValueError, match="the motion released, found pitch"):
-        decay_information(model, fit.problem.space, "surge", 6.0, {"pitch": 1e-4})
+        decay_information(model, fit.decays.problem.space, "surge", 6.0, {"pitch": 1e-4})

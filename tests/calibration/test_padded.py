@@ -2,16 +2,14 @@
 
 from dataclasses import replace
 
-import jax
-import jax.numpy as jnp
+import equinox as eqx
 import numpy as np
 import pytest
 
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting import decay_fit
 from calibration.fitting.decay_fit import prepare_fit
-from calibration.residuals.decays import DecayProblem, condensed_decays
+from calibration.residuals.decays import DecayProblem
 from calibration.residuals.ladder import padded_size
 
 DECAYS = "jaxhydro/campaigns/volturnus-s-decays"
@@ -56,8 +54,7 @@ def test_records_of_nearly_the_same_length_are_traced_once(campaign, monkeypatch
     counts = []
     for share in shares:
         fit = prepare_fit(cut(campaign, share, ids))
-        weight = decay_fit.record_weights(fit.records, fit.problem.data, fit.scored, fit.spread, np.ones(1))
-        jax.block_until_ready(condensed_decays(fit.unknowns, fit.problem, jnp.asarray(weight), jnp.asarray(fit.ends)))
+        eqx.filter_jit(DecayProblem.products)(fit.decays.problem, fit.unknowns).block_until_ready()
         counts.append(len(traces))
     assert counts[0] > 0 and counts[1:] == counts[:1] * 2, traces
 
@@ -69,7 +66,7 @@ def test_padding_changes_no_result(campaign, monkeypatch) -> None:
 
     def products():
         fit = prepare_fit(cut(campaign, 0.37, ids))
-        return fit.problem.data, fit.problem.products(fit.unknowns, fit.ends)
+        return fit.decays.problem.data, fit.decays.problem.products(fit.unknowns)
 
     padded, found = products()
     monkeypatch.setattr("calibration.residuals.decays.padded_size", lambda count: count)

@@ -12,6 +12,7 @@ from test_seas import made  # noqa: F401  (a fixture: a run of the NumPy model)
 
 from calibration import Interrupted, calibrate, calibrate_in_waves, load_campaign
 from calibration.parameters.space import parameter_space
+from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
 from calibration.residuals.sea_errors import in_bands
 from calibration.residuals.seas import CELLS_PER_BAND, MIN_ENERGY_SHARE, energies_of, joined_bands, set_up_waves
@@ -99,7 +100,7 @@ def test_gradient_through_a_sea_and_its_spectra(problem) -> None:
     """Gradient and Gauss-Newton matrix of all residuals against central differences."""
     stacked = eqx.filter_jit(lambda p, x: jnp.concatenate(p.residuals(x)))
     x = problem.space.start + jnp.array([0.2, -0.3])
-    products = np.asarray(eqx.filter_jit(lambda p, x: p.products(x))(problem, x)).sum(axis=0)
+    products = np.asarray(eqx.filter_jit(lambda p, x: p.products(parameters_only(x)))(problem, x)).sum(axis=(0, 1))
     pairs = [(stacked(problem, x + d), stacked(problem, x - d)) for d in 1e-4 * np.eye(2)]
     slopes = np.stack([np.asarray(one - other) / 2e-4 for one, other in pairs], axis=1)
     r = np.asarray(stacked(problem, x))

@@ -11,7 +11,6 @@ from test_seas import HULL
 
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
-from calibration.fitting.decay_fit import Interrupted, Progress
 from calibration.fitting.law_choice import LawFit, SeaLaws, choose_law, energy_error, with_test_uses
 from calibration.fitting.law_parameters import (
     base_label,
@@ -20,6 +19,7 @@ from calibration.fitting.law_parameters import (
     with_drag_law,
     with_sea_state_laws,
 )
+from calibration.fitting.progress import Interrupted, Progress
 from calibration.report.sea_state_law_tables import laws_table, sentence, states_table
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
 from calibration.residuals.stretches import run_segments, sea_state, simulate_segments

@@ -12,12 +12,13 @@ from test_calibration import SHIP, SHIP_TRUE, model_of, roll_decay, write
 import jaxhydro as jh
 from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting.decay_fit import DecayFit, Progress, run_fit
+from calibration.fitting.decay_fit import fit_of_decays, run_fit
+from calibration.fitting.progress import Progress
 from calibration.global_search.multistart import MultiStart
 from calibration.global_search.objective import coordinates, ranges
 from calibration.global_search.run_search import Found, SearchInterrupted, search, set_up_search
 from calibration.global_search.task import FAILED_OBJECTIVE, Budget, Task, even_batch
-from calibration.residuals.decays import Unknowns, first_guess
+from calibration.residuals.decays import first_guess
 from jaxhydro.errors import InputError
 
 NOISE, OFFSET = 2e-4, 3e-3  # rad
@@ -45,9 +46,9 @@ def true_objective(campaign: Campaign) -> float:
     """J of the true coefficients, releases fitted."""
     problem, records = set_up_search(campaign)
     x = jnp.array([p.transform.inverse(SHIP_TRUE[p.label]) for p in problem.space.free])
-    fit = DecayFit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
+    fit = fit_of_decays(problem, records, x)
     run_fit(fit)
-    return fit.objective()
+    return fit.decays.objective()
 
 
 def test_a_search_finds_the_coefficients(campaign: Campaign) -> None:
@@ -124,14 +125,14 @@ def test_ctrl_c_before_anything_is_reached(campaign: Campaign) -> None:
 def test_j_is_the_contracts_and_free_of_offsets(campaign: Campaign) -> None:
     problem, records = set_up_search(campaign)
     x = jnp.array([p.transform.inverse(SHIP_TRUE[p.label]) for p in problem.space.free])
-    fit = DecayFit(problem, records, Unknowns(x, first_guess(records, problem.data)), lambda *_: None)
+    fit = fit_of_decays(problem, records, x)
     run_fit(fit)
     at = np.asarray(fit.unknowns.shared)[None]
     task = Task(problem, records, fit.unknowns.own, Budget())
     # its prior keeps the fit's offset from the mean residual by next to nothing
-    assert task.simulate(at)[0] == pytest.approx(fit.objective(), rel=1e-6)
+    assert task.simulate(at)[0] == pytest.approx(fit.decays.objective(), rel=1e-6)
     moved = fit.unknowns.own.at[0, 2].add(1.0)
-    assert Task(problem, records, moved, Budget()).simulate(at)[0] == pytest.approx(fit.objective(), rel=1e-6)
+    assert Task(problem, records, moved, Budget()).simulate(at)[0] == pytest.approx(fit.decays.objective(), rel=1e-6)
 
 
 def test_a_simulation_without_a_number_counts_as_a_bad_one(campaign: Campaign) -> None:

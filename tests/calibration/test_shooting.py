@@ -10,11 +10,13 @@ from numpy.testing import assert_allclose
 
 import jaxhydro as jh
 from calibration import calibrate_in_waves, load_campaign
+from calibration.fitting.block_part import BlockPart
+from calibration.fitting.fit import Fit
 from calibration.fitting.joint_fit import calibrate_jointly
-from calibration.fitting.shooting_fit import ShootingFit, objective
+from calibration.fitting.normal_equations import LeastSquares, normal_equations
 from calibration.identifiability.standard_deviations import correlated_samples
 from calibration.parameters.space import parameter_space
-from calibration.residuals.decays import Unknowns
+from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.measured_seas import Options, seas_of, with_diffraction
 from calibration.residuals.seas import set_up_waves
 from calibration.residuals.shooting import simulate_blocks
@@ -89,17 +91,17 @@ def seas(campaign):
     return seas_of(campaign, build(campaign.platform).environment, OPTIONS)
 
 
-def fit_of(campaign, seas, values) -> ShootingFit:
+def fit_of(campaign, seas, values) -> BlockPart:
     declared = with_diffraction(build(campaign.platform), OPTIONS).with_values(values)
     space = parameter_space(declared, LABELS)
 
     def pose(model):
         return set_up_waves(model, seas, space, OPTIONS, from_rest=True, scale=1.0, step=0.25, objective="blocks")
 
-    return ShootingFit(pose, declared, lambda *_: None)
+    return BlockPart(pose, declared)
 
 
-def true_states(fit: ShootingFit) -> jnp.ndarray:
+def true_states(fit: BlockPart) -> jnp.ndarray:
     """Coordinates of the initial states of the continuous run."""
     (blocks,) = fit.problem.blocks
     dofs = jnp.array(fit.problem.dofs)
@@ -119,12 +121,12 @@ def test_blocks_of_the_truth_are_the_record(campaign, seas) -> None:
     assert len(present) == 5 and np.ptp(present.sum(axis=2)) <= 1  # 900 s of 60.4 s
     own = true_states(fit)
     assert np.abs(own).max() < 0.7 and np.median(np.abs(own)) < 0.1
-    fit.unknowns = Unknowns(fit.unknowns.shared, own)
-    error, inside = fit.residual_rms()
-    assert inside and error < 1e-3 and max(fit.jumps.values()) < 2e-3
+    unknowns = Unknowns(fit.problem.begin().shared, own)
+    error = np.sqrt(fit.estimate(unknowns).variance.max())
+    assert not fit.outgrown(unknowns) and error < 1e-3 and max(fit.jumps.values()) < 2e-3
     assert list(fit.jumps) == list(DOFS)
     for i, group in enumerate(fit.groups):
-        assert_allclose(group, np.asarray(simulate_blocks(fit.problem, fit.unknowns).residual)[:, i][present[:, i]])
+        assert_allclose(group, np.asarray(simulate_blocks(fit.problem, unknowns).residual)[:, i][present[:, i]])
 
 
 def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
@@ -133,37 +135,40 @@ def test_the_elimination_is_the_full_problem(campaign, seas) -> None:
     start = fit.problem.begin()
     shared = start.shared + jnp.array([-0.3, 0.2, 0.1, -0.2])
     at = Unknowns(shared, start.own + 0.2 * np.random.default_rng(1).normal(size=start.own.shape))
-    weight, ridge = jnp.asarray(fit.weight()), jnp.asarray(fit.ridge())
-    args = (fit.problem, weight, start.shared, ridge)
+    whole_fit = Fit([fit], at)
+    fit.renew(at)
+    weight, ridge = jnp.asarray(fit.weight), jnp.asarray(whole_fit.ridge)
+    args = LeastSquares((fit.problem,), (weight,), start.shared, ridge)
 
     def unflat(z) -> Unknowns:
         return Unknowns(z[:4], z[4:].reshape(at.own.shape))
 
     def whole(z) -> np.ndarray:
         residual, own = simulate_blocks(fit.problem, unflat(z)).residual, unflat(z).own * jnp.sqrt(weight[:, -1:])
+        residual = residual * jnp.sqrt(weight[:, :-1, None])
         return np.concatenate([residual.ravel(), own.ravel(), ridge * (z[:4] - start.shared)])
-
-    def condensed_rows(z) -> jnp.ndarray:
-        (rows, priors), _ = objective(unflat(z), args)
-        return jnp.concatenate([rows.ravel(), priors])
 
     here = jnp.concatenate([at.shared, at.own.ravel()])
     matrix = np.stack([(whole(here + d) - whole(here - d)) / 2e-5 for d in 1e-5 * np.eye(len(here))], axis=1)
     dense = np.linalg.lstsq(matrix, -whole(here), rcond=None)[0]
-    found = np.linalg.lstsq(jax.jacfwd(condensed_rows)(here), -condensed_rows(here), rcond=None)[0]
+    info, (products,) = jax.jit(normal_equations)(at, args)
+    step = info.hessian.solve(info.grad)
+    found = -np.concatenate([step.shared, step.own.ravel()])
     assert len(dense) == 2 + 2 + at.own.size
     assert_allclose(found, dense, rtol=1e-5, atol=1e-6)
-    fit.unknowns, fit.products = at, np.asarray(objective(at, args)[1])
-    fit.residual_rms()
-    deviation = fit.identifiability()[0].deviation()
+    fit.products = np.asarray(products)
+    deviation = whole_fit.uncertainty("blocks")[0].deviation()
     priors = np.concatenate([np.asarray(ridge) ** 2, np.repeat(np.asarray(weight)[:, -1], 4)])  # what they add to the matrix
-    width = np.concatenate([fit.width, np.ones(len(dense) - 2)])
+    width = np.concatenate([whole_fit.width, np.ones(len(dense) - 4)])
     rows = matrix[: simulate_blocks(fit.problem, at).residual.size].reshape(len(at.own), 2, -1, len(dense))
     parts = [np.einsum("btk,btl->kl", rows[:, i], rows[:, i]) for i in range(2)]
     inverse = np.linalg.inv(matrix.T @ matrix)
     count = sum(len(group) / correlated_samples(group) for group in fit.groups)
     factor = count / (count - np.trace(inverse @ sum(parts)))
-    scatter = sum(factor * np.mean(group**2) * correlated_samples(group) * part for group, part in zip(fit.groups, parts))
+    scale = float(weight[0, 0])  # of the rows' squares
+    scatter = sum(
+        factor * scale * np.mean(group**2) * correlated_samples(group) * part for group, part in zip(fit.groups, parts)
+    )
     covariance = inverse @ (scatter + np.diag(width**2 * priors**2)) @ inverse
     assert_allclose(deviation, np.sqrt(np.diag(covariance))[:2], rtol=1e-5)
 

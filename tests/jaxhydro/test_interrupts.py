@@ -7,9 +7,12 @@ import time
 from types import SimpleNamespace
 
 import jax.numpy as jnp
+import optimistix as optx
 import pytest
 
 from calibration.fitting.levenberg_marquardt import descend
+from calibration.fitting.normal_equations import ArrowMatrix
+from calibration.residuals.abstract_residual import parameters_only
 from jaxhydro.cli.console import progress
 from jaxhydro.interrupts import ended_by_signals, stop_if_asked, stoppable_threads, stopping
 
@@ -24,11 +27,14 @@ def lost(number: int) -> None:
 
 @pytest.mark.parametrize("sent", SENT)
 def test_an_iteration_of_a_fit_finds_a_stop_that_was_lost(sent: int) -> None:
-    def objective(x, args):
-        return x**3 - args, None
+    def objective(unknowns, args):
+        x = unknowns.shared
+        matrix = ArrowMatrix(jnp.diag(9 * x**4), jnp.zeros((0, 2, 0)), jnp.zeros((0, 0, 0)))
+        gradient = parameters_only(3 * x**2 * (x**3 - args))
+        return optx.FunctionInfo.EvalGradHessian(0.5 * jnp.sum((x**3 - args) ** 2), gradient, matrix), None
 
     with ended_by_signals():
-        fit = descend(objective, jnp.array([3.0, 5.0]), jnp.array([1.0, 2.0]), 1e-12)
+        fit = descend(objective, parameters_only(jnp.array([3.0, 5.0])), jnp.array([1.0, 2.0]), 1e-12)
         next(fit)
         lost(sent)
         with pytest.raises(KeyboardInterrupt):

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 import jaxhydro as jh
 from calibration.discovery.diagnosis import Diagnosis
-from calibration.fitting.decay_fit import Interrupted, Progress
+from calibration.fitting.progress import Interrupted, Progress
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import Diverged, Options
 from calibration.results.applied_calibration import apply_calibration

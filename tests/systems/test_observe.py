@@ -21,7 +21,7 @@ from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.linearisations import Point
 from calibration.discovery.set_up import set_up_study
 from calibration.parameters.space import parameter_space
-from calibration.residuals.decays import Unknowns
+from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.measured_seas import Options, compare, seas_of, with_diffraction
 from calibration.residuals.seas import residuals_and_reach, set_up_waves
 from calibration.residuals.shooting import set_up_blocks, simulate_blocks
