@@ -110,7 +110,7 @@ def test_it_moves_with_the_waves() -> None:
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
     exact = by_sum(sea, 36.5, table, (-4.0, 0.0))
     for met, error in ((prepared, 2e-5), (sea, 1e-9)):
-        found, _ = acts(model, REST, REST, (None,) * 2, met, 36.5)
+        found, _ = acts(model, REST, REST, (None,), met, 36.5)
         assert_allclose(found, exact, atol=error * np.abs(exact).max())
 
 
