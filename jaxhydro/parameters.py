@@ -1,8 +1,9 @@
 """Parameters of physical effects, and the base class of loads, water effects and sensor effects."""
 
-import abc
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
 import equinox as eqx
@@ -10,6 +11,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
+
+from jaxhydro.choices import unknown
+
+METADATA_KEY = "parameter"  # of what `parameter` and `parameters` say of a field
 
 
 class Parameter(NamedTuple):
@@ -69,27 +74,144 @@ class Parameter(NamedTuple):
         return self if factor == 1.0 or not self.of_hull else self._replace(lower=lower, upper=upper)
 
 
+@dataclass(frozen=True)
+class ParameterField:
+    """How a field of an effect holds its parameters: a number, or one number for each key of a mapping.
+
+    Attributes:
+        about: Unit, meaning, bounds and neutral value, from the effect and a key (None for a single number).
+        label: Template of the labels, of the effect's `prefix`, the field's `name` and a `key`.
+    """
+
+    about: Callable[[Any, Any], Parameter]
+    label: str
+
+
+def parameter(
+    unit: str,
+    meaning: str,
+    lower: float = float("-inf"),
+    upper: float = float("inf"),
+    null: float = 0.0,
+    of_hull: bool = True,
+    prefix: str = "{prefix}",
+) -> Any:
+    """Field of an effect that is one parameter, `prefix.name`; its default is the neutral value.
+
+    Args:
+        unit: Unit, "-" where there is none.
+        meaning: What the parameter is, in words.
+        lower: Lower bound.
+        upper: Upper bound.
+        null: Neutral value, at which the parameter has no effect.
+        of_hull: Whether bounds that are lengths or times scale with the platform's size.
+        prefix: First part of the label, where it is not the effect's.
+    """
+    about = Parameter(unit, meaning, lower, upper, null, of_hull)
+    metadata = {METADATA_KEY: ParameterField(lambda effect, key: about, prefix + ".{name}")}
+    return eqx.field(converter=_number, default=null, metadata=metadata)
+
+
+def parameters(about: Callable[[Any, Any], Parameter], label: str = "{prefix}.{key}.{name}") -> Any:
+    """Field of an effect with one parameter for each key of a mapping, for example a degree of freedom.
+
+    Args:
+        about: Unit, meaning, bounds and neutral value, from the effect and a key.
+        label: Template of the labels, of the effect's `prefix`, the field's `name` and the `key`.
+    """
+    metadata = {METADATA_KEY: ParameterField(about, label)}
+    return eqx.field(converter=_numbers, default_factory=dict, metadata=metadata)
+
+
+def _number(value: Any) -> Float[Array, ""]:
+    return jnp.asarray(value, float)
+
+
+def _numbers(values: Mapping[Any, Any]) -> dict[Any, Float[Array, ""]]:
+    return {key: jnp.asarray(value, float) for key, value in values.items()}
+
+
+class _Place(NamedTuple):
+    """Field and key of a parameter, and what is known of it."""
+
+    field: str
+    key: Any
+    about: Callable[[Any, Any], Parameter]
+
+
 class AbstractEffect(eqx.Module):
     """Base class of loads, water effects and sensor effects: named, bounded parameters of one physical effect.
 
-    An effect knows nothing of batches, of the model around it or of calibration.
+    An effect knows nothing of batches, of the model around it or of calibration. Its parameters are the fields made by
+    `parameter` and `parameters`; the parameters of an effect that is a field are its own, too.
 
     Attributes:
-        values: Parameters that may be calibrated, by label.
+        label_prefix: First part of the parameters' labels; empty: the class's name in words.
         source: Publication or program that the law was taken from.
     """
 
-    values: eqx.AbstractVar[Mapping[str, Float[Array, ""]]]
+    label_prefix: ClassVar[str] = ""
     source: ClassVar[str] = ""
 
-    @abc.abstractmethod
+    @property
+    def prefix(self) -> str:
+        """First part of the labels of the parameters."""
+        return self.label_prefix or re.sub("(?<!^)(?=[A-Z])", "_", type(self).__name__).lower()
+
+    @property
+    def values(self) -> dict[str, Float[Array, ""]]:
+        """Every parameter by label."""
+        own = {label: _at(getattr(self, place.field), place.key) for label, place in self._places().items()}
+        return {label: value for inner in self._inner().values() for label, value in inner.values.items()} | own
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """Key of each parameter in the mapping that is its field, by label; None for a field that is one number."""
+        inner = {label: key for one in self._inner().values() for label, key in one.keys.items()}
+        return inner | {label: place.key for label, place in self._places().items()}
+
     def about(self, label: str) -> Parameter:
-        """Unit, meaning, bounds and neutral value of one parameter."""
+        """Unit, meaning, bounds and neutral value of a parameter.
+
+        Raises:
+            UnknownName: There is no parameter of that label (a KeyError).
+        """
+        if (place := self._places().get(label)) is not None:
+            return place.about(self, place.key)
+        for inner in self._inner().values():
+            if label in inner.values:
+                return inner.about(label)
+        raise unknown("parameter", label, self.values)
 
     def at_values(self, values: Mapping[str, Float[Array, ""] | float]) -> Self:
         """This effect with some parameters changed, unchecked; labels of other effects are ignored."""
-        new = {label: jnp.asarray(values.get(label, old), float) for label, old in self.values.items()}
-        return eqx.tree_at(lambda x: x.values, self, new) if new else self
+        new: dict[str, Any] = {name: inner.at_values(values) for name, inner in self._inner().items()}
+        for label, place in self._places().items():
+            if label in values and place.key is None:
+                new[place.field] = values[label]
+            elif label in values:
+                new[place.field] = {**new.get(place.field, getattr(self, place.field)), place.key: values[label]}
+        return replace(self, **new) if new else self
+
+    def _places(self) -> dict[str, _Place]:
+        """Where the parameters of this effect's own fields are, by label."""
+        found = {}
+        for field in fields(self):
+            if (of := field.metadata.get(METADATA_KEY)) is None:
+                continue
+            value = getattr(self, field.name)
+            for key in value if isinstance(value, Mapping) else (None,):
+                found[of.label.format(prefix=self.prefix, name=field.name, key=key)] = _Place(field.name, key, of.about)
+        return found
+
+    def _inner(self) -> dict[str, "AbstractEffect"]:
+        """Effects that are fields of this one, by field."""
+        held = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: value for name, value in held.items() if isinstance(value, AbstractEffect)}
+
+
+def _at(value: Any, key: Any) -> Float[Array, ""]:
+    return value if key is None else value[key]
 
 
 def strongly_typed(tree: Any) -> Any:

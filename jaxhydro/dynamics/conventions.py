@@ -1,9 +1,9 @@
 """Conventions of a strip model: wetting, diffraction, axes of strips, place of the waves."""
 
-from dataclasses import dataclass, fields
-from typing import Literal, get_args, get_type_hints
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, get_args, get_type_hints
 
-from jaxhydro.choices import check
+from jaxhydro.choices import check, unknown
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,18 @@ class Conventions:
     def __post_init__(self) -> None:
         """Raise UnknownName for a value that is not allowed."""
         check(**{field.name: (getattr(self, field.name), allowed_values(field.name)) for field in fields(self)})
+
+    def changed(self, **changes: Any) -> "Conventions":
+        """These conventions with others in place of some.
+
+        Raises:
+            UnknownName: There is no such convention, or it has no such value.
+        """
+        names = [field.name for field in fields(self)]
+        for name in changes:
+            if name not in names:
+                raise unknown("convention", name, names)
+        return replace(self, **changes)
 
 
 def allowed_values(convention: str) -> tuple[str | bool, ...]:

@@ -71,8 +71,7 @@ class Model(eqx.Module):
         how = self.conventions
         if how.diffraction == "none" or not self.hull.cylinders.radius.size:
             return None
-        ramp = how.diffraction == "ramp"
-        return dataclasses.replace(self.hull.cylinders, lag=how.lag, bound=how.bound, ramp=ramp)
+        return dataclasses.replace(self.hull.cylinders, lag=how.lag, bound=how.bound, ramp=how.diffraction == "ramp")
 
     @property
     def effects(self) -> tuple[AbstractEffect, ...]:
@@ -130,11 +129,7 @@ class Model(eqx.Module):
         return self.at_values(values)
 
     def at_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
-        """This model with some parameters changed, unchecked.
-
-        It is for fitted values, which may exceed a physical limit by rounding.
-        """
-
+        """This model with some parameters changed, unchecked: fitted values may exceed a physical limit by rounding."""
         loads = tuple(load.at_values(values) for load in self.loads)
         water = tuple(effect.at_values(values) for effect in self.water)
         sensors = tuple(effect.at_values(values) for effect in self.sensors)
@@ -146,12 +141,7 @@ class Model(eqx.Module):
         Raises:
             UnknownName: There is no such convention, or it has no such value.
         """
-        names = [field.name for field in dataclasses.fields(Conventions)]
-        for name in changed:
-            if name not in names:
-                raise unknown("convention", name, names)
-        changes: dict[str, Any] = dict(changed)
-        return dataclasses.replace(self, conventions=dataclasses.replace(self.conventions, **changes))
+        return dataclasses.replace(self, conventions=self.conventions.changed(**changed))
 
     def with_effect(self, effect: AbstractEffect) -> "Model":
         """This model with one more load, water effect or sensor effect.
@@ -173,20 +163,12 @@ class Model(eqx.Module):
 
     @property
     def transfer(self) -> Transfer | None:
-        """Difference-frequency transfer function with which irregular seas are prepared, or None.
-
-        Raises:
-            ValueError: Two loads have one.
-        """
+        """Difference-frequency transfer function with which irregular seas are prepared, or None; ValueError for two."""
         return at_most_one("difference-frequency transfer function", [load.transfer_function() for load in self.loads])
 
     @property
     def excitation(self) -> Excitation | None:
-        """First-order excitation with which irregular seas are prepared, or None.
-
-        Raises:
-            ValueError: Two loads have one.
-        """
+        """First-order excitation with which irregular seas are prepared, or None; ValueError for two."""
         return at_most_one("computed excitation", [load.excitation_table() for load in self.loads])
 
     def through(self, sea: AbstractSea) -> AbstractSea:
@@ -214,10 +196,7 @@ class Model(eqx.Module):
         return position
 
     def clock_lag(self) -> Float[Array, ""] | None:
-        """Lag (s) of the recorded motions behind the waves, or None.
-
-        The record at t shows the motion at t - lag.
-        """
+        """Lag (s) of the recorded motions behind the waves, or None: the record at t shows the motion at t - lag."""
         return optional_sum([effect.clock_lag() for effect in self.sensors])
 
     def rest(self) -> State:
@@ -229,16 +208,7 @@ class Model(eqx.Module):
         return tuple(load.settled(displacement) for load in self.loads)
 
     def instant(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> Instant:
-        """Motion, submerged geometry and flow at an instant.
-
-        Args:
-            time: Time (s).
-            state: Position, velocity and memory.
-            sea: The sea, before water effects.
-
-        Returns:
-            What the loads read.
-        """
+        """Motion, submerged geometry and flow at a time (s), in a state and a sea before water effects."""
         return instant_at(
             time,
             state.position,
@@ -253,28 +223,13 @@ class Model(eqx.Module):
         )
 
     def sum_of_loads(self, now: Instant, memory: tuple[Any, ...]) -> LoadSum:
-        """Sum of all loads in body axes.
-
-        Args:
-            now: Motion, geometry and flow at the instant.
-            memory: Memory of each load.
-        """
+        """Sum of all loads in body axes, at an instant and with the memory of each load."""
         return sum_of_loads(self.loads, now, memory)
 
     def rate(self, time: Float[Array, ""], state: State, sea: AbstractSea) -> State:
-        """Time derivative of the state: Newton and Euler about the reference point, body axes.
-
-        Args:
-            time: Time (s).
-            state: Position, velocity and memory.
-            sea: The sea.
-
-        References:
-            Fossen (2011), section 3.3.
-        """
+        """Time derivative of the state at a time (s), by Newton and Euler (`body_acceleration`)."""
         total = sum_of_loads(self.loads, self.instant(time, state, sea), state.memory)
-        fixed = self.conventions.directions == "earth"
-        acceleration = body_acceleration(self.body, state.velocity, total, fixed)
+        acceleration = body_acceleration(self.body, state.velocity, total, self.conventions.directions == "earth")
         return State(self.position_rate(state.position, state.velocity), acceleration, total.memory_rate)
 
     position_rate = staticmethod(position_rate)

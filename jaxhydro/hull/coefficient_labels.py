@@ -27,10 +27,10 @@ def coefficient_of(symbol: str, kind: str) -> str:
     return f"{'Ca' if symbol in OF_ADDED_MASS else 'Cd'}_{kind}"
 
 
-def parameter_labels(rows: Iterable[tuple[str, str]], symbol: str, shares: Shares) -> list[str]:
-    """Labels of a parameter `symbol` (Ca, Cd, Cp, drag_exponent) for each group and kind (t, z)."""
+def owners(rows: Iterable[tuple[str, str]], symbol: str, shares: Shares) -> list[tuple[str, str]]:
+    """Groups that own a parameter `symbol` (Ca, Cd, Cp, drag_exponent), with its kind, for each group and kind (t, z)."""
     owner = {(one.group, one.name): one.owner for one in shares}
-    return [f"{owner.get((group, coefficient_of(symbol, kind)), group)}.{symbol}_{kind}" for group, kind in rows]
+    return [(owner.get((group, coefficient_of(symbol, kind)), group), kind) for group, kind in rows]
 
 
 def sharing(label: str, shares: Shares) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.hull.coefficient_labels import Shares, parameter_labels, shares_of
+from jaxhydro.hull.coefficient_labels import Shares, owners, shares_of
 from jaxhydro.hull.strips import Member, Strips
 from jaxhydro.hull.waterplane import wet_section
 
@@ -38,9 +38,9 @@ class Ends(eqx.Module):
     # ends of members that lie at the surface: their place, the element beside, its wet share at the reference position
     afloat: tuple[tuple[int, int, float], ...] = eqx.field(static=True, default=())
 
-    def parameters(self, symbol: str) -> list[str]:
-        """Labels of a parameter, such as column.Cd_z of `symbol` Cd, in the order of `labels`."""
-        return parameter_labels([(group, "z") for group in self.labels], symbol, self.shares)
+    def owners(self, symbol: str) -> list[tuple[str, str]]:
+        """Group and kind (t, z) of a parameter, such as `symbol` Cd, in the order of `labels`."""
+        return owners([(group, "z") for group in self.labels], symbol, self.shares)
 
 
 class _End(NamedTuple):

@@ -23,7 +23,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from jaxhydro.hull.coefficient_labels import Shares, parameter_labels, shares_of
+from jaxhydro.hull.coefficient_labels import Shares, owners, shares_of
 from jaxhydro.hull.waterplane import wet_section
 
 COLUMN_SLOPE = math.cos(math.radians(45.0))
@@ -228,9 +228,9 @@ class Elements(eqx.Module):
     labels: tuple[tuple[str, str], ...] = eqx.field(static=True)  # (group, "t" or "z")
     shares: Shares = eqx.field(static=True, default=())
 
-    def parameters(self, symbol: str) -> list[str]:
-        """Labels of a parameter, such as column.Cd_t of `symbol` Cd, in the order of `labels`."""
-        return parameter_labels(self.labels, symbol, self.shares)
+    def owners(self, symbol: str) -> list[tuple[str, str]]:
+        """Group and kind (t, z) of a parameter, such as `symbol` Cd, in the order of `labels`."""
+        return owners(self.labels, symbol, self.shares)
 
 
 _STRIP_ARRAYS = ("start", "axis", "directions", "fraction", "weight", "size", "taper", "shape")

@@ -2,12 +2,9 @@
 
 from typing import Any, ClassVar
 
-from jaxtyping import Array, Float
-
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.matrix import assemble, meaning, place, unit
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.matrix import Entries, assemble, by_entry
 
 
 class AddedMass(AbstractLoad):
@@ -18,13 +15,8 @@ class AddedMass(AbstractLoad):
     Labels are `added_mass.A44` and so on. Newman 1977, Marine Hydrodynamics, chapter 4, its quadratic terms left out.
     """
 
-    values: dict[str, Float[Array, ""]]
+    entries: Entries = by_entry("A", "added mass", "acceleration")
     source: ClassVar[str] = "Newman 1977, chapter 4"
 
-    def about(self, label: str) -> Parameter:
-        i, j = place(label)
-        lower = 0.0 if i == j else float("-inf")
-        return Parameter(unit("A", label), meaning("added mass", "acceleration", label), lower)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(added_mass=assemble(self.values))
+        return Action(added_mass=assemble(self.entries))

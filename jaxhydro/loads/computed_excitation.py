@@ -2,15 +2,12 @@
 
 from typing import Any, ClassVar
 
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.waves.excitation import Excitation
-
-LABEL = "computed_excitation.share"
 
 
 class ComputedExcitation(AbstractLoad):
@@ -27,17 +24,9 @@ class ComputedExcitation(AbstractLoad):
     with `Model.excitation`.
     """
 
-    values: dict[str, Float[Array, ""]]
     excitation: Excitation
+    share: Float[Array, ""] = parameter("-", "share of the computed excitation, in place of the strips'", -0.5, 2.0)
     source: ClassVar[str] = "Newman 1977, Marine Hydrodynamics, section 6.15; OpenFAST HydroDyn, WAMIT module (ExctnMod 1)"
-
-    @classmethod
-    def of(cls, excitation: Excitation, share: float = 1.0) -> "ComputedExcitation":
-        """Load from an excitation table; `share` (-) of it."""
-        return cls({LABEL: jnp.asarray(float(share))}, excitation)
-
-    def about(self, label: str) -> Parameter:
-        return Parameter("-", "share of the computed excitation, in place of the strips'", -0.5, 2.0)
 
     def excitation_table(self) -> Excitation:
         return self.excitation
@@ -46,11 +35,11 @@ class ComputedExcitation(AbstractLoad):
         return "excitation", float(self.excitation.omega[0]), float(self.excitation.omega[-1])
 
     def replaces(self) -> Float[Array, ""]:
-        return self.values[LABEL]
+        return self.share
 
     def act(self, now: Instant, memory: Any) -> Action:
         if now.end_flow.pressure is None:
             return Action()
         if now.excitation is None:
             raise ValueError("the sea was made without the platform's excitation: prepare it with `Model.excitation`")
-        return Action(force=self.values[LABEL] * now.excitation)
+        return Action(force=self.share * now.excitation)

@@ -10,9 +10,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
-
-SHARE = Parameter("-", "share of the computed radiation memory, which at 1 is complete", 0.0, 2.0)
+from jaxhydro.parameters import parameter
 
 
 class ComputedRadiation(AbstractLoad):
@@ -35,20 +33,12 @@ class ComputedRadiation(AbstractLoad):
     frequency that the coefficients were computed at.
     """
 
-    values: dict[str, Float[Array, ""]]
     rates: Float[Array, "n n"]
     drive: Float[Array, "n 6"]
     output: Float[Array, "6 n"]
+    share: Float[Array, ""] = parameter("-", "share of the computed radiation memory, which at 1 is complete", 0.0, 2.0)
     highest: float = eqx.field(static=True, default=math.inf)
     source: ClassVar[str] = "Cummins 1962, Schiffstechnik 9, 101-109"
-
-    @classmethod
-    def of(
-        cls, rates: np.ndarray, drive: np.ndarray, output: np.ndarray, share: float = 0.0, highest: float = math.inf
-    ) -> "ComputedRadiation":
-        """Load from a state space; `share` (-) of it, 0 being the neutral value."""
-        a, b, c = (jnp.asarray(matrix, float) for matrix in (rates, drive, output))
-        return cls({"computed_radiation.share": jnp.asarray(share, float)}, a, b, c, highest)
 
     def rest(self) -> Float[Array, " n"]:
         return jnp.zeros(self.rates.shape[-1])
@@ -59,9 +49,6 @@ class ComputedRadiation(AbstractLoad):
     def covers(self) -> tuple[str, float, float] | None:
         return None if math.isinf(self.highest) else ("radiation", 0.0, self.highest)  # B(0) = 0 is known
 
-    def about(self, label: str) -> Parameter:
-        return SHARE
-
     def act(self, now: Instant, memory: Any) -> Action:
-        force = -self.values["computed_radiation.share"] * (self.output @ memory)
+        force = -self.share * (self.output @ memory)
         return Action(body_force=force, memory_rate=self.rates @ memory + self.drive @ now.velocity)

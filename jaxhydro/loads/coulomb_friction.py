@@ -1,26 +1,18 @@
 """Coulomb (dry) friction in each degree of freedom."""
 
-from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 from jaxhydro.parameters import Parameter
 
-PARAMETERS = {
-    "force": both_units("N", "N m", "dry friction in {dof}, whatever the speed", 0.0),
-    "speed": (
-        Parameter("m/s", "speed in {dof} below which dry friction is resolved as a damper", 1e-6, 10.0, 0.01),
-        Parameter("rad/s", "speed in {dof} below which dry friction is resolved as a damper", 1e-8, 1.0, 2e-4),
-    ),
-}
+RESOLVED = "speed in {dof} below which dry friction is resolved as a damper"
 
 
-class CoulombFriction(AbstractLoad):
+class CoulombFriction(AbstractLoadPerDof):
     """Coulomb friction in each degree of freedom, smoothed by tanh.
 
     F_i = -f_i tanh(v_i/v0) along body axes: the same force at all speeds well above v0.
@@ -38,17 +30,10 @@ class CoulombFriction(AbstractLoad):
     Labels are `coulomb_friction.surge.force` and so on.
     """
 
-    values: dict[str, Float[Array, ""]]
+    force: PerDof = by_dof("N", "N m", "dry friction in {dof}, whatever the speed", 0.0)
+    speed: PerDof = by_dof(Parameter("m/s", RESOLVED, 1e-6, 10.0, 0.01), Parameter("rad/s", RESOLVED, 1e-8, 1.0, 2e-4))
     source: ClassVar[str] = "Den Hartog 1931, Trans. ASME 53, APM-53-9, 107-115"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str], speed: float | None = None) -> Self:
-        """Load at its neutral value, in some degrees of freedom."""
-        return cls(nulls("coulomb_friction", dofs, PARAMETERS, {"speed": speed}))
-
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        sign = jnp.tanh(dofs_only(now.velocity, self.values) / entries(self.values, "speed"))
-        return Action(body_force=all_dofs(-entries(self.values, "force") * sign, self.values))
+        sign = jnp.tanh(self.dofs_only(now.velocity) / self.entries(self.speed))
+        return Action(body_force=self.all_dofs(-self.entries(self.force) * sign))

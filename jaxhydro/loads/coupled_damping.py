@@ -1,16 +1,12 @@
 """Linear damping between two degrees of freedom."""
 
-from collections.abc import Sequence
 from typing import Any, ClassVar
-
-import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.matrix import assemble, place, unit
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.matrix import Entries, assemble, row_and_column, unit
+from jaxhydro.parameters import Parameter, parameters
 
 
 class CoupledDamping(AbstractLoad):
@@ -23,18 +19,14 @@ class CoupledDamping(AbstractLoad):
     `coupled_damping.B15` and so on.
     """
 
-    values: dict[str, Float[Array, ""]]
+    entries: Entries = parameters(lambda load, key: _about(key), "{prefix}.{key}")
     source: ClassVar[str] = "Faltinsen 1990, chapter 3"
 
-    @classmethod
-    def null(cls, labels: Sequence[str] = ("B15",)) -> "CoupledDamping":
-        """Load at its neutral value, for some pairs of degrees of freedom."""
-        return cls({f"coupled_damping.{label}": jnp.zeros(()) for label in labels})
-
-    def about(self, label: str) -> Parameter:
-        i, j = place(label)
-        return Parameter(unit("B", label), f"linear damping that couples {DOFS[i]} and {DOFS[j]}")
-
     def act(self, now: Instant, memory: Any) -> Action:
-        matrix = assemble(self.values)
+        matrix = assemble(self.entries)
         return Action(body_force=-(matrix + matrix.T) @ now.velocity)
+
+
+def _about(key: str) -> Parameter:
+    i, j = row_and_column(key)
+    return Parameter(unit("B", key), f"linear damping that couples {DOFS[i]} and {DOFS[j]}")

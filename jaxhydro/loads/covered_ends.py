@@ -7,9 +7,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
-
-LABEL = "covered_ends.share"
+from jaxhydro.parameters import parameter
 
 
 class CoveredEnds(AbstractLoad):
@@ -23,16 +21,10 @@ class CoveredEnds(AbstractLoad):
     difference is the force along the pontoons, some 15 % of the surge excitation of a VolturnUS-S in long waves.
     """
 
-    values: dict[str, Float[Array, ""]]
+    share: Float[Array, ""] = parameter(
+        "-", "share of the waves' pressure on the ends of pontoons that is not there", -1.0, 2.0
+    )
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, loads on member ends (what this takes away)"
-
-    @classmethod
-    def null(cls) -> "CoveredEnds":
-        """Load at its neutral value: pressure on all ends."""
-        return cls({LABEL: jnp.zeros(())})
-
-    def about(self, label: str) -> Parameter:
-        return Parameter("-", "share of the waves' pressure on the ends of pontoons that is not there", -1.0, 2.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow, ends = now.end_flow, now.hull.ends
@@ -40,4 +32,4 @@ class CoveredEnds(AbstractLoad):
             return Action()
         area = jnp.where(ends.radius > 0, 0.0, ends.area)  # 0 on the faces of tapered pontoons
         pressure = now.environment.density * flow.pressure * area * ends.outward * flow.wet
-        return Action(end_force=self.values[LABEL] * pressure)
+        return Action(end_force=self.share * pressure)

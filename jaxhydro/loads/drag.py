@@ -4,35 +4,70 @@ A line is a strip's direction or an end's axis (see `Hull`): strips' first direc
 """
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads.end_inertia import spread_ends
+from jaxhydro.loads.coefficients import PerGroup, by_group, spread, spread_ends
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.strip_inertia import spread
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import Parameter, parameter, parameters
 
 MIN_SQUARED_SPEED = (
     1e-12  # m2/s2 under the root: keeps the gradient of the speed finite at rest, and is lost in rounding elsewhere
 )
-COEFFICIENT = Parameter("-", "{way} drag coefficient of {group}, on {area} area", 0.0, 30.0)
-SUCTION = Parameter("-", "share of the drag of the ends of {group} that moves to where the flow leaves them", 0.0, 1.0)
+SUCTION = "share of the drag of the ends of {group} that moves to where the flow leaves them"
+MEANING = "{way} drag coefficient of {group}, on {area} area"
 
 POWER_LABEL = "amplitude_dependent_drag"  # labels of coefficients that go with a power of the speed
 REFERENCE_SPEED = 0.5  # m/s at which Cd is what it says
 MIN_SPEED_RATIO = 0.04  # of that speed, below which the coefficient no longer changes
 SLOW_DRAG_LABEL = "sea_state_dependent_drag"  # labels of drag in which slow motion has a coefficient of its own
-SLOW_DRAG_PARAMETERS = {
-    f"{SLOW_DRAG_LABEL}.low_share": Parameter(
-        "-", "share of all drag coefficients that the platform's slow motion feels", 0.0, 3.0, 1.0
-    ),
-    f"{SLOW_DRAG_LABEL}.cutoff": Parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, 0.03),
-}
+TRANSVERSE = {"way": "transverse", "area": "projected"}
+VERTICAL_OR_AXIAL = {"way": "vertical or axial", "area": "plan or end"}
 
-Values = Mapping[str, Float[Array, ""]]
+
+def drag_coefficients() -> Any:
+    """Field of a load with the drag coefficients of strips and ends."""
+    return by_group("-", MEANING, 0.0, 30.0, t=TRANSVERSE, z=VERTICAL_OR_AXIAL)
+
+
+def law_parameters(unit: str, meaning: str, lower: float, upper: float, null: float = 0.0) -> Any:
+    """Field of a load with a parameter of a drag law for each drag coefficient; {way} and {group} are filled in."""
+    return by_group(unit, meaning, lower, upper, null, t=TRANSVERSE, z=VERTICAL_OR_AXIAL)
+
+
+def low_share() -> Any:
+    """Field of a load: how much of all drag coefficients slow motion feels."""
+    meaning = "share of all drag coefficients that the platform's slow motion feels"
+    return parameter("-", meaning, 0.0, 3.0, 1.0, prefix=SLOW_DRAG_LABEL)
+
+
+def cutoff() -> Any:
+    """Field of a load: frequency (Hz) below which the platform's motion is slow."""
+    return parameter("Hz", "frequency below which the platform's motion is slow", 0.005, 0.08, 0.03, prefix=SLOW_DRAG_LABEL)
+
+
+def exponents_of_the_speed() -> Any:
+    """Field of a load with an exponent of the speed for each group."""
+
+    def about(load: Any, group: str) -> Parameter:
+        speed = getattr(load, "speed", REFERENCE_SPEED)
+        return Parameter("-", f"exponent of the drag coefficients of {group} in the speed over {speed:g} m/s", -1.0, 1.0)
+
+    return parameters(about, POWER_LABEL + ".{key}.{name}")
+
+
+def of_both_kinds(exponent: Mapping[str, Float[Array, ""] | float]) -> PerGroup:
+    """Exponents of groups, for both kinds of drag coefficient."""
+    return {(group, kind): value for group, value in exponent.items() for kind in "tz"}
+
+
+def groups_of(coefficients: PerGroup) -> tuple[str, ...]:
+    """Groups of members with a drag coefficient."""
+    return tuple(dict.fromkeys(group for group, _ in coefficients))
 
 
 def quadratic(
@@ -71,36 +106,36 @@ def one_sided(
     return quadratic(density, area, relative) + 0.5 * density * area * suction * outward * relative**2
 
 
-def of_strips(now: Instant, values: Values, symbol: str, missing: float) -> Float[Array, "2 n"]:
-    """Parameters `group.symbol_t` and `group.symbol_z` by direction and strip; `missing` where absent."""
-    return now.over_strips(spread(now.hull.elements, values, symbol, missing))
+def of_strips(now: Instant, values: PerGroup, missing: float) -> Float[Array, "2 n"]:
+    """Parameters of drag by direction and strip; `missing` where absent."""
+    return now.over_strips(spread(now.hull.elements, values, "Cd", missing))
 
 
-def of_ends(now: Instant, values: Values, symbol: str, missing: float) -> Float[Array, " m"]:
-    """Parameters `group.symbol_z` by end; `missing` where absent."""
-    return spread_ends(now.hull.ends, values, symbol, missing)
+def of_ends(now: Instant, values: PerGroup, missing: float) -> Float[Array, " m"]:
+    """Parameters of drag by end; `missing` where absent."""
+    return spread_ends(now.hull.ends, values, "Cd", missing)
 
 
-def strip_area(now: Instant, values: Values) -> Float[Array, "2 n"]:
-    """Cd A (m²) by direction and strip, A normal to the flow; 0 without a coefficient in `values`."""
-    return of_strips(now, values, "Cd", 0.0) * now.strip_shape.facing
+def strip_area(now: Instant, coefficients: PerGroup) -> Float[Array, "2 n"]:
+    """Cd A (m²) by direction and strip, A normal to the flow; 0 without a coefficient."""
+    return of_strips(now, coefficients, 0.0) * now.strip_shape.facing
 
 
-def end_area(now: Instant, values: Values) -> Float[Array, " m"]:
-    """Cd A (m²) by end, A the free wet area; 0 without a coefficient in `values`."""
-    return of_ends(now, values, "Cd", 0.0) * now.end_shape.facing * now.end_flow.wet
+def end_area(now: Instant, coefficients: PerGroup) -> Float[Array, " m"]:
+    """Cd A (m²) by end, A the free wet area; 0 without a coefficient."""
+    return of_ends(now, coefficients, 0.0) * now.end_shape.facing * now.end_flow.wet
 
 
-def lines_of(hull: Hull, labels: Iterable[str], both: bool = False) -> tuple[int, ...]:
-    """Lines whose drag coefficient is among `labels`, in order.
+def lines_of(hull: Hull, coefficients: Iterable[tuple[str, str]], both: bool = False) -> tuple[int, ...]:
+    """Lines whose drag coefficient is among `coefficients`, in order.
 
     Args:
         hull: The hull.
-        labels: Labels of drag coefficients.
+        coefficients: Groups and kinds of drag coefficients.
         both: Include the other directions of their strips.
     """
-    known, elements = set(labels), hull.elements
-    names, of_ends = elements.parameters("Cd"), hull.ends.parameters("Cd")
+    known, elements = set(coefficients), hull.elements
+    names, of_ends = elements.owners("Cd"), hull.ends.owners("Cd")
     strips = np.array([[names[row[e]] in known for e in hull.strips.element] for row in elements.label], bool)
     strips = strips.reshape(2, len(hull.strips.element))
     if both:
@@ -125,20 +160,6 @@ def on_all(some: Float[Array, " k"], lines: tuple[int, ...], count: int) -> Floa
     return jnp.concatenate([some, jnp.zeros(1)])[place]
 
 
-def about(label: str, more: Mapping[str, Parameter]) -> Parameter:
-    """Unit, meaning and bounds of a drag law's parameter.
-
-    Args:
-        label: Label `group.Cd_t` or `group.Cd_z`, or of the same form with a name of `more`.
-        more: Further parameters; {way}, {group} and {area} in their meanings are filled in.
-    """
-    group, symbol = label.rsplit(".", 1)
-    name, kind = symbol.rsplit("_", 1)
-    found = COEFFICIENT if name == "Cd" else more[name]
-    way, area = ("transverse", "projected") if kind == "t" else ("vertical or axial", "plan or end")
-    return found._replace(meaning=found.meaning.format(way=way, group=group, area=area))
-
-
 def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: float = REFERENCE_SPEED) -> Float[Array, "..."]:
     """Factor ((u² + e²)/(U0² + e²))^(n/2) of the drag; exactly 1 for n = 0.
 
@@ -149,22 +170,3 @@ def power(square: Float[Array, "..."], exponent: Float[Array, "..."], speed: flo
     """
     slow = (MIN_SPEED_RATIO * speed) ** 2
     return jnp.exp(0.5 * exponent * jnp.log((square + slow) / (speed**2 + slow)))
-
-
-def groups_of(values: Iterable[str]) -> tuple[str, ...]:
-    """Groups of members whose drag coefficients are among labels."""
-    return tuple(dict.fromkeys(label.rsplit(".", 1)[0] for label in values if ".Cd_" in label))
-
-
-def exponents(values: Values) -> dict[str, Float[Array, ""]]:
-    """Exponents of the speed, by the labels that `of_strips` and `of_ends` ask for."""
-    named = {
-        label.removeprefix(f"{POWER_LABEL}."): value for label, value in values.items() if label.startswith(f"{POWER_LABEL}.")
-    }
-    return {label + way: value for label, value in named.items() for way in ("_t", "_z")}
-
-
-def about_exponent(label: str, speed: float = REFERENCE_SPEED) -> Parameter:
-    """Unit, meaning and bounds of an exponent of the speed."""
-    group = label.removeprefix(f"{POWER_LABEL}.").removesuffix(".exponent")
-    return Parameter("-", f"exponent of the drag coefficients of {group} in the speed over {speed:g} m/s", -1.0, 1.0)

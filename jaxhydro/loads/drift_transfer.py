@@ -2,12 +2,11 @@
 
 from typing import Any, ClassVar
 
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.waves.sea import DRIFT_ENTRIES
 from jaxhydro.waves.transfer import Transfer
 
@@ -25,17 +24,9 @@ class DriftTransfer(AbstractLoad):
     `Model.transfer`.
     """
 
-    values: dict[str, Float[Array, ""]]
     transfer: Transfer
+    share: Float[Array, ""] = parameter("-", "share of the computed difference-frequency force", 0.0, 3.0)
     source: ClassVar[str] = "Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 5; Newman 1974"
-
-    @classmethod
-    def of(cls, transfer: Transfer, share: float = 1.0) -> "DriftTransfer":
-        """Load from a transfer function; `share` (-) of it."""
-        return cls({"drift_transfer.share": jnp.asarray(float(share))}, transfer)
-
-    def about(self, label: str) -> Parameter:
-        return Parameter("-", "share of the computed difference-frequency force", 0.0, 3.0)
 
     def transfer_function(self) -> Transfer:
         return self.transfer
@@ -48,4 +39,4 @@ class DriftTransfer(AbstractLoad):
             return Action()
         if now.drift.shape[0] == DRIFT_ENTRIES:
             raise ValueError("the sea was made without the platform's transfer function: prepare it with `Model.transfer`")
-        return Action(force=self.values["drift_transfer.share"] * now.drift[DRIFT_ENTRIES:])
+        return Action(force=self.share * now.drift[DRIFT_ENTRIES:])

@@ -2,12 +2,10 @@
 
 from typing import Any, ClassVar
 
-from jaxtyping import Array, Float
-
 from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.coefficients import PerGroup, by_group
 from jaxhydro.loads.drag import end_area, quadratic
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 
 class EndDrag(AbstractLoad):
@@ -17,15 +15,11 @@ class EndDrag(AbstractLoad):
     where the section changes (`EndShape`).
 
     Robertson et al. 2014 (NREL/TP-5000-60601, the OC4 semisubmersible); OpenFAST's own input is twice this Cd, since it
-    halves again. Ends whose coefficient is not in `values` have another law.
+    halves again. Ends whose coefficient is not in `Cd` have another law.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Cd: PerGroup = by_group("-", "axial drag coefficient of the ends of {group}, on the end's area", 0.0, 30.0)
     source: ClassVar[str] = "Robertson et al. 2014, NREL/TP-5000-60601"
 
-    def about(self, label: str) -> Parameter:
-        group = label.rsplit(".", 1)[0]
-        return Parameter("-", f"axial drag coefficient of the ends of {group}, on the end's area", 0.0, 30.0)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(end_force=quadratic(now.environment.density, end_area(now, self.values), now.end_flow.relative))
+        return Action(end_force=quadratic(now.environment.density, end_area(now, self.Cd), now.end_flow.relative))

@@ -1,30 +1,12 @@
 """Inertia and dynamic pressure at member ends."""
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
-import jax.numpy as jnp
-from jaxtyping import Array, Float
-
-from jaxhydro.hull.ends import Ends
 from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.coefficients import PerGroup, by_group, spread_ends
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
-
-def spread_ends(
-    ends: Ends, values: Mapping[str, Float[Array, ""]], symbol: str, missing: float | None = None
-) -> Float[Array, " m"]:
-    """Coefficients `group.symbol_z` by end; `missing` where absent.
-
-    Raises:
-        KeyError: A coefficient is absent and `missing` is None.
-    """
-    if not ends.labels:
-        return jnp.zeros(len(ends.label))
-    labels = ends.parameters(symbol)
-    stacked = jnp.stack([jnp.asarray(values[x] if missing is None else values.get(x, missing)) for x in labels])
-    return stacked[jnp.asarray(ends.label)]
+MEANING = "axial added-mass coefficient of the ends of {group}, on half a sphere"
 
 
 class EndInertia(AbstractLoad):
@@ -38,16 +20,12 @@ class EndInertia(AbstractLoad):
     cuts what leans, the waves' pressure on the waterplane is part of it: `waterplane.Leaning`.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Ca: PerGroup = by_group("-", MEANING, 0.0, 10.0)
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, loads on member ends"
-
-    def about(self, label: str) -> Parameter:
-        group = label.rsplit(".", 1)[0]
-        return Parameter("-", f"axial added-mass coefficient of the ends of {group}, on half a sphere", 0.0, 10.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow, ends, density = now.end_flow, now.hull.ends, now.environment.density
-        mass = density * spread_ends(ends, self.values, "Ca") * now.end_shape.volume * flow.wet
+        mass = density * spread_ends(ends, self.Ca, "Ca") * now.end_shape.volume * flow.wet
         if flow.acceleration is None:
             return Action(end_mass=mass)
         assert flow.pressure is not None

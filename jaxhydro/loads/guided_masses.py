@@ -1,18 +1,16 @@
 """Masses that follow a point of the platform in some directions only, such as a carriage."""
 
-from typing import Any, ClassVar, Self
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import Parameter, parameters
 from jaxhydro.rotations import cross
-
-EFFECT = "guided_masses"
 
 
 class GuidedMasses(AbstractLoad):
@@ -30,41 +28,29 @@ class GuidedMasses(AbstractLoad):
     `guided_masses.NAME.mass`.
 
     Attributes:
-        values: Masses, kg, by label.
         names: Of every mass, in the order of what follows.
         points: Place of P of every mass from the reference point, m, body axes.
         along: Earth axes, 0 to 2 for x, y, z, of every mass.
         weighs: Whether the platform carries the weight of every mass.
+        mass: Masses (kg) by name.
     """
 
-    values: dict[str, Float[Array, ""]]
     names: tuple[str, ...] = eqx.field(static=True)
     points: Float[Array, "k 3"]
     along: tuple[tuple[int, ...], ...] = eqx.field(static=True)
     weighs: tuple[bool, ...] = eqx.field(static=True)
+    mass: Mapping[str, Float[Array, ""] | float] = parameters(lambda load, name: load.about_mass(name))
     source: ClassVar[str] = "Goldstein, Poole and Safko 2002, Classical Mechanics, eq. 1.45 (d'Alembert's principle)"
 
-    @classmethod
-    def of(
-        cls,
-        masses: dict[str, float],
-        points: Float[np.ndarray, "k 3"],
-        along: tuple[tuple[int, ...], ...],
-        weighs: tuple[bool, ...],
-    ) -> Self:
-        """Load from masses (kg) by name; the other arguments are the attributes, in that order."""
-        values = {f"{EFFECT}.{name}.mass": jnp.asarray(mass, float) for name, mass in masses.items()}
-        return cls(values, tuple(masses), jnp.asarray(points, float).reshape(-1, 3), along, weighs)
-
-    def about(self, label: str) -> Parameter:
-        name = label.removeprefix(f"{EFFECT}.").removesuffix(".mass")
+    def about_mass(self, name: str) -> Parameter:
+        """Unit and meaning of a mass by its name."""
         axes = " and ".join("xyz"[axis] for axis in self.along[self.names.index(name)])
         return Parameter("kg", f"mass of {name}, which follows the platform along {axes}", 0.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
         spin, force, inertia = now.velocity[3:], jnp.zeros(6), jnp.zeros((6, 6))
         for name, point, axes, weighs in zip(self.names, self.points, self.along, self.weighs, strict=True):
-            mass = self.values[f"{EFFECT}.{name}.mass"]
+            mass = self.mass[name]
             inward = cross(spin, cross(spin, point))
             for axis in axes:
                 direction = now.rotation[axis]  # the earth axis in body axes

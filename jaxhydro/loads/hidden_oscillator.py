@@ -1,25 +1,17 @@
 """Undeclared oscillator in the hull, such as sloshing in a tank."""
 
 import math
-from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
-from jaxhydro.parameters import Parameter
-
-PARAMETERS = {
-    "mass": both_units("kg", "kg m2", "what swings in {dof}, on top of the declared mass", 0.0),
-    "period": both_units("s", "s", "period of what swings in {dof}, the hull held", 0.5, 500.0, 20.0),
-    "damping_ratio": both_units("-", "-", "damping ratio of what swings in {dof}, the hull held", 0.0, 1.0, 0.03),
-}
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 
 
-class HiddenOscillator(AbstractLoad):
+class HiddenOscillator(AbstractLoadPerDof):
     """Mass on a damped spring in the hull, in each degree of freedom.
 
     F_i = m (w0^2 e + 2 zeta w0 (w - v)), de/dt = w - v, m dw/dt = -F: a mass on a spring in the hull, along earth axes.
@@ -36,24 +28,18 @@ class HiddenOscillator(AbstractLoad):
     `hidden_oscillator.surge.mass` (kg, kg m2), `.period` (2 pi/w0; s), `.damping_ratio` (zeta).
     """
 
-    values: dict[str, Float[Array, ""]]
+    mass: PerDof = by_dof("kg", "kg m2", "what swings in {dof}, on top of the declared mass", 0.0)
+    period: PerDof = by_dof("s", "s", "period of what swings in {dof}, the hull held", 0.5, 500.0, 20.0)
+    damping_ratio: PerDof = by_dof("-", "-", "damping ratio of what swings in {dof}, the hull held", 0.0, 1.0, 0.03)
     source: ClassVar[str] = "Den Hartog 1956, Mechanical Vibrations, chapter 3, the dynamic vibration absorber"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str], period: float = 20.0, damping_ratio: float = 0.03) -> Self:
-        """Load at its neutral value; `period` (s) and `damping_ratio` (-) are where it starts."""
-        return cls(nulls("hidden_oscillator", dofs, PARAMETERS, {"period": period, "damping_ratio": damping_ratio}))
-
     def rest(self) -> Float[Array, "2 k"]:
-        return jnp.zeros((2, entries(self.values, "mass").shape[0]))
-
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
+        return jnp.zeros((2, self.entries(self.mass).shape[0]))
 
     def act(self, now: Instant, memory: Any) -> Action:
-        mass, period, ratio = (entries(self.values, name) for name in PARAMETERS)
+        mass, period, ratio = map(self.entries, (self.mass, self.period, self.damping_ratio))
         displaced, velocity = memory
         frequency = 2 * math.pi / period
-        apart = velocity - dofs_only(now.earth_velocity(), self.values)
+        apart = velocity - self.dofs_only(now.earth_velocity())
         pull = frequency**2 * displaced + 2 * ratio * frequency * apart  # per mass
-        return Action(force=all_dofs(mass * pull, self.values), memory_rate=jnp.stack([apart, -pull]))
+        return Action(force=self.all_dofs(mass * pull), memory_rate=jnp.stack([apart, -pull]))

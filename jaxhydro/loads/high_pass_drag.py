@@ -1,7 +1,6 @@
 """Drag with separate coefficients for slow and fast flow, by a high-pass filter."""
 
 import math
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import equinox as eqx
@@ -10,10 +9,12 @@ from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.coefficients import PerGroup
 from jaxhydro.loads.drag import (
     SUCTION,
-    about,
+    drag_coefficients,
     end_area,
+    law_parameters,
     lines_of,
     of_ends,
     of_strips,
@@ -23,19 +24,12 @@ from jaxhydro.loads.drag import (
     strip_area,
 )
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 # A first-order filter faster than this is no filter in waves, and at 0.25 s leaves what Adams-Bashforth can follow (0.19 Hz).
 MAX_CUTOFF = 0.15  # Hz
 MAX_SLOW_SHARE = 10.0  # of slow motion; HydroDyn takes 0 to 1
-
-PARAMETERS = {
-    "drag_cutoff": Parameter("Hz", "frequency above which {group} has its whole {way} drag coefficient", 0.0, MAX_CUTOFF),
-    "drag_low_share": Parameter(
-        "-", "share of the {way} drag coefficient of {group} that slow motion feels", 0.0, MAX_SLOW_SHARE, 1.0
-    ),
-    "drag_suction": SUCTION,
-}
+CUTOFF = "frequency above which {group} has its whole {way} drag coefficient"
+LOW_SHARE = "share of the {way} drag coefficient of {group} that slow motion feels"
 
 
 class HighPassDrag(AbstractLoad):
@@ -58,37 +52,44 @@ class HighPassDrag(AbstractLoad):
     mix it can, for a while, give energy back.
     """
 
-    values: dict[str, Float[Array, ""]]
     lines: tuple[int, ...] = eqx.field(static=True)
+    Cd: PerGroup = drag_coefficients()
+    drag_cutoff: PerGroup = law_parameters("Hz", CUTOFF, 0.0, MAX_CUTOFF)
+    drag_low_share: PerGroup = law_parameters("-", LOW_SHARE, 0.0, MAX_SLOW_SHARE, 1.0)
+    drag_suction: PerGroup = law_parameters("-", SUCTION, 0.0, 1.0)
     coupled: bool = eqx.field(static=True, default=True)
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison.f90, Morison_UpdateDiscState and GetDistDrag_Rec, pull request 2895"
 
     @classmethod
-    def of(cls, hull: Hull, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "HighPassDrag":
-        """Load on the lines of a hull whose drag coefficients are in `values`."""
-        return cls(dict(values), lines_of(hull, values), coupled)
+    def of(cls, hull: Hull, coefficients: PerGroup, *, coupled: bool = True, **law: PerGroup) -> "HighPassDrag":
+        """Load on the lines of a hull that have these drag coefficients.
+
+        Args:
+            hull: The hull.
+            coefficients: Drag coefficients.
+            coupled: Whether |u| is that of the vector across a strip.
+            law: `drag_cutoff`, `drag_low_share` and `drag_suction`.
+        """
+        return cls(lines_of(hull, coefficients), coefficients, coupled=coupled, **law)
 
     def rest(self) -> Float[Array, " k"]:
         return jnp.zeros(len(self.lines))
 
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        values, hull, density = self.values, now.hull, now.environment.density
+        hull, density = now.hull, now.environment.density
         relative = hull.join(now.strip_flow.relative, now.end_flow.relative)
         fast = relative - on_all(memory, self.lines, relative.shape[0])
-        of_strip, of_end = (find(now, values, "drag_cutoff", 0.0) for find in (of_strips, of_ends))
+        of_strip, of_end = (find(now, self.drag_cutoff, 0.0) for find in (of_strips, of_ends))
         own = jnp.array(self.lines, dtype=int)
         rate = 2 * math.pi * (hull.join(of_strip, of_end) * fast)[own]
         fast_strip, fast_end = hull.split(fast)
 
-        area, share = strip_area(now, values), of_strips(now, values, "drag_low_share", 1.0)
+        area, share = strip_area(now, self.Cd), of_strips(now, self.drag_low_share, 1.0)
         slow = quadratic(density, area, now.strip_flow.relative, self.coupled)
         strip_force = share * slow + (1 - share) * quadratic(density, area, fast_strip, self.coupled)
 
-        area, share = end_area(now, values), of_ends(now, values, "drag_low_share", 1.0)
-        side = (hull.ends.outward, of_ends(now, values, "drag_suction", 0.0))
+        area, share = end_area(now, self.Cd), of_ends(now, self.drag_low_share, 1.0)
+        side = (hull.ends.outward, of_ends(now, self.drag_suction, 0.0))
         slow = one_sided(density, area, now.end_flow.relative, *side)
         end_force = share * slow + (1 - share) * one_sided(density, area, fast_end, *side)
         return Action(strip_force=strip_force, end_force=end_force, memory_rate=rate)

@@ -6,7 +6,6 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 
 class HydrostaticCoupling(AbstractLoad):
@@ -20,11 +19,7 @@ class HydrostaticCoupling(AbstractLoad):
     """
 
     stiffness: Float[Array, "6 6"]
-    values: dict[str, Float[Array, ""]]
     source: ClassVar[str] = "Newman 1977, chapter 6, Hydrostatics"
-
-    def about(self, label: str) -> Parameter:
-        raise KeyError(label)
 
     def act(self, now: Instant, memory: Any) -> Action:
         return Action(force=-self.stiffness @ now.position)

@@ -14,7 +14,6 @@ from jaxhydro.hull.strips import END_WETTING_LENGTH, Member
 from jaxhydro.hull.waterplane import chord, segment
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 from jaxhydro.rotations import cross, rotation
 from jaxhydro.scales import covered, entered
 
@@ -54,11 +53,7 @@ class Buoyancy(AbstractLoad):
     hull_size: Float[Array, ""]  # `scales.size_of` the platform
     extra_force: Float[Array, ""]  # N
     extra_stiffness: Float[Array, "3"]  # C33, C44, C55 beyond the geometry's
-    values: dict[str, Float[Array, ""]]
     source: ClassVar[str] = "Newman 1977, chapter 6, Hydrostatics"
-
-    def about(self, label: str) -> Parameter:
-        raise KeyError(label)
 
     def act(self, now: Instant, memory: Any) -> Action:
         weight_density = now.environment.density * now.environment.gravity
@@ -220,7 +215,7 @@ def buoyancy(members: Sequence[Member], size: float = 1.0) -> Buoyancy:
         of_tubes = [np.stack(column, axis=-1) for column in zip(*tubes, strict=True)]
     pieces |= zip(("tube", "tube_across", "tube_radius", "tube_length"), map(jnp.asarray, of_tubes), strict=True)
     pieces["hull_size"] = jnp.asarray(size)
-    return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)), values={})
+    return Buoyancy(**pieces, extra_force=jnp.asarray(0.0), extra_stiffness=jnp.asarray(np.zeros(3)))
 
 
 def _slabs(member: Member, directions: np.ndarray, up: int) -> list[tuple]:

@@ -1,25 +1,20 @@
 """Rate-independent hysteresis (Bouc-Wen) in each degree of freedom."""
 
-from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, magnitude, nulls
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof, magnitude
 from jaxhydro.parameters import Parameter
 
 MIN_SQUARED_SPEED = 1e-12  # m2/s2, rad2/s2 and of z^2 under roots: speeds well below 1e-6 m/s do not count as motion
 YIELD = "displacement in which the hysteretic force in {dof} comes to its limit"
-PARAMETERS = {
-    "force": both_units("N", "N m", "largest hysteretic force in {dof}", 0.0),
-    "yield_displacement": (Parameter("m", YIELD, 1e-3, 50.0, 0.5), Parameter("rad", YIELD, 1e-5, 1.0, 0.01)),
-}
 
 
-class Hysteresis(AbstractLoad):
+class Hysteresis(AbstractLoadPerDof):
     """Bouc-Wen hysteresis in each degree of freedom.
 
     F_i = -f_i z_i, dz/dt = (v - (|v| z + v |z|)/2)/Y along earth axes: Bouc and Wen's law with n = 1, beta = gamma = 1/2.
@@ -35,27 +30,20 @@ class Hysteresis(AbstractLoad):
     Mechanics Division 102, 249-263). Labels are `hysteresis.surge.force` (f; N, N m) and `.yield_displacement` (Y; m, rad).
     """
 
-    values: dict[str, Float[Array, ""]]
+    force: PerDof = by_dof("N", "N m", "largest hysteretic force in {dof}", 0.0)
+    yield_displacement: PerDof = by_dof(Parameter("m", YIELD, 1e-3, 50.0, 0.5), Parameter("rad", YIELD, 1e-5, 1.0, 0.01))
     source: ClassVar[str] = "Wen 1976, Journal of the Engineering Mechanics Division 102, 249-263"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str], yield_displacement: float | None = None) -> Self:
-        """Load at its neutral value; `yield_displacement` is 0.5 m, 0.01 rad where not given."""
-        return cls(nulls("hysteresis", dofs, PARAMETERS, {"yield_displacement": yield_displacement}))
-
     def rest(self) -> Float[Array, " k"]:
-        return jnp.zeros_like(entries(self.values, "force"))
+        return jnp.zeros_like(self.entries(self.force))
 
     def settled(self, displacement: Float[Array, "6"]) -> Float[Array, " k"]:
-        part = dofs_only(displacement, self.values) / entries(self.values, "yield_displacement")
+        part = self.dofs_only(displacement) / self.entries(self.yield_displacement)
         # sign(x) (1 - exp(-|x|/Y)), in parts whose slopes add up to 1/Y at 0
         return jnp.expm1(jnp.minimum(part, 0.0)) - jnp.expm1(-jnp.maximum(part, 0.0))
 
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        v, z = dofs_only(now.earth_velocity(), self.values), memory
+        v, z = self.dofs_only(now.earth_velocity()), memory
         bent = 0.5 * (magnitude(v, MIN_SQUARED_SPEED) * z + v * magnitude(z, MIN_SQUARED_SPEED))
-        rate = (v - bent) / entries(self.values, "yield_displacement")
-        return Action(force=all_dofs(-entries(self.values, "force") * z, self.values), memory_rate=rate)
+        rate = (v - bent) / self.entries(self.yield_displacement)
+        return Action(force=self.all_dofs(-self.entries(self.force) * z), memory_rate=rate)

@@ -11,14 +11,24 @@ from jaxtyping import Array, Float
 
 from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.drag import about, end_area, lines_of, of_ends, of_strips, on_all, quadratic, strip_area
+from jaxhydro.loads.coefficients import PerGroup
+from jaxhydro.loads.drag import (
+    drag_coefficients,
+    end_area,
+    law_parameters,
+    lines_of,
+    of_ends,
+    of_strips,
+    on_all,
+    quadratic,
+    strip_area,
+)
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 MIN_NUMBER = 0.1  # the Keulegan-Carpenter number below which the coefficient no longer changes
 INITIAL_WINDOW_SHARE = 1 / 30  # share of the window that is open at the start
 
-EXPONENT = Parameter("-", "exponent of the {way} drag coefficient of {group} in the Keulegan-Carpenter number", -1.0, 1.0)
+EXPONENT = "exponent of the {way} drag coefficient of {group} in the Keulegan-Carpenter number"
 
 
 class RecentFlow(NamedTuple):
@@ -58,10 +68,11 @@ class KeuleganCarpenterDrag(AbstractLoad):
     directions together.
     """
 
-    values: dict[str, Float[Array, ""]]
     reference: Float[Array, " k"]
     window: Float[Array, " k"]
     lines: tuple[int, ...] = eqx.field(static=True)
+    Cd: PerGroup = drag_coefficients()
+    drag_exponent: PerGroup = law_parameters("-", EXPONENT, -1.0, 1.0)
     coupled: bool = eqx.field(static=True, default=True)
     source: ClassVar[str] = "Keulegan and Carpenter 1958; Sarpkaya and Isaacson 1981, chapter 3; Graham 1980"
 
@@ -69,37 +80,37 @@ class KeuleganCarpenterDrag(AbstractLoad):
     def of(
         cls,
         hull: Hull,
-        values: Mapping[str, Float[Array, ""]],
-        reference: Mapping[str, float],
-        window: Mapping[str, float],
+        coefficients: PerGroup,
+        *,
+        drag_exponent: PerGroup,
+        reference: Mapping[tuple[str, str], float],
+        window: Mapping[tuple[str, str], float],
         coupled: bool = True,
     ) -> "KeuleganCarpenterDrag":
-        """Load on the lines of a hull whose drag coefficients are in `values`.
+        """Load on the lines of a hull that have these drag coefficients.
 
         The other direction of a strip is remembered too, by the longest window.
 
         Args:
             hull: The hull.
-            values: Drag coefficients and exponents by label.
-            reference: Keulegan-Carpenter number K0 by label of the coefficient.
-            window: Time W (s) by label of the coefficient.
+            coefficients: Drag coefficients.
+            drag_exponent: Exponents.
+            reference: Keulegan-Carpenter number K0 by coefficient.
+            window: Time W (s) by coefficient.
             coupled: Whether the amplitude is that of both directions together.
         """
-        lines = lines_of(hull, values, both=coupled)
+        lines = lines_of(hull, coefficients, both=coupled)
         constants = np.array([np.ones(len(lines)), np.full(len(lines), max(window.values()))])
-        for label in reference:
-            mine = np.isin(lines, lines_of(hull, [label]))
-            constants[:, mine] = [[reference[label]], [window[label]]]
-        return cls(dict(values), jnp.asarray(constants[0]), jnp.asarray(constants[1]), lines, coupled)
+        for key in reference:
+            mine = np.isin(lines, lines_of(hull, [key]))
+            constants[:, mine] = [[reference[key]], [window[key]]]
+        return cls(jnp.asarray(constants[0]), jnp.asarray(constants[1]), lines, coefficients, drag_exponent, coupled)
 
     def rest(self) -> RecentFlow:
         return RecentFlow(jnp.zeros(()), *(jnp.zeros(len(self.lines)) for _ in range(2)))
 
-    def about(self, label: str) -> Parameter:
-        return about(label, {"drag_exponent": EXPONENT})
-
     def act(self, now: Instant, memory: RecentFlow) -> Action:
-        values, hull, density = self.values, now.hull, now.environment.density
+        hull, density = now.hull, now.environment.density
         relative = hull.join(now.strip_flow.relative, now.end_flow.relative)
         age = self.window * (1 - (1 - INITIAL_WINDOW_SHARE) * jnp.exp(-memory.elapsed / self.window))
         swept, own = memory.displacement, jnp.array(self.lines, dtype=int)
@@ -111,11 +122,11 @@ class KeuleganCarpenterDrag(AbstractLoad):
         reference, end_reference = hull.split(on_all(self.reference, self.lines, count))
         if self.coupled:
             variance = variance.sum(axis=0)
-        factor = _power(variance, extents(now), reference, of_strips(now, values, "drag_exponent", 0.0))
-        strip_force = quadratic(density, strip_area(now, values), now.strip_flow.relative, self.coupled) * factor
+        factor = _power(variance, extents(now), reference, of_strips(now, self.drag_exponent, 0.0))
+        strip_force = quadratic(density, strip_area(now, self.Cd), now.strip_flow.relative, self.coupled) * factor
         diameter = jnp.where(hull.ends.radius > 0, 2 * hull.ends.radius, 1.0)
-        factor = _power(end_variance, diameter, end_reference, of_ends(now, values, "drag_exponent", 0.0))
-        end_force = quadratic(density, end_area(now, values), now.end_flow.relative) * factor
+        factor = _power(end_variance, diameter, end_reference, of_ends(now, self.drag_exponent, 0.0))
+        end_force = quadratic(density, end_area(now, self.Cd), now.end_flow.relative) * factor
         return Action(strip_force=strip_force, end_force=end_force, memory_rate=rate)
 
 

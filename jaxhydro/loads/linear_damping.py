@@ -2,12 +2,9 @@
 
 from typing import Any, ClassVar
 
-from jaxtyping import Array, Float
-
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.matrix import assemble, meaning, place, unit
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.matrix import Entries, assemble, by_entry
 
 
 class LinearDamping(AbstractLoad):
@@ -18,13 +15,8 @@ class LinearDamping(AbstractLoad):
     Labels are `linear_damping.B11` and so on. Faltinsen 1990, Sea Loads on Ships and Offshore Structures, chapter 3.
     """
 
-    values: dict[str, Float[Array, ""]]
+    entries: Entries = by_entry("B", "linear damping", "velocity")
     source: ClassVar[str] = "Faltinsen 1990, chapter 3"
 
-    def about(self, label: str) -> Parameter:
-        i, j = place(label)
-        lower = 0.0 if i == j else float("-inf")
-        return Parameter(unit("B", label), meaning("linear damping", "velocity", label), lower)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(body_force=-assemble(self.values) @ now.velocity)
+        return Action(body_force=-assemble(self.entries) @ now.velocity)

@@ -1,24 +1,16 @@
 """Error of the declared mass, centre of mass and inertia."""
 
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.rotations import cross, skew
 
-ABOUT = "inertia about the centre of mass in {} that was not declared"
-PARAMETERS = {
-    "mass": Parameter("kg", "mass at the centre of mass that was not declared"),
-    "centre_x": Parameter("m", "how far forward of the declared one the centre of mass is"),
-    "centre_z": Parameter("m", "how far above the declared one the centre of mass is"),
-    "inertia_roll": Parameter("kg m2", ABOUT.format("roll")),
-    "inertia_pitch": Parameter("kg m2", ABOUT.format("pitch")),
-    "inertia_yaw": Parameter("kg m2", ABOUT.format("yaw")),
-}
+INERTIA = "inertia about the centre of mass in {} that was not declared"
 
 
 class MassError(AbstractLoad):
@@ -40,20 +32,18 @@ class MassError(AbstractLoad):
 
     total: Float[Array, ""]
     centre: Float[Array, "3"]
-    values: dict[str, Float[Array, ""]]
+    mass: Float[Array, ""] = parameter("kg", "mass at the centre of mass that was not declared")
+    centre_x: Float[Array, ""] = parameter("m", "how far forward of the declared one the centre of mass is")
+    centre_z: Float[Array, ""] = parameter("m", "how far above the declared one the centre of mass is")
+    inertia_roll: Float[Array, ""] = parameter("kg m2", INERTIA.format("roll"))
+    inertia_pitch: Float[Array, ""] = parameter("kg m2", INERTIA.format("pitch"))
+    inertia_yaw: Float[Array, ""] = parameter("kg m2", INERTIA.format("yaw"))
+    label_prefix: ClassVar[str] = "mass_properties"
     source: ClassVar[str] = "Fossen 2011, section 3.3"
 
-    @classmethod
-    def null(cls, total: Float[Array, ""] | float, centre: Float[Array, "3"]) -> Self:
-        """Load at its neutral value, for a declared mass `total` (kg) and `centre` (m, body axes)."""
-        values = {f"mass_properties.{name}": jnp.asarray(about.null, float) for name, about in PARAMETERS.items()}
-        return cls(total=jnp.asarray(total, float), centre=jnp.asarray(centre, float), values=values)
-
-    def about(self, label: str) -> Parameter:
-        return PARAMETERS[label.removeprefix("mass_properties.")]
-
     def act(self, now: Instant, memory: Any) -> Action:
-        mass, forward, up, *inertias = (self.values[f"mass_properties.{name}"] for name in PARAMETERS)
+        mass, forward, up = self.mass, self.centre_x, self.centre_z
+        inertias = (self.inertia_roll, self.inertia_pitch, self.inertia_yaw)
         shift, spin = jnp.stack([forward, jnp.zeros_like(forward), up]), now.velocity[3:]
         # every difference is a sum of terms with a factor that is 0 where nothing is wrong: exactly silent there
         first = mass * (self.centre + shift) + self.total * shift

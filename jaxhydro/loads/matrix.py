@@ -1,12 +1,14 @@
-"""Entries of 6 x 6 matrices by labels such as B11 or C35."""
+"""Loads whose parameters are entries of a 6 x 6 matrix, by keys such as B11 or C35."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.environment import DOFS
+from jaxhydro.parameters import Parameter, parameters
 
 UNITS = {
     "B": ("N s/m", "N s", "N m s/rad"),
@@ -15,41 +17,51 @@ UNITS = {
     "C": ("N/m", "N", "N m/rad"),
 }
 """Units of a term between two translations, a translation and a rotation, two rotations."""
+Entries = Mapping[str, Float[Array, ""] | float]
+"""Entries of a matrix by key: a letter, row and column from 1."""
 
 
-def place(label: str) -> tuple[int, int]:
-    """Row and column, from 0, of a label that ends in two digits from 1."""
-    return int(label[-2]) - 1, int(label[-1]) - 1
-
-
-def unit(symbol: str, label: str) -> str:
-    i, j = place(label)
-    return UNITS[symbol][(i > 2) + (j > 2)]
-
-
-def meaning(quantity: str, cause: str, label: str) -> str:
-    """Meaning of a term, by the names of its degrees of freedom.
+def by_entry(symbol: str, quantity: str, cause: str) -> Any:
+    """Field of a load with one parameter, `prefix.B15`, for each entry of a matrix; none on the diagonal is negative.
 
     Args:
+        symbol: Key of `UNITS`.
         quantity: What the matrix is, for example "linear damping".
         cause: What the matrix multiplies, for example "velocity".
-        label: The term's label, for example "linear_damping.B15".
-
-    Returns:
-        "linear damping in surge" on the diagonal, "linear damping: surge force from pitch velocity" off it.
     """
-    i, j = place(label)
+
+    def about(load: Any, key: str) -> Parameter:
+        i, j = row_and_column(key)
+        return Parameter(unit(symbol, key), meaning(quantity, cause, key), 0.0 if i == j else float("-inf"))
+
+    return parameters(about, "{prefix}.{key}")
+
+
+def meaning(quantity: str, cause: str, key: str) -> str:
+    """Meaning of an entry: "linear damping in surge", or "linear damping: surge force from pitch velocity"."""
+    i, j = row_and_column(key)
     if i == j:
         return f"{quantity} in {DOFS[i]}"
     return f"{quantity}: {DOFS[i]} {'force' if i < 3 else 'moment'} from {DOFS[j]} {cause}"
 
 
-def assemble(values: Mapping[str, Float[Array, ""]]) -> Float[Array, "6 6"]:
-    """Matrix (6, 6) of labelled entries; the others are 0."""
+def row_and_column(key: str) -> tuple[int, int]:
+    """Row and column, from 0, of a key such as B15."""
+    return int(key[-2]) - 1, int(key[-1]) - 1
+
+
+def unit(symbol: str, key: str) -> str:
+    """Unit of an entry."""
+    i, j = row_and_column(key)
+    return UNITS[symbol][(i > 2) + (j > 2)]
+
+
+def assemble(values: Entries) -> Float[Array, "6 6"]:
+    """Matrix (6, 6) of entries by key; the others are 0."""
     if not values:
         return jnp.zeros((6, 6))
     basis = np.zeros((len(values), 36))
-    for row, label in enumerate(values):
-        i, j = place(label)
+    for row, key in enumerate(values):
+        i, j = row_and_column(key)
         basis[row, 6 * i + j] = 1.0
-    return (jnp.stack([jnp.asarray(v) for v in values.values()]) @ basis).reshape(6, 6)
+    return (jnp.stack(list(values.values())) @ basis).reshape(6, 6)

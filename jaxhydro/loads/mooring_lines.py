@@ -1,5 +1,6 @@
 """Mooring lines as straight springs that may go slack."""
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -7,7 +8,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import Parameter, parameters
 from jaxhydro.rotations import cross
 
 
@@ -21,24 +22,23 @@ class MooringLines(AbstractLoad):
     `mooring.line1.unstretched_length` (m).
     """
 
-    values: dict[str, Float[Array, ""]]
     anchor: Float[Array, "3 l"]  # m, in earth axes
     fairlead: Float[Array, "3 l"]  # m, in body axes
+    stiffness: Mapping[str, Float[Array, ""] | float] = parameters(
+        lambda load, line: Parameter("N/m", f"axial stiffness of {line}", 0.0)
+    )
+    unstretched_length: Mapping[str, Float[Array, ""] | float] = parameters(
+        lambda load, line: Parameter("m", f"unstretched length of {line}", 0.0)
+    )
+    label_prefix: ClassVar[str] = "mooring"
     source: ClassVar[str] = "Faltinsen 1990, chapter 8"
-
-    def about(self, label: str) -> Parameter:
-        _, line, what = label.split(".")
-        if what == "stiffness":
-            return Parameter("N/m", f"axial stiffness of {line}", 0.0)
-        return Parameter("m", f"unstretched length of {line}", 0.0)
 
     def tension(
         self, position: Float[Array, "6"], matrix: Float[Array, "3 3"]
     ) -> tuple[Float[Array, " l"], Float[Array, "3 l"]]:
         """Tension (N), (l,), and unit vectors to the anchors in body axes, (3, l)."""
-        lines = [f"mooring.line{i + 1}." for i in range(self.anchor.shape[1])]
-        stiffness = jnp.stack([jnp.asarray(self.values[line + "stiffness"]) for line in lines])
-        unstretched = jnp.stack([jnp.asarray(self.values[line + "unstretched_length"]) for line in lines])
+        lines = [f"line{i + 1}" for i in range(self.anchor.shape[1])]
+        stiffness, unstretched = (jnp.stack([of[line] for line in lines]) for of in (self.stiffness, self.unstretched_length))
         away = self.anchor - position[:3, None]
         towards = (matrix[:, :, None] * away[:, None, :]).sum(axis=0) - self.fairlead
         length = jnp.sqrt((towards**2).sum(axis=0))

@@ -1,24 +1,17 @@
 """Nonlinear mooring restoring in each degree of freedom."""
 
-from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 
-PARAMETERS = {
-    "odd_quadratic": both_units("N/m2", "N m/rad2", "stiffening in {dof} with the distance from the reference position"),
-    "even_quadratic": both_units("N/m2", "N m/rad2", "force in {dof} with the square of the displacement, always the same way"),
-    "cubic": both_units("N/m3", "N m/rad3", "stiffening in {dof} with the square of the displacement"),
-}
+EVEN = "force in {dof} with the square of the displacement, always the same way"
 
 
-class MooringNonlinearity(AbstractLoad):
+class MooringNonlinearity(AbstractLoadPerDof):
     """Nonlinear restoring in each degree of freedom, beyond the model's stiffness.
 
     F_i = -(c2 x |x| + s2 x^2 + c3 x^3), x = x_i the displacement along earth axes (m, rad) from the reference position.
@@ -33,18 +26,12 @@ class MooringNonlinearity(AbstractLoad):
     `mooring_nonlinearity.surge.odd_quadratic` (c2), `.even_quadratic` (s2), `.cubic` (c3).
     """
 
-    values: dict[str, Float[Array, ""]]
+    odd_quadratic: PerDof = by_dof("N/m2", "N m/rad2", "stiffening in {dof} with the distance from the reference position")
+    even_quadratic: PerDof = by_dof("N/m2", "N m/rad2", EVEN)
+    cubic: PerDof = by_dof("N/m3", "N m/rad3", "stiffening in {dof} with the square of the displacement")
     source: ClassVar[str] = "Nayfeh and Mook 1979, Nonlinear Oscillations, chapter 2"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str]) -> Self:
-        """Load at its neutral value, in some degrees of freedom."""
-        return cls(nulls("mooring_nonlinearity", dofs, PARAMETERS))
-
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        x = dofs_only(now.position, self.values)
-        odd, even, cubic = (entries(self.values, name, 0.0) for name in PARAMETERS)
-        return Action(force=all_dofs(-(odd * jnp.abs(x) + even * x + cubic * x**2) * x, self.values))
+        x = self.dofs_only(now.position)
+        odd, even, cubic = (self.entries(one, 0.0) for one in (self.odd_quadratic, self.even_quadratic, self.cubic))
+        return Action(force=self.all_dofs(-(odd * jnp.abs(x) + even * x + cubic * x**2) * x))

@@ -1,28 +1,20 @@
 """Nonlinear hydrostatic restoring, and heave-dependent pitch stiffness."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any, ClassVar, Self
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_of, dofs_only, entries, nulls
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 
-PARAMETERS = {
-    "even_quadratic": both_units("N/m2", "N m/rad2", "force in {dof} with the square of the displacement, always the same way"),
-    "cubic": both_units("N/m3", "N m/rad3", "restoring in {dof} with the third power of the displacement"),
-    "quintic": both_units("N/m5", "N m/rad5", "restoring in {dof} with the fifth power of the displacement"),
-    "pitch_squared": both_units(
-        "N/rad2", "", "pitch stiffness per metre of heave, and force in {dof} with the square of pitch"
-    ),
-}
-HEAVE_ONLY_PARAMETERS = ("even_quadratic", "pitch_squared")
+EVEN = "force in {dof} with the square of the displacement, always the same way"
+PITCH_SQUARED = "pitch stiffness per metre of heave, and force in {dof} with the square of pitch"
 
 
-class NonlinearHydrostatics(AbstractLoad):
+class NonlinearHydrostatics(AbstractLoadPerDof):
     """Nonlinear hydrostatic restoring in heave, roll and pitch.
 
     F_i = -(C2 x^2 + C3 x^3 + C5 x^5) in heave, roll, pitch, and from U = D z theta^2/2: F3 = -D theta^2/2, F5 = -D z theta.
@@ -42,27 +34,27 @@ class NonlinearHydrostatics(AbstractLoad):
     all three.
     """
 
-    values: dict[str, Float[Array, ""]]
+    even_quadratic: PerDof = by_dof("N/m2", "N m/rad2", EVEN)
+    cubic: PerDof = by_dof("N/m3", "N m/rad3", "restoring in {dof} with the third power of the displacement")
+    quintic: PerDof = by_dof("N/m5", "N m/rad5", "restoring in {dof} with the fifth power of the displacement")
+    pitch_squared: PerDof = by_dof("N/rad2", "", PITCH_SQUARED)
+    allowed: ClassVar[tuple[str, ...]] = ("heave", "roll", "pitch")
     source: ClassVar[str] = "Haslum and Faltinsen 1999, OTC 10953"
 
     @classmethod
-    def null(cls, dofs: Sequence[str] = ("heave", "roll", "pitch")) -> Self:
-        """Load at its neutral value, in some of heave, roll and pitch."""
-        if wrong := set(dofs) - {"heave", "roll", "pitch"}:
-            raise ValueError(f"nonlinear hydrostatics are those of heave, roll and pitch, found {sorted(wrong)[0]!r}")
-        every = nulls("nonlinear_hydrostatics", dofs, PARAMETERS)
-        return cls({k: v for k, v in every.items() if "heave" in k or not k.endswith(HEAVE_ONLY_PARAMETERS)})
-
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
+    def neutral(cls, dofs: Iterable[str] = ("heave", "roll", "pitch"), **values: float | None) -> Self:
+        """Load at its neutral value in some of heave, roll and pitch; the parameters of heave alone are given to no other."""
+        found = super().neutral(dofs, **values)
+        heave_only = {name: getattr(found, name) for name in ("even_quadratic", "pitch_squared")}
+        return replace(found, **{name: {k: v for k, v in one.items() if k == "heave"} for name, one in heave_only.items()})
 
     def act(self, now: Instant, memory: Any) -> Action:
-        x = dofs_only(now.position, self.values)
-        even, cubic, quintic = (entries(self.values, name, 0.0) for name in ("even_quadratic", "cubic", "quintic"))
-        force = all_dofs(-(even + cubic * x + quintic * x**3) * x**2, self.values)
-        if "heave" in dofs_of(self.values):
+        x = self.dofs_only(now.position)
+        even, cubic, quintic = (self.entries(one, 0.0) for one in (self.even_quadratic, self.cubic, self.quintic))
+        force = self.all_dofs(-(even + cubic * x + quintic * x**3) * x**2)
+        if "heave" in self.pitch_squared:
             heave, pitch = now.position[2], now.position[4]
-            product = entries(self.values, "pitch_squared", 0.0)[0]  # heave is the first of the three
+            product = self.pitch_squared["heave"]
             zero = jnp.zeros_like(heave)
             force = force - product * jnp.stack([zero, zero, pitch**2 / 2, zero, heave * pitch, zero])
         return Action(force=force)

@@ -1,98 +1,112 @@
-"""Functions that laws per degree of freedom share: labels, vectors, smooth magnitude.
+"""Base of loads with a law in each degree of freedom: their parameters, and vectors over the degrees of freedom they have.
 
-A load has its law in the degrees of freedom that its labels name, in the order of `DOFS`; vectors over those are "k" long.
+Vectors over the degrees of freedom that a load acts in are "k" long, in the order of `DOFS`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from typing import Any, ClassVar, Self
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.base import AbstractLoad
+from jaxhydro.parameters import METADATA_KEY, Parameter, parameters
 
-Values = Mapping[str, Float[Array, ""]]
-Parameters = Mapping[str, tuple[Parameter, Parameter]]
-"""What a parameter means for a translation and for a rotation, by the last part of its label; {dof} is filled in."""
+PerDof = Mapping[str, Float[Array, ""] | float]
+"""One number for each degree of freedom that a load acts in."""
 
 
-def both_units(
-    translation: str,
-    rotation: str,
-    meaning: str,
+def by_dof(
+    translation: str | Parameter,
+    rotation: str | Parameter,
+    meaning: str = "",
     lower: float = float("-inf"),
     upper: float = float("inf"),
     null: float = 0.0,
-) -> tuple[Parameter, Parameter]:
-    """Parameter whose unit differs between translations and rotations."""
-    return Parameter(translation, meaning, lower, upper, null), Parameter(rotation, meaning, lower, upper, null)
-
-
-def about(label: str, parameters: Parameters) -> Parameter:
-    """Unit, meaning and bounds of the parameter with a label `effect.dof.parameter`."""
-    _, dof, name = label.split(".")
-    found = parameters[name][dof in DOFS[3:]]
-    return found._replace(meaning=found.meaning.format(dof=dof))
-
-
-def nulls(
-    effect: str, dofs: Sequence[str], parameters: Parameters, shape: Mapping[str, float | None] | None = None
-) -> dict[str, Float[Array, ""]]:
-    """Neutral values of all parameters, for some degrees of freedom.
+) -> Any:
+    """Field of a load with one parameter, `prefix.dof.name`, in each degree of freedom.
 
     Args:
-        effect: First part of the labels.
-        dofs: Degrees of freedom.
-        parameters: Parameters of the law, by name.
-        shape: Values by name that replace neutral ones; None is ignored.
-
-    Returns:
-        Values by label.
-
-    Raises:
-        ValueError: A name is not a degree of freedom.
+        translation: Unit in a translation, or the whole parameter.
+        rotation: Unit in a rotation, or the whole parameter.
+        meaning: What the parameter is; {dof} is filled in.
+        lower: Lower bound.
+        upper: Upper bound.
+        null: Neutral value.
     """
-    if unknown := set(dofs) - set(DOFS):
-        raise ValueError(f"no degree of freedom {sorted(unknown)[0]!r}; there are: {', '.join(DOFS)}")
-    given = {name: value for name, value in (shape or {}).items() if value is not None}
-    return {
-        f"{effect}.{dof}.{name}": jnp.asarray(given.get(name, pair[dof in DOFS[3:]].null), float)
-        for dof in dofs
-        for name, pair in parameters.items()
-    }
+    both = [
+        one if isinstance(one, Parameter) else Parameter(one, meaning, lower, upper, null) for one in (translation, rotation)
+    ]
+
+    def about(load: Any, dof: str) -> Parameter:
+        found = both[dof in DOFS[3:]]
+        return found._replace(meaning=found.meaning.format(dof=dof))
+
+    return parameters(about)
 
 
-def dofs_of(values: Values) -> tuple[str, ...]:
-    """Degrees of freedom that labels name, in the order of `DOFS`."""
-    named = {label.split(".")[1] for label in values}
-    return tuple(dof for dof in DOFS if dof in named)
+class AbstractLoadPerDof(AbstractLoad):
+    """Base class of loads with a law in each degree of freedom: a mapping from degrees of freedom for each parameter."""
 
+    allowed: ClassVar[tuple[str, ...]] = DOFS
 
-def entries(values: Values, name: str, missing: float | None = None) -> Float[Array, " k"]:
-    """Values of one parameter over the law's degrees of freedom, (k,).
+    def __check_init__(self) -> None:
+        """Raise UnknownName for a degree of freedom that there is none of, or that the law is not for."""
+        for name in self._per_dof():
+            for dof in getattr(self, name):
+                if dof not in self.allowed:
+                    raise unknown("degree of freedom", dof, self.allowed)
 
-    Raises:
-        KeyError: A degree of freedom lacks it, and `missing` is not given.
-    """
-    found = {label.split(".")[1]: value for label, value in values.items() if label.rsplit(".", 1)[1] == name}
-    default = {} if missing is None else dict.fromkeys(DOFS, missing)
-    several = [jnp.asarray((default | found)[dof], float) for dof in dofs_of(values)]
-    return jnp.stack(several) if several else jnp.zeros(0)
+    @classmethod
+    def neutral(cls, dofs: Iterable[str], **values: float | None) -> Self:
+        """Load at its neutral value.
 
+        Args:
+            dofs: Degrees of freedom that it acts in.
+            values: Values of parameters, by name, in place of neutral ones; None is ignored.
+        """
+        empty, found = cls(), {}
+        for field, about in empty._per_dof().items():
+            given = values.get(field)
+            found[field] = {dof: about(empty, dof).null if given is None else given for dof in dofs}
+        return cls(**found)
 
-def dofs_only(six: Float[Array, "6"], values: Values) -> Float[Array, " k"]:
-    """Entries of a six-vector for the law's degrees of freedom, (k,)."""
-    return six[np.array([DOFS.index(dof) for dof in dofs_of(values)], dtype=int)]
+    @classmethod
+    def _per_dof(cls) -> dict[str, Any]:
+        """What is known of the parameters, by field."""
+        of = {name: field.metadata.get(METADATA_KEY) for name, field in cls.__dataclass_fields__.items()}
+        return {name: one.about for name, one in of.items() if one is not None}
 
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """Degrees of freedom that the load acts in, in the order of `DOFS`."""
+        named = {dof for name in self._per_dof() for dof in getattr(self, name)}
+        return tuple(dof for dof in DOFS if dof in named)
 
-def all_dofs(some: Float[Array, " k"], values: Values) -> Float[Array, "6"]:
-    """Six-vector from values over the law's degrees of freedom, 0 on the others.
+    def entries(self, values: PerDof, missing: float | None = None) -> Float[Array, " k"]:
+        """One of the parameters over the degrees of freedom, (k,).
 
-    By a product: scatters are slow on a CPU.
-    """
-    basis = np.array([[dof == other for other in DOFS] for dof in dofs_of(values)], float).reshape(-1, 6)
-    return some @ basis
+        Raises:
+            KeyError: A degree of freedom lacks it, and `missing` is not given.
+        """
+        default = {} if missing is None else dict.fromkeys(DOFS, missing)
+        several = [jnp.asarray((default | dict(values))[dof], float) for dof in self.dofs]
+        return jnp.stack(several) if several else jnp.zeros(0)
+
+    def dofs_only(self, six: Float[Array, "6"]) -> Float[Array, " k"]:
+        """Entries of a six-vector for the load's degrees of freedom, (k,)."""
+        return six[np.array([DOFS.index(dof) for dof in self.dofs], dtype=int)]
+
+    def all_dofs(self, some: Float[Array, " k"]) -> Float[Array, "6"]:
+        """Six-vector from values over the load's degrees of freedom, 0 on the others.
+
+        By a product: scatters are slow on a CPU.
+        """
+        basis = np.array([[dof == other for other in DOFS] for dof in self.dofs], float).reshape(-1, 6)
+        return some @ basis
 
 
 def magnitude(x: Float[Array, "..."], small: float) -> Float[Array, "..."]:

@@ -4,18 +4,17 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import equinox as eqx
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.coefficients import PerGroup
 from jaxhydro.loads.drag import (
-    POWER_LABEL,
     REFERENCE_SPEED,
-    about,
-    about_exponent,
+    drag_coefficients,
     end_area,
-    exponents,
+    exponents_of_the_speed,
     groups_of,
+    of_both_kinds,
     of_ends,
     of_strips,
     power,
@@ -23,7 +22,6 @@ from jaxhydro.loads.drag import (
     strip_area,
 )
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 
 class PowerDrag(AbstractLoad):
@@ -43,33 +41,23 @@ class PowerDrag(AbstractLoad):
     `KeuleganCarpenterDrag`). Passive for any n.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Cd: PerGroup = drag_coefficients()
+    exponent: Mapping[str, Float[Array, ""] | float] = exponents_of_the_speed()
     coupled: bool = eqx.field(static=True, default=True)
     speed: float = eqx.field(static=True, default=REFERENCE_SPEED)
     source: ClassVar[str] = "Keulegan and Carpenter 1958; Graham 1980 (the power); that of the instant's speed is ours"
 
     @classmethod
-    def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True, speed: float = REFERENCE_SPEED) -> "PowerDrag":
-        """Load on the lines whose drag coefficients are in `values`; missing exponents are 0."""
-        return cls(
-            {f"{POWER_LABEL}.{group}.exponent": jnp.zeros(()) for group in groups_of(values)} | dict(values), coupled, speed
-        )
-
-    @classmethod
-    def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "PowerDrag":
-        """Load at its neutral value: plain drag with the coefficients in `values`."""
-        return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
-
-    def about(self, label: str) -> Parameter:
-        return about_exponent(label, self.speed) if label.startswith(f"{POWER_LABEL}.") else about(label, {})
+    def neutral(cls, coefficients: PerGroup, coupled: bool = True, speed: float = REFERENCE_SPEED) -> "PowerDrag":
+        """Load at its neutral value: plain drag with these coefficients."""
+        return cls(coefficients, dict.fromkeys(groups_of(coefficients), 0.0), coupled, speed)
 
     def act(self, now: Instant, memory: Any) -> Action:
-        values, density = self.values, now.environment.density
-        own = exponents(values)
+        density, own = now.environment.density, of_both_kinds(self.exponent)
         square = now.strip_flow.relative**2
         square = square.sum(axis=0) if self.coupled else square
-        factor = power(square, of_strips(now, own, "exponent", 0.0), self.speed)
-        strip_force = quadratic(density, strip_area(now, values), now.strip_flow.relative, self.coupled) * factor
-        factor = power(now.end_flow.relative**2, of_ends(now, own, "exponent", 0.0), self.speed)
-        end_force = quadratic(density, end_area(now, values), now.end_flow.relative) * factor
+        factor = power(square, of_strips(now, own, 0.0), self.speed)
+        strip_force = quadratic(density, strip_area(now, self.Cd), now.strip_flow.relative, self.coupled) * factor
+        factor = power(now.end_flow.relative**2, of_ends(now, own, 0.0), self.speed)
+        end_force = quadratic(density, end_area(now, self.Cd), now.end_flow.relative) * factor
         return Action(strip_force=strip_force, end_force=end_force)

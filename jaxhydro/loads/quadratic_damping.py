@@ -3,13 +3,11 @@
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.drag import MIN_SQUARED_SPEED
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.matrix import assemble, meaning, unit
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.matrix import Entries, assemble, by_entry
 
 
 class QuadraticDamping(AbstractLoad):
@@ -21,12 +19,9 @@ class QuadraticDamping(AbstractLoad):
     (University of Michigan, report 239).
     """
 
-    values: dict[str, Float[Array, ""]]
+    entries: Entries = by_entry("Q", "quadratic damping", "velocity")
     source: ClassVar[str] = "Himeno 1981, Prediction of Ship Roll Damping"
-
-    def about(self, label: str) -> Parameter:
-        return Parameter(unit("Q", label), meaning("quadratic damping", "velocity", label), 0.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
         velocity = now.velocity
-        return Action(body_force=-jnp.diagonal(assemble(self.values)) * jnp.sqrt(velocity**2 + MIN_SQUARED_SPEED) * velocity)
+        return Action(body_force=-jnp.diagonal(assemble(self.entries)) * jnp.sqrt(velocity**2 + MIN_SQUARED_SPEED) * velocity)

@@ -1,24 +1,16 @@
 """Radiation memory with two states in each degree of freedom."""
 
-from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
-from jaxhydro.parameters import Parameter
-
-PARAMETERS = {
-    "strength": both_units("N s/m", "N m s/rad", "largest radiation damping in {dof}", 0.0),
-    "frequency": both_units("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 30.0, 0.6),
-    "damping_ratio": both_units("-", "-", "width of the radiation damping in {dof}, against its frequency", 0.05, 2.0, 0.4),
-}
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 
 
-class RadiationMemory(AbstractLoad):
+class RadiationMemory(AbstractLoadPerDof):
     """Radiation memory of second order in each degree of freedom.
 
     F_i = -int_0^inf K_i(s) v_i(t - s) ds along body axes, of transfer b 2 zeta w0 s/(s^2 + 2 zeta w0 s + w0^2).
@@ -37,23 +29,16 @@ class RadiationMemory(AbstractLoad):
     Labels are `radiation_memory.heave.strength` (b; N s/m, N m s/rad), `.frequency` (w0; rad/s), `.damping_ratio` (zeta).
     """
 
-    values: dict[str, Float[Array, ""]]
+    strength: PerDof = by_dof("N s/m", "N m s/rad", "largest radiation damping in {dof}", 0.0)
+    frequency: PerDof = by_dof("rad/s", "rad/s", "frequency of the largest radiation damping in {dof}", 0.02, 30.0, 0.6)
+    damping_ratio: PerDof = by_dof("-", "-", "width of the radiation damping in {dof}, against its frequency", 0.05, 2.0, 0.4)
     source: ClassVar[str] = "Perez and Fossen 2008, Modeling, Identification and Control 29, 1-19"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str], frequency: float = 0.6, damping_ratio: float = 0.4) -> Self:
-        """Load at its neutral value; `frequency` (rad/s) and `damping_ratio` (-) are where it starts."""
-        shape = {"frequency": frequency, "damping_ratio": damping_ratio}
-        return cls(nulls("radiation_memory", dofs, PARAMETERS, shape))
-
     def rest(self) -> Float[Array, "2 k"]:
-        return jnp.zeros((2, entries(self.values, "strength").shape[0]))
-
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
+        return jnp.zeros((2, self.entries(self.strength).shape[0]))
 
     def act(self, now: Instant, memory: Any) -> Action:
-        strength, frequency, ratio = (entries(self.values, name) for name in PARAMETERS)
+        strength, frequency, ratio = map(self.entries, (self.strength, self.frequency, self.damping_ratio))
         passed, displaced = memory  # the band-passed velocity and its integral
-        rate = 2 * ratio * frequency * (dofs_only(now.velocity, self.values) - passed) - frequency**2 * displaced
-        return Action(body_force=all_dofs(-strength * passed, self.values), memory_rate=jnp.stack([rate, passed]))
+        rate = 2 * ratio * frequency * (self.dofs_only(now.velocity) - passed) - frequency**2 * displaced
+        return Action(body_force=self.all_dofs(-strength * passed), memory_rate=jnp.stack([rate, passed]))

@@ -11,11 +11,12 @@ from jaxtyping import Array, Float
 from jaxhydro.choices import check, unknown
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import Parameter, parameters
 from jaxhydro.waves.sea_state import SeaState
 
 EXPONENT_BASES = {"significant_height": "Hs", "peak_period": "Tp"}
 MAX_EXPONENT = 3.0  # of an exponent, either way
+LABEL = "{key[0]}.{key[1]}_exponent"
 
 
 class SeaStateLaw(AbstractLoad):
@@ -29,17 +30,22 @@ class SeaStateLaw(AbstractLoad):
     the `reference` sea state. All exponents 0 give the load itself.
     """
 
-    values: dict[str, Float[Array, ""]]
     load: AbstractLoad
     reference: SeaState = eqx.field(static=True)
     logs: dict[str, Float[Array, ""]]  # Hs, Tp -> ln(Hs/Hs0), ln(Tp/Tp0)
+    exponents: Mapping[tuple[str, str], Float[Array, ""] | float] = parameters(lambda law, key: law.about_exponent(*key), LABEL)
     source: ClassVar[str] = "Sarpkaya and Isaacson 1981, chapter 3 (dependence on KC); the power law is empirical"
 
     @classmethod
-    def of(cls, load: AbstractLoad, exponents: Mapping[str, Any], reference: SeaState) -> "SeaStateLaw":
-        """Load with exponents for some of its coefficients, by label (`exponent_label`)."""
-        added = {label: jnp.asarray(value, float) for label, value in exponents.items()}
-        return cls({**load.values, **added}, load, reference, {symbol: jnp.zeros(()) for symbol in EXPONENT_BASES.values()})
+    def of(cls, load: AbstractLoad, exponents: Mapping[tuple[str, str], Any], reference: SeaState) -> "SeaStateLaw":
+        """Load with exponents for some of its coefficients.
+
+        Args:
+            load: The load.
+            exponents: Exponents by a coefficient's label, and Hs or Tp.
+            reference: Sea state in which coefficients are as declared.
+        """
+        return cls(load, reference, {symbol: jnp.zeros(()) for symbol in EXPONENT_BASES.values()}, exponents)
 
     def rest(self) -> Any:
         return self.load.rest()
@@ -47,10 +53,8 @@ class SeaStateLaw(AbstractLoad):
     def settled(self, displacement: Float[Array, "6"]) -> Any:
         return self.load.settled(displacement)
 
-    def about(self, label: str) -> Parameter:
-        if label in self.load.values:
-            return self.load.about(label)
-        base, symbol = split(label)
+    def about_exponent(self, base: str, symbol: str) -> Parameter:
+        """Unit, meaning and bounds of the exponent of a coefficient in Hs or Tp."""
         height, period = self.reference
         scale = f"{height:.3g} m" if symbol == "Hs" else f"{period:.3g} s"
         return Parameter("-", f"exponent of {base} in {symbol}/{scale}", -MAX_EXPONENT, MAX_EXPONENT)
@@ -61,14 +65,13 @@ class SeaStateLaw(AbstractLoad):
 
     def present(self) -> dict[str, Float[Array, ""]]:
         """Coefficients of the load in the present sea state."""
-        found = {label: self.values[label] for label in self.load.values}
-        for label in self.values.keys() - found.keys():
-            base, symbol = split(label)
-            found[base] = found[base] * jnp.exp(self.values[label] * self.logs[symbol])
+        found = self.load.values
+        for (base, symbol), exponent in self.exponents.items():
+            found[base] = found[base] * jnp.exp(exponent * self.logs[symbol])
         return found
 
     def act(self, now: Instant, memory: Any) -> Action:
-        return eqx.tree_at(lambda load: load.values, self.load, self.present()).act(now, memory)
+        return self.load.at_values(self.present()).act(now, memory)
 
 
 def exponent_label(label: str, over: str) -> str:
@@ -118,8 +121,9 @@ def with_exponents(
     if not all(math.isfinite(x) and x > 0 for x in reference):
         raise ValueError(f"reference: expected a significant height and a peak period above 0, found {reference}")
     for load in loads:
-        mine = {label: value for label, value in exponents.items() if split(label)[0] in load.values}
-        left -= mine.keys()
+        of = {label: split(label) for label in exponents if split(label)[0] in load.values}
+        left -= of.keys()
+        mine = {of[label]: exponents[label] for label in of}
         if not mine:
             found.append(load)
         elif not isinstance(load, SeaStateLaw):
@@ -127,9 +131,7 @@ def with_exponents(
         elif load.reference != reference:
             raise ValueError(f"expected the reference {load.reference} of the law that is there, found {reference}")
         else:
-            kept = {label: value for label, value in load.values.items() if label not in load.load.values}
-            base = eqx.tree_at(lambda inner: inner.values, load.load, {k: load.values[k] for k in load.load.values})
-            found.append(SeaStateLaw.of(base, kept | mine, reference))
+            found.append(SeaStateLaw.of(load.load, {**load.exponents, **mine}, reference))
     if left:
         lost = next(label for label in exponents if label in left)
         raise unknown("coefficient", split(lost)[0], [label for load in loads for label in load.values])

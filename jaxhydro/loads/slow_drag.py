@@ -1,7 +1,6 @@
 """Drag with another coefficient for the platform's slow motion (six states)."""
 
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 import equinox as eqx
@@ -9,9 +8,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.drag import SLOW_DRAG_LABEL, SLOW_DRAG_PARAMETERS, about, end_area, quadratic, strip_area
+from jaxhydro.loads.coefficients import PerGroup
+from jaxhydro.loads.drag import cutoff, drag_coefficients, end_area, low_share, quadratic, strip_area
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 
 class SlowDrag(AbstractLoad):
@@ -32,29 +31,18 @@ class SlowDrag(AbstractLoad):
     can, for a while, give energy back.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Cd: PerGroup = drag_coefficients()
+    low_share: Float[Array, ""] = low_share()
+    cutoff: Float[Array, ""] = cutoff()
     coupled: bool = eqx.field(static=True, default=True)
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison.f90 (AxVnCOff, AxFDLoFSc); filtering the platform's motion is ours"
-
-    @classmethod
-    def of(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
-        """Load on the lines whose drag coefficients are in `values`; missing parameters are neutral."""
-        return cls({label: jnp.asarray(about.null) for label, about in SLOW_DRAG_PARAMETERS.items()} | dict(values), coupled)
-
-    @classmethod
-    def null(cls, values: Mapping[str, Float[Array, ""]], coupled: bool = True) -> "SlowDrag":
-        """Load at its neutral value: plain drag with the coefficients in `values`."""
-        return cls.of({label: value for label, value in values.items() if ".Cd_" in label}, coupled)
 
     def rest(self) -> Float[Array, "6"]:
         return jnp.zeros(6)
 
-    def about(self, label: str) -> Parameter:
-        return SLOW_DRAG_PARAMETERS[label] if label in SLOW_DRAG_PARAMETERS else about(label, {})
-
     def act(self, now: Instant, memory: Float[Array, "6"]) -> Action:
-        values, hull, density = self.values, now.hull, now.environment.density
-        share = values[f"{SLOW_DRAG_LABEL}.low_share"]
+        hull, density = now.hull, now.environment.density
+        share = self.low_share
         still, turning = (memory @ hull.motion).reshape(2, -1)
         slow_strip, slow_end = hull.split(still + turning * now.lines.away)
 
@@ -63,7 +51,7 @@ class SlowDrag(AbstractLoad):
             return share * whole + (1 - share) * fast
 
         return Action(
-            strip_force=force(strip_area(now, values), now.strip_flow.relative, slow_strip, self.coupled),
-            end_force=force(end_area(now, values), now.end_flow.relative, slow_end, False),
-            memory_rate=2 * math.pi * values[f"{SLOW_DRAG_LABEL}.cutoff"] * (now.velocity - memory),
+            strip_force=force(strip_area(now, self.Cd), now.strip_flow.relative, slow_strip, self.coupled),
+            end_force=force(end_area(now, self.Cd), now.end_flow.relative, slow_end, False),
+            memory_rate=2 * math.pi * self.cutoff * (now.velocity - memory),
         )

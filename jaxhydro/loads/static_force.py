@@ -1,19 +1,13 @@
 """Constant force and moment."""
 
-from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
-from jaxtyping import Array, Float
-
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, entries, nulls
-from jaxhydro.parameters import Parameter
-
-PARAMETERS = {"force": both_units("N", "N m", "constant load on the reference point in {dof}, earth axes")}
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 
 
-class StaticForce(AbstractLoad):
+class StaticForce(AbstractLoadPerDof):
     """Constant force and moment at the reference point.
 
     F_i = f_i, constant along earth axes, at the reference point.
@@ -26,16 +20,9 @@ class StaticForce(AbstractLoad):
     `static_offset.surge.force` and so on (N; N m for rotations).
     """
 
-    values: dict[str, Float[Array, ""]]
+    label_prefix: ClassVar[str] = "static_offset"
+    force: PerDof = by_dof("N", "N m", "constant load on the reference point in {dof}, earth axes")
     source: ClassVar[str] = "Faltinsen 1990, chapter 6, Current and wind loads"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str]) -> Self:
-        """Load at its neutral value, in some degrees of freedom."""
-        return cls(nulls("static_offset", dofs, PARAMETERS))
-
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(force=all_dofs(entries(self.values, "force"), self.values))
+        return Action(force=self.all_dofs(self.entries(self.force)))

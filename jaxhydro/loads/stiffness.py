@@ -3,12 +3,13 @@
 from typing import Any, ClassVar
 
 import equinox as eqx
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.matrix import assemble, meaning, unit
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.matrix import Entries, assemble, meaning, unit
+from jaxhydro.parameters import Parameter, parameters
 
 
 class Stiffness(AbstractLoad):
@@ -20,14 +21,19 @@ class Stiffness(AbstractLoad):
     Jonkman 2007, NREL/TP-500-41958: the linearised mooring system.
     """
 
-    values: dict[str, Float[Array, ""]]
-    preload: Float[Array, "6"]
+    entries: Entries = parameters(lambda load, key: load.about_entry(key), "{prefix}.{key}")
+    preload: Float[Array, "6"] = eqx.field(default_factory=lambda: jnp.zeros(6))
     name: str = eqx.field(static=True, default="stiffness")
     source: ClassVar[str] = "Jonkman 2007, NREL/TP-500-41958, the linearised mooring system"
 
-    def about(self, label: str) -> Parameter:
+    @property
+    def prefix(self) -> str:
+        return self.name
+
+    def about_entry(self, key: str) -> Parameter:
+        """Unit and meaning of an entry such as C15."""
         quantity = self.name if self.name.endswith("stiffness") else f"{self.name} stiffness"
-        return Parameter(unit("C", label), meaning(quantity, "displacement", label))
+        return Parameter(unit("C", key), meaning(quantity, "displacement", key))
 
     def act(self, now: Instant, memory: Any) -> Action:
-        return Action(force=self.preload - assemble(self.values) @ now.position)
+        return Action(force=self.preload - assemble(self.entries) @ now.position)

@@ -3,12 +3,11 @@
 from typing import Any, ClassVar
 
 import equinox as eqx
-from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.drag import quadratic, strip_area
+from jaxhydro.loads.coefficients import PerGroup, by_group
+from jaxhydro.loads.drag import MEANING, TRANSVERSE, quadratic, strip_area
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 
 class StripDrag(AbstractLoad):
@@ -20,18 +19,13 @@ class StripDrag(AbstractLoad):
     Structures, chapter 6). A is the area that faces the direction: diameter or side height times length for t, plan width
     times length for z. |u| is the length of the transverse vector, which couples the two directions (OpenFAST's law, the
     default), or with `coupled=False` that of the direction's own component, which only makes sense for rectangular
-    sections. Strips whose coefficient is not in `values` have another law.
+    sections. Strips whose coefficient is not in `Cd` have another law.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Cd: PerGroup = by_group("-", MEANING, 0.0, 30.0, t=TRANSVERSE, z={"way": "vertical", "area": "plan"})
     coupled: bool = eqx.field(static=True, default=True)
     source: ClassVar[str] = "Morison et al. 1950, Petroleum Transactions 189; Chakrabarti 1987, chapter 6"
 
-    def about(self, label: str) -> Parameter:
-        group, symbol = label.rsplit(".", 1)
-        way, area = ("transverse", "projected") if symbol == "Cd_t" else ("vertical", "plan")
-        return Parameter("-", f"{way} drag coefficient of {group}, on {area} area", 0.0, 30.0)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        area = strip_area(now, self.values)
+        area = strip_area(now, self.Cd)
         return Action(strip_force=quadratic(now.environment.density, area, now.strip_flow.relative, self.coupled))

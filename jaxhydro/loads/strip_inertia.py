@@ -1,32 +1,14 @@
 """Added mass and Froude-Krylov force of strips (Morison)."""
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
-from jaxhydro.hull.strips import Elements
 from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.coefficients import PerGroup, by_group, spread
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
-
-def spread(
-    elements: Elements, values: Mapping[str, Float[Array, ""]], symbol: str, missing: float | None = None
-) -> Float[Array, "2 e"]:
-    """Coefficients `group.symbol_t` and `group.symbol_z` by direction and load element.
-
-    Absent ones are `missing`.
-
-    Raises:
-        KeyError: A coefficient is absent and `missing` is None.
-    """
-    if not elements.labels:
-        return jnp.zeros((2, 0))
-    labels = elements.parameters(symbol)
-    stacked = jnp.stack([jnp.asarray(values[x] if missing is None else values.get(x, missing)) for x in labels])
-    return stacked[jnp.asarray(elements.label)]
+MEANING = "{way} added-mass coefficient of {group}, on displaced volume"
 
 
 class StripInertia(AbstractLoad):
@@ -45,17 +27,12 @@ class StripInertia(AbstractLoad):
     `waterplane`.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Ca: PerGroup = by_group("-", MEANING, 0.0, 10.0, t={"way": "transverse"}, z={"way": "vertical"})
     source: ClassVar[str] = "Morison et al. 1950, Petroleum Transactions 189; Chakrabarti 1987, chapter 6"
-
-    def about(self, label: str) -> Parameter:
-        group, symbol = label.rsplit(".", 1)
-        way = "transverse" if symbol == "Ca_t" else "vertical"
-        return Parameter("-", f"{way} added-mass coefficient of {group}, on displaced volume", 0.0, 10.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow = now.strip_flow
-        mass = now.environment.density * spread(now.hull.elements, self.values, "Ca")
+        mass = now.environment.density * spread(now.hull.elements, self.Ca, "Ca")
         if flow.acceleration is None:
             return Action(element_mass=mass)
         density, volume = now.environment.density, now.strip_shape.volume

@@ -2,12 +2,10 @@
 
 from typing import Any, ClassVar
 
-from jaxtyping import Array, Float
-
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.drag import SUCTION, about, end_area, of_ends, one_sided
+from jaxhydro.loads.coefficients import PerGroup, by_group
+from jaxhydro.loads.drag import SUCTION, drag_coefficients, end_area, of_ends, one_sided
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 
 
 class SuctionSideDrag(AbstractLoad):
@@ -26,15 +24,13 @@ class SuctionSideDrag(AbstractLoad):
     `StripDrag` with `coupled=False`, so there is no such law for strips.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Cd: PerGroup = drag_coefficients()
+    drag_suction: PerGroup = by_group("-", SUCTION, 0.0, 1.0)
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison.f90, Morison_CalcOutput, AxFDMod; pull request 2895"
 
-    def about(self, label: str) -> Parameter:
-        return about(label, {"drag_suction": SUCTION})
-
     def act(self, now: Instant, memory: Any) -> Action:
-        suction = of_ends(now, self.values, "drag_suction", 0.0)
+        suction = of_ends(now, self.drag_suction, 0.0)
         force = one_sided(
-            now.environment.density, end_area(now, self.values), now.end_flow.relative, now.hull.ends.outward, suction
+            now.environment.density, end_area(now, self.Cd), now.end_flow.relative, now.hull.ends.outward, suction
         )
         return Action(end_force=force)

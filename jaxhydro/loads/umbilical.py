@@ -1,21 +1,16 @@
 """Umbilical cable: spring, pull and hanging mass at a point."""
 
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.rotations import cross, skew
 
-PARAMETERS = {
-    "stiffness": Parameter("N/m", "horizontal spring where the cable leaves the platform", 0.0),
-    "pull": Parameter("N", "mean pull of the cable along x, earth axes"),
-    "mass": Parameter("kg", "mass of the cable that the platform carries", 0.0),
-    "height": Parameter("m", "height over the reference point where the cable leaves the platform", -30.0, 60.0, 12.0),
-}
+HEIGHT = "height over the reference point where the cable leaves the platform"
 
 
 class Umbilical(AbstractLoad):
@@ -33,20 +28,14 @@ class Umbilical(AbstractLoad):
     pull are the cable's statics, linearised, and ours. Labels are `umbilical.stiffness`, `.pull`, `.mass`, `.height` (h; m).
     """
 
-    values: dict[str, Float[Array, ""]]
+    stiffness: Float[Array, ""] = parameter("N/m", "horizontal spring where the cable leaves the platform", 0.0)
+    pull: Float[Array, ""] = parameter("N", "mean pull of the cable along x, earth axes")
+    mass: Float[Array, ""] = parameter("kg", "mass of the cable that the platform carries", 0.0)
+    height: Float[Array, ""] = parameter("m", HEIGHT, -30.0, 60.0, 12.0)
     source: ClassVar[str] = "Fossen 2011, section 3.3; the spring is ours"
 
-    @classmethod
-    def null(cls, height: float = 12.0) -> Self:
-        """Load at its neutral value; `height` (m) is above the reference point."""
-        every = {name: parameter.null for name, parameter in PARAMETERS.items()} | {"height": height}
-        return cls({f"umbilical.{name}": jnp.asarray(value, float) for name, value in every.items()})
-
-    def about(self, label: str) -> Parameter:
-        return PARAMETERS[label.removeprefix("umbilical.")]
-
     def act(self, now: Instant, memory: Any) -> Action:
-        stiffness, pull, mass, height = (self.values[f"umbilical.{name}"] for name in PARAMETERS)
+        stiffness, pull, mass, height = self.stiffness, self.pull, self.mass, self.height
         zero = jnp.zeros_like(height)
         arm, spin = jnp.stack([zero, zero, height]), now.velocity[3:]
         place = now.position[:3] + height * now.rotation[:, 2]  # from the reference point's own reference position

@@ -1,27 +1,26 @@
 """Slow drift force from the squared envelope of the waves."""
 
-from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
-import numpy as np
-from jaxtyping import Array, Float
 
-from jaxhydro.environment import DOFS
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 from jaxhydro.parameters import Parameter
 from jaxhydro.waves.sea import DRIFT_REFERENCE_FREQUENCY
 
-WAYS = {
-    "envelope": "in phase with the squared envelope |a|^2",
-    "quadrature": "a quarter of a beat behind the squared envelope",
-    "frequency_weighted": f"in phase with the squared envelope weighted by (omega/{DRIFT_REFERENCE_FREQUENCY:g})^2",
-}
-"""By what stands last in a label, in the order of `AbstractSea.drift`."""
+
+def _about(way: str) -> tuple[Parameter, Parameter]:
+    """Parameters of a translation and of a rotation, of a force that goes `way`."""
+    force, moment = (f"second-order {what} in {{dof}}, {way}" for what in ("force", "moment"))
+    return Parameter("N/m2", force), Parameter("N m/m2", moment)
 
 
-class WaveDrift(AbstractLoad):
+WEIGHTED = f"in phase with the squared envelope weighted by (omega/{DRIFT_REFERENCE_FREQUENCY:g})^2"
+
+
+class WaveDrift(AbstractLoadPerDof):
     """Slow drift force, linear in three squared envelopes of the waves.
 
     F_i(t) = sum_j D_ij s_j(t), of the undisturbed first-order waves at the origin, along earth axes.
@@ -41,23 +40,13 @@ class WaveDrift(AbstractLoad):
     has by its drag and its wetting. A sea without waves, or one that knows no `drift`, gives no force.
     """
 
-    values: dict[str, Float[Array, ""]]
+    envelope: PerDof = by_dof(*_about("in phase with the squared envelope |a|^2"))
+    quadrature: PerDof = by_dof(*_about("a quarter of a beat behind the squared envelope"))
+    frequency_weighted: PerDof = by_dof(*_about(WEIGHTED))
     source: ClassVar[str] = "Newman 1974; Faltinsen 1990, chapter 5"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str] = ("surge", "heave", "pitch")) -> "WaveDrift":
-        """Load at its neutral value, in some degrees of freedom."""
-        return cls({f"wave_drift.{dof}.{way}": jnp.zeros(()) for dof in dofs for way in WAYS})
-
-    def about(self, label: str) -> Parameter:
-        _, dof, way = label.split(".")
-        what, unit = ("force", "N/m2") if DOFS.index(dof) < 3 else ("moment", "N m/m2")
-        return Parameter(unit, f"second-order {what} in {dof}, {WAYS[way]}")
-
     def act(self, now: Instant, memory: Any) -> Action:
-        if now.drift is None or not self.values:
+        if now.drift is None or not self.dofs:
             return Action()
-        names = [label.split(".") for label in self.values]
-        ways, dofs = [list(WAYS).index(way) for _, _, way in names], [DOFS.index(dof) for _, dof, _ in names]
-        parts = jnp.stack([jnp.asarray(value) for value in self.values.values()]) * now.drift[np.array(ways)]
-        return Action(force=parts @ np.eye(6)[dofs])
+        parts = jnp.stack([self.entries(one, 0.0) for one in (self.envelope, self.quadrature, self.frequency_weighted)])
+        return Action(force=self.all_dofs(now.drift[:3] @ parts))

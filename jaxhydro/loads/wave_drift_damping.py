@@ -1,24 +1,15 @@
 """Wave-drift damping, proportional to the squared wave height."""
 
-from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from jaxtyping import Array, Float
-
-from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.loads.base import Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.per_dof import about, all_dofs, both_units, dofs_only, entries, nulls
-from jaxhydro.parameters import Parameter
+from jaxhydro.loads.per_dof import AbstractLoadPerDof, PerDof, by_dof
 
-PARAMETERS = {
-    "coefficient": both_units("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0),
-    "steady": both_units(
-        "-", "-", "share of it in {dof} that goes with the waves' mean square, not their envelope", 0.0, 1.0, 1.0
-    ),
-}
+STEADY = "share of it in {dof} that goes with the waves' mean square, not their envelope"
 
 
-class WaveDriftDamping(AbstractLoad):
+class WaveDriftDamping(AbstractLoadPerDof):
     """Damping of slow motion proportional to the squared wave height.
 
     F_i = -alpha_i (s_i Hs^2/8 + (1 - s_i) |a|^2) v_i along body axes, a the complex elevation of the undisturbed waves at
@@ -35,20 +26,13 @@ class WaveDriftDamping(AbstractLoad):
     Labels are `wave_drift_damping.surge.coefficient` (alpha; N s/m3, N s/(m rad)) and `.steady` (s; -).
     """
 
-    values: dict[str, Float[Array, ""]]
+    coefficient: PerDof = by_dof("N s/m3", "N s/(m rad)", "damping in {dof} per squared wave amplitude", 0.0)
+    steady: PerDof = by_dof("-", "-", STEADY, 0.0, 1.0, 1.0)
     source: ClassVar[str] = "Wichers 1982, OTC 4437; Faltinsen 1990, chapter 5"
 
-    @classmethod
-    def null(cls, dofs: Sequence[str] = ("surge", "heave", "pitch")) -> "WaveDriftDamping":
-        """Load at its neutral value, in some degrees of freedom."""
-        return cls(nulls("wave_drift_damping", dofs, PARAMETERS))
-
-    def about(self, label: str) -> Parameter:
-        return about(label, PARAMETERS)
-
     def act(self, now: Instant, memory: Any) -> Action:
-        if now.drift is None or not self.values:
+        if now.drift is None or not self.dofs:
             return Action()
-        coefficient, steady = entries(self.values, "coefficient"), entries(self.values, "steady", 1.0)
+        coefficient, steady = self.entries(self.coefficient), self.entries(self.steady, 1.0)
         square = steady * now.drift[3] + (1 - steady) * now.drift[0]
-        return Action(body_force=all_dofs(-coefficient * square * dofs_only(now.velocity, self.values), self.values))
+        return Action(body_force=self.all_dofs(-coefficient * square * self.dofs_only(now.velocity)))

@@ -1,18 +1,15 @@
 """Wave pressure on members with a coefficient of its own, apart from added mass."""
 
-from collections.abc import Iterable
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.end_inertia import spread_ends
+from jaxhydro.loads.coefficients import PerGroup, by_group, spread, spread_ends
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.strip_inertia import spread
-from jaxhydro.parameters import Parameter
 
-PREFIX = "wave_excitation."
+MEANING = "coefficient of the waves' pressure {way} {group}"
+LABEL = "{prefix}.{key[0]}.{name}_{key[1]}"
 
 
 class WaveExcitation(AbstractLoad):
@@ -29,28 +26,18 @@ class WaveExcitation(AbstractLoad):
     Labels are `wave_excitation.GROUP.Cp_t` across the members of a group, `.Cp_z` upwards on pontoons and on columns' ends.
     """
 
-    values: dict[str, Float[Array, ""]]
+    Cp: PerGroup = by_group("-", MEANING, -1.0, 4.0, 1.0, t={"way": "across"}, z={"way": "upwards on"}, label=LABEL)
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, pressure coefficients Cp and AxCp of members and joints"
-
-    @classmethod
-    def null(cls, coefficients: Iterable[str] = ("column.Cp_t",)) -> "WaveExcitation":
-        """Load at its neutral value, for coefficients "GROUP.Cp_t" or "GROUP.Cp_z"."""
-        return cls({f"{PREFIX}{one}": jnp.ones(()) for one in coefficients})
-
-    def about(self, label: str) -> Parameter:
-        group, symbol = label.removeprefix(PREFIX).rsplit(".", 1)
-        way = "across" if symbol == "Cp_t" else "upwards on"
-        return Parameter("-", f"coefficient of the waves' pressure {way} {group}", -1.0, 4.0, 1.0)
 
     def act(self, now: Instant, memory: Any) -> Action:
         flow, ends, density = now.strip_flow, now.hull.ends, now.environment.density
         if flow.acceleration is None or now.end_flow.pressure is None:
             return Action()
-        values = {label.removeprefix(PREFIX): value - 1 for label, value in self.values.items()}
+        beyond = {key: value - 1 for key, value in self.Cp.items()}
         water = flow.acceleration
         if flow.diffracted is not None:
             water = jnp.where(now.diffracting(), 0.5 * flow.diffracted, water)
-        strips = now.over_strips(density * spread(now.hull.elements, values, "Cp", 0.0)) * now.strip_shape.volume * water
+        strips = now.over_strips(density * spread(now.hull.elements, beyond, "Cp", 0.0)) * now.strip_shape.volume * water
         area = jnp.where(ends.radius > 0, now.end_shape.area, 0.0)
         pressure = -density * now.end_flow.pressure * area * ends.outward * now.end_flow.wet
-        return Action(strip_force=strips, end_force=spread_ends(ends, values, "Cp", 0.0) * pressure)
+        return Action(strip_force=strips, end_force=spread_ends(ends, beyond, "Cp", 0.0) * pressure)

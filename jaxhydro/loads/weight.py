@@ -7,7 +7,6 @@ from jaxtyping import Array, Float
 
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
-from jaxhydro.parameters import Parameter
 from jaxhydro.rotations import cross
 
 
@@ -22,11 +21,7 @@ class Weight(AbstractLoad):
 
     mass: Float[Array, ""]
     centre: Float[Array, "3"]
-    values: dict[str, Float[Array, ""]]
     source: ClassVar[str] = "Newman 1977, chapter 6, Hydrostatics"
-
-    def about(self, label: str) -> Parameter:
-        raise KeyError(label)
 
     def act(self, now: Instant, memory: Any) -> Action:
         force = -self.mass * now.environment.gravity * now.rotation[2]  # the vertical in body axes

@@ -16,8 +16,9 @@ from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError, Problem, suggest
 from jaxhydro.hull.coefficient_labels import shared_hint, shares_of
+from jaxhydro.hull.ends import Ends
 from jaxhydro.hull.hull import Hull
-from jaxhydro.hull.strips import COLUMN_SLOPE, Member
+from jaxhydro.hull.strips import COLUMN_SLOPE, Elements, Member
 from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
@@ -92,7 +93,7 @@ def build(platform: schema.Platform) -> Model:
     geometry = buoyancy(members, size)
     platform, coupling, remarks = with_hydrostatics(platform, geometry)
     declared = _declared_hydrostatics(geometry, platform, mass, float(centre[2]))
-    loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre, values={}), declared, *coupling]
+    loads: list[AbstractLoad] = [Weight(mass=body.mass, centre=body.centre), declared, *coupling]
     loads += _mooring(platform)
     for name, matrix, load in (
         ("linear_damping", platform.linear_damping.matrix(), LinearDamping),
@@ -100,31 +101,20 @@ def build(platform: schema.Platform) -> Model:
         ("added_mass", platform.added_mass.matrix(), AddedMass),
     ):
         letter = "A" if name == "added_mass" else "B"
-        if values := _entries(f"{name}.{letter}", matrix):
+        if values := _entries(letter, matrix):
             loads.append(load(values))
     loads += _guided(platform)
     computed, said = tables_of(platform, declared)
     loads += computed
-    if values := _entries("stiffness.C", platform.stiffness.matrix()):
-        loads.append(Stiffness(values, jnp.zeros(6), "stiffness"))
+    if values := _entries("C", platform.stiffness.matrix()):
+        loads.append(Stiffness(values))
     if members:
-        coefficients = {
-            f"{group}.{name}": jnp.asarray(value)
-            for group, row in platform.coefficients.items()
-            for name, value in row.numbers().items()
-        }
-        of_strips = {symbol: set(hull.elements.parameters(symbol)) for symbol in ("Ca", "Cd")}
-        of_ends = {symbol: set(hull.ends.parameters(symbol)) for symbol in ("Ca", "Cd")}
-
-        def pick(labels: set[str]) -> dict:
-            return {label: value for label, value in coefficients.items() if label in labels}
-
         coupled = platform.drag_speed == "vector"
         loads += [
-            StripInertia(pick(of_strips["Ca"])),
-            StripDrag(pick(of_strips["Cd"]), coupled),
-            EndInertia(pick(of_ends["Ca"])),
-            EndDrag(pick(of_ends["Cd"])),
+            StripInertia(_coefficients(platform, "Ca", hull.elements)),
+            StripDrag(_coefficients(platform, "Cd", hull.elements), coupled),
+            EndInertia(_coefficients(platform, "Ca", hull.ends)),
+            EndDrag(_coefficients(platform, "Cd", hull.ends)),
         ]
     conventions = Conventions(
         platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
@@ -200,7 +190,7 @@ def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:
     problems = [
         Problem(f"coefficients.{group}.drag_z", "no suction side, which the ends of columns have", "a group of pontoons")
         for group, row in platform.coefficients.items()
-        if f"{group}.Cd_z" not in model.hull.ends.parameters("Cd") and getattr(row.drag_z, "suction", None) is not None
+        if (group, "z") not in model.hull.ends.owners("Cd") and getattr(row.drag_z, "suction", None) is not None
     ]
     if problems:
         raise InputError(platform.name, problems)
@@ -237,15 +227,25 @@ def members_of(platform: schema.Platform) -> list[Member]:
     return members
 
 
-def _entries(prefix: str, matrix: np.ndarray) -> dict:
-    return {f"{prefix}{i + 1}{j + 1}": jnp.asarray(matrix[i, j]) for i in range(6) for j in range(6) if matrix[i, j] != 0.0}
+def _coefficients(platform: schema.Platform, symbol: str, parts: Elements | Ends) -> dict[tuple[str, str], float]:
+    """Coefficients of elements or ends by group and kind, in the order of the platform file."""
+    numbers = {group: row.numbers() for group, row in platform.coefficients.items()}
+    keys, used = [(group, kind) for group in numbers for kind in "tz"], set(parts.owners(symbol))
+    return {(group, kind): numbers[group][f"{symbol}_{kind}"] for group, kind in keys if (group, kind) in used}
+
+
+def _entries(letter: str, matrix: np.ndarray) -> dict:
+    return {f"{letter}{i + 1}{j + 1}": float(matrix[i, j]) for i in range(6) for j in range(6) if matrix[i, j] != 0.0}
 
 
 def _guided(platform: schema.Platform) -> list[AbstractLoad]:
     if not (masses := platform.guided_masses):
         return []
-    points, along = np.array([mass.point for mass in masses], float), tuple(mass.axes() for mass in masses)
-    return [GuidedMasses.of({mass.name: mass.mass for mass in masses}, points, along, tuple(mass.weight for mass in masses))]
+    points, along = jnp.asarray(np.array([mass.point for mass in masses], float)), tuple(mass.axes() for mass in masses)
+    names = tuple(mass.name for mass in masses)
+    return [
+        GuidedMasses(names, points, along, tuple(mass.weight for mass in masses), {mass.name: mass.mass for mass in masses})
+    ]
 
 
 def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
@@ -257,17 +257,14 @@ def _of_mooring(platform: schema.Platform) -> tuple[Remark, ...]:
 def _mooring(platform: schema.Platform) -> list[AbstractLoad]:
     mooring = platform.mooring
     if isinstance(mooring, schema.StiffnessMatrix):
-        return [Stiffness(_entries("mooring.C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
+        return [Stiffness(_entries("C", mooring.matrix()), jnp.asarray(mooring.preload), "mooring")]
     if not isinstance(mooring, schema.LinearSprings):
         return []
-    values = {}
-    for i, line in enumerate(mooring.lines):
-        stiffness, unstretched = line.spring()
-        values[f"mooring.line{i + 1}.stiffness"] = jnp.asarray(stiffness)
-        values[f"mooring.line{i + 1}.unstretched_length"] = jnp.asarray(unstretched)
+    springs = {f"line{i + 1}": line.spring() for i, line in enumerate(mooring.lines)}
+    stiffness, unstretched = ({name: spring[k] for name, spring in springs.items()} for k in (0, 1))
     anchor = jnp.asarray(np.array([line.anchor for line in mooring.lines], float).T)
     fairlead = jnp.asarray(np.array([line.fairlead for line in mooring.lines], float).T)
-    return [MooringLines(values, anchor, fairlead)]
+    return [MooringLines(anchor, fairlead, stiffness, unstretched)]
 
 
 def _declared_hydrostatics(load: Buoyancy, platform: schema.Platform, mass: float, centre: float) -> Buoyancy:

@@ -145,4 +145,4 @@ def coupling_of(stiffness: np.ndarray, own: np.ndarray) -> tuple[HydrostaticCoup
         matrix[i, j] = matrix[j, i] = stiffness[i, j] - own[i, j]
     size = np.sqrt(np.abs(np.diag(stiffness)))
     matrix[np.abs(matrix) <= 1e-9 * np.outer(size, size)] = 0.0
-    return (HydrostaticCoupling(stiffness=jnp.asarray(matrix), values={}),) if matrix.any() else ()
+    return (HydrostaticCoupling(stiffness=jnp.asarray(matrix)),) if matrix.any() else ()

@@ -4,6 +4,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
+import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro.errors import InputError, Problem
@@ -50,7 +51,8 @@ def radiation_of(declared: schema.Radiation, density: float) -> tuple[ComputedRa
     found = _realised(declared, stamp, density)
     share, highest = float(declared.use == "load"), float(found.coefficients.omega[-1])
     space = found.space
-    return ComputedRadiation.of(space.rates, space.drive, space.output, share, highest), found
+    rates, drive, output = map(jnp.asarray, (space.rates, space.drive, space.output))
+    return ComputedRadiation(rates, drive, output, jnp.asarray(share), highest), found
 
 
 @lru_cache(maxsize=8)
@@ -113,7 +115,7 @@ def excitation_of(declared: schema.Excitation, water: schema.Water) -> tuple[Com
             depth=water.depth,
             notes=notes,
         )
-    load = ComputedExcitation.of(table, share=float(declared.use == "load"))
+    load = ComputedExcitation(table, share=jnp.asarray(float(declared.use == "load")))
     return load, (*as_warnings(doubts), *map(Remark, notes))
 
 
@@ -135,7 +137,7 @@ def drift_of(declared: schema.Drift, water: schema.Water) -> tuple[DriftTransfer
         body=declared.body,
         warnings=doubts,
     )
-    return DriftTransfer.of(transfer, share=float(declared.use == "load")), as_warnings(doubts)
+    return DriftTransfer(transfer, share=jnp.asarray(float(declared.use == "load"))), as_warnings(doubts)
 
 
 def tables_of(platform: schema.Platform, buoyancy: Buoyancy) -> tuple[list[AbstractLoad], list[Remark]]:

@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias
 
-import jax.numpy as jnp
 import numpy as np
 
 from jaxhydro.dynamics.model import Model
@@ -36,24 +35,20 @@ def drag_laws_of(model: Model) -> dict[str, DragLaw]:
     found: dict[str, DragLaw] = {}
     for load in model.loads:
         inner = load.load if isinstance(load, SeaStateLaw) else load
-
-        def value(label: str, name: str, load: AbstractLoad = load) -> float:
-            return float(load.values[parameter_label(label, name)])
-
-        for label in (label for label in inner.values if ".Cd_" in label):
+        for key in getattr(inner, "Cd", ()):
+            label = f"{key[0]}.Cd_{key[1]}"
             if isinstance(inner, HighPassDrag):
-                suction = value(label, "suction") if parameter_label(label, "suction") in load.values else None
-                found[label] = HighPassAtEnds.model_construct(
-                    law="high_pass", cutoff=value(label, "cutoff"), low_share=value(label, "low_share"), suction=suction
-                )
+                suction = float(inner.drag_suction[key]) if key in inner.drag_suction else None
+                cutoff, low_share = float(inner.drag_cutoff[key]), float(inner.drag_low_share[key])
+                numbers: dict[str, Any] = {"cutoff": cutoff, "low_share": low_share, "suction": suction}
+                found[label] = HighPassAtEnds.model_construct(law="high_pass", **numbers)
             elif isinstance(inner, KeuleganCarpenterDrag):
-                line = inner.lines.index(lines_of(model.hull, [label])[0])
-                constants: dict[str, Any] = {"reference": float(inner.reference[line]), "window": float(inner.window[line])}
-                found[label] = KeuleganCarpenter.model_construct(
-                    law="keulegan_carpenter", exponent=value(label, "exponent"), **constants
-                )
+                line = inner.lines.index(lines_of(model.hull, [key])[0])
+                numbers = {"reference": float(inner.reference[line]), "window": float(inner.window[line])}
+                exponent = float(inner.drag_exponent[key])
+                found[label] = KeuleganCarpenter.model_construct(law="keulegan_carpenter", exponent=exponent, **numbers)
             elif isinstance(inner, SuctionSideDrag):
-                found[label] = SuctionSide.model_construct(law="suction_side", suction=value(label, "suction"))
+                found[label] = SuctionSide.model_construct(law="suction_side", suction=float(inner.drag_suction[key]))
     return found
 
 
@@ -74,21 +69,25 @@ def with_drag_laws(model: Model, laws: Mapping[str, DragLaw]) -> Model:
     known = plain_drag(model)
     if lost := [label for label in laws if label not in known]:
         raise ValueError(f"{lost[0]}: expected a coefficient of plain Morison drag ({', '.join(known) or 'there is none'})")
-    values, loads = model.values, []
-    taken: dict[type, set[str]] = {
+    keys = {label: key for load in model.loads for label, key in load.keys.items()}
+    taken = {keys[label]: law for label, law in laws.items()}
+    plain: dict[type, set] = {
         # of a strip's direction no side is that of suction
-        StripDrag: {label for label, law in laws.items() if not isinstance(law, SuctionSide)},
-        EndDrag: set(laws),
+        StripDrag: {key for key, law in taken.items() if not isinstance(law, SuctionSide)},
+        EndDrag: set(taken),
     }
+    loads: list[AbstractLoad] = []
+    coefficients: dict[Any, Any] = {}
     for load in model.loads:
-        if type(load) in taken:
-            left = {label: value for label, value in load.values.items() if label not in taken[type(load)]}
-            load = replace(load, values=left)
+        if isinstance(load, StripDrag | EndDrag):
+            coefficients |= {key: value for key, value in load.Cd.items() if key in taken}
+            left = {key: value for key, value in load.Cd.items() if key not in plain[type(load)]}
+            if not left:  # without a coefficient there is no drag
+                continue
+            load = replace(load, Cd=left)
         loads.append(load)
-    # without a coefficient there is no drag
-    loads = [load for load in loads if load.values or type(load) not in taken]
     coupled = next((load.coupled for load in model.loads if isinstance(load, StripDrag)), True)
-    return replace(model, loads=tuple(map(strongly_typed, (*loads, *_loads(laws, values, model.hull, coupled)))))
+    return replace(model, loads=tuple(map(strongly_typed, (*loads, *_loads(taken, coefficients, model.hull, coupled)))))
 
 
 def surface_number(hull: Hull, label: str, height: float) -> float:
@@ -97,27 +96,30 @@ def surface_number(hull: Hull, label: str, height: float) -> float:
     H is the wave height (m), D the mean size (m) across the flow on the lines of a coefficient.
     """
     n = hull.strips.size.shape[1]
+    key = next(key for key in (*hull.elements.owners("Cd"), *hull.ends.owners("Cd")) if f"{key[0]}.Cd_{key[1]}" == label)
     extent = np.concatenate([np.asarray(hull.strips.size)[::-1].reshape(2 * n), 2 * np.asarray(hull.ends.radius)])
-    return math.pi * height / float(extent[list(lines_of(hull, [label]))].mean())
+    return math.pi * height / float(extent[list(lines_of(hull, [key]))].mean())
 
 
-def _loads(laws: Mapping[str, DragLaw], coefficients: Mapping, hull: Hull, coupled: bool) -> list[AbstractLoad]:
+def _loads(laws: Mapping[Any, DragLaw], coefficients: Mapping, hull: Hull, coupled: bool) -> list[AbstractLoad]:
     """A load for every kind of law, on the lines of all coefficients that it is given for."""
 
-    def values(some: Mapping[str, DragLaw]) -> dict:
-        found = {label: coefficients[label] for label in some}
-        for label, law in some.items():
-            for name, value in law.model_dump(exclude={"law", "reference", "window"}, exclude_none=True).items():
-                found[parameter_label(label, name)] = jnp.asarray(value)
-        return found
+    def of(kind: type) -> tuple[dict, dict[str, dict]]:
+        """Drag coefficients with a kind of law, and the numbers of the law by name."""
+        some = {key: law for key, law in laws.items() if isinstance(law, kind)}
+        numbers: dict[str, dict] = {}
+        for key, law in some.items():
+            for name, value in law.model_dump(exclude={"law"}, exclude_none=True).items():
+                numbers.setdefault(name, {})[key] = value
+        return {key: coefficients[key] for key in some}, numbers
 
     loads: list[AbstractLoad] = []
-    if high := {label: law for label, law in laws.items() if isinstance(law, HighPass)}:
-        loads.append(HighPassDrag.of(hull, values(high), coupled))
-    if powers := {label: law for label, law in laws.items() if isinstance(law, KeuleganCarpenter)}:
-        reference = {label: law.reference for label, law in powers.items()}
-        window = {label: law.window for label, law in powers.items()}
-        loads.append(KeuleganCarpenterDrag.of(hull, values(powers), reference, window, coupled))
-    if sides := {label: law for label, law in laws.items() if isinstance(law, SuctionSide)}:
-        loads.append(SuctionSideDrag(values(sides)))
+    (high, by_name), (powers, constants), (sides, shares) = map(of, (HighPass, KeuleganCarpenter, SuctionSide))
+    if high:
+        loads.append(HighPassDrag.of(hull, high, coupled=coupled, **{f"drag_{name}": x for name, x in by_name.items()}))
+    if powers:
+        exponent = constants.pop("exponent")
+        loads.append(KeuleganCarpenterDrag.of(hull, powers, drag_exponent=exponent, coupled=coupled, **constants))
+    if sides:
+        loads.append(SuctionSideDrag(sides, shares["suction"]))
     return loads

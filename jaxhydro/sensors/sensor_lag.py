@@ -2,13 +2,13 @@
 
 from typing import ClassVar
 
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
 
 MAX_LAG = 60.0  # s
+DELAY = "delay of the recorded motions behind the waves: y_rec(t) = y(t - delay)"
 
 
 class SensorLag(AbstractSensorEffect):
@@ -22,16 +22,8 @@ class SensorLag(AbstractSensorEffect):
     takes it up. No force: the motion is the same.
     """
 
-    values: dict[str, Float[Array, ""]]
+    delay: Float[Array, ""] = parameter("s", DELAY, -MAX_LAG, MAX_LAG)
     source: ClassVar[str] = "Bracewell 2000, chapter 6 (shift theorem)"
 
-    @classmethod
-    def null(cls) -> "SensorLag":
-        """Effect at its neutral value: no lag."""
-        return cls({"sensor_lag.delay": jnp.zeros(())})
-
-    def about(self, label: str) -> Parameter:
-        return Parameter("s", "delay of the recorded motions behind the waves: y_rec(t) = y(t - delay)", -MAX_LAG, MAX_LAG)
-
     def clock_lag(self) -> Float[Array, ""]:
-        return jnp.asarray(self.values["sensor_lag.delay"])
+        return self.delay

@@ -5,11 +5,12 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.rotations import rotation
 from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
 
 MAX_OFFSET = 200.0  # m
+ABOUT = "{} of the tracked point from the reference point, body axes"
 
 
 class SensorReference(AbstractSensorEffect):
@@ -23,20 +24,12 @@ class SensorReference(AbstractSensorEffect):
     is the same.
     """
 
-    values: dict[str, Float[Array, ""]]
+    x: Float[Array, ""] = parameter("m", ABOUT.format("x"), -MAX_OFFSET, MAX_OFFSET)
+    z: Float[Array, ""] = parameter("m", ABOUT.format("z"), -MAX_OFFSET, MAX_OFFSET)
     source: ClassVar[str] = "Fossen 2011, section 2.2"
 
-    @classmethod
-    def null(cls) -> "SensorReference":
-        """Effect at its neutral value: the reference point itself."""
-        return cls({"sensor_reference.x": jnp.zeros(()), "sensor_reference.z": jnp.zeros(())})
-
-    def about(self, label: str) -> Parameter:
-        return Parameter("m", f"{label[-1]} of the tracked point from the reference point, body axes", -MAX_OFFSET, MAX_OFFSET)
-
     def seen(self, position: Float[Array, "... 6"]) -> Float[Array, "... 6"]:
-        x, z = (jnp.asarray(self.values[f"sensor_reference.{axis}"]) for axis in "xz")
-        offset = jnp.stack([x, jnp.zeros(()), z])
+        offset = jnp.stack([self.x, jnp.zeros(()), self.z])
 
         def of(one: Float[Array, "6"]) -> Float[Array, "6"]:
             return jnp.concatenate([one[:3] + (rotation(one[3:]) @ offset - offset), one[3:]])

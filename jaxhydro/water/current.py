@@ -5,7 +5,7 @@ from typing import ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.water.water_effect import AbstractWaterEffect
 
 MAX_SPEED = 5.0  # m/s
@@ -23,16 +23,9 @@ class Current(AbstractWaterEffect):
     that rests in still water has no slope by it at U = 0: |u| u has none. In a decay and in waves it has.
     """
 
-    values: dict[str, Float[Array, ""]]
+    x: Float[Array, ""] = parameter("m/s", "velocity of the current along earth's x", -MAX_SPEED, MAX_SPEED)
+    y: Float[Array, ""] = parameter("m/s", "velocity of the current along earth's y", -MAX_SPEED, MAX_SPEED)
     source: ClassVar[str] = "DNV-RP-C205, section 6; Faltinsen 1990, chapter 6"
 
-    @classmethod
-    def null(cls) -> "Current":
-        """Effect at its neutral value: no current."""
-        return cls({"current.x": jnp.zeros(()), "current.y": jnp.zeros(())})
-
-    def about(self, label: str) -> Parameter:
-        return Parameter("m/s", f"velocity of the current along earth's {label[-1]}", -MAX_SPEED, MAX_SPEED)
-
     def current(self) -> Float[Array, "3"]:
-        return jnp.stack([*(jnp.asarray(self.values[f"current.{axis}"]) for axis in "xy"), jnp.zeros(())])
+        return jnp.stack([self.x, self.y, jnp.zeros(())])

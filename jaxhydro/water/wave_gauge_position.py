@@ -2,14 +2,14 @@
 
 from typing import ClassVar
 
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.water.water_effect import AbstractWaterEffect
 from jaxhydro.waves.sea import AbstractSea
 
 MAX_OFFSET = 50.0  # m
+DISTANCE = "how much further along the waves the gauge stood than was said"
 
 
 class WaveGaugePosition(AbstractWaterEffect):
@@ -24,18 +24,9 @@ class WaveGaugePosition(AbstractWaterEffect):
     that were taken off the record do not depend on d.
     """
 
-    values: dict[str, Float[Array, ""]]
+    distance: Float[Array, ""] = parameter("m", DISTANCE, -MAX_OFFSET, MAX_OFFSET, of_hull=False)
     comes_last: ClassVar[bool] = True
     source: ClassVar[str] = "Sharma and Dean 1981, SPE Journal 21 (the waves that are moved)"
 
-    @classmethod
-    def null(cls) -> "WaveGaugePosition":
-        """Effect at its neutral value: the gauge where it was stated."""
-        return cls({"wave_gauge_position.distance": jnp.zeros(())})
-
-    def about(self, label: str) -> Parameter:
-        words = "how much further along the waves the gauge stood than was said"
-        return Parameter("m", words, -MAX_OFFSET, MAX_OFFSET, of_hull=False)
-
     def through(self, sea: AbstractSea) -> AbstractSea:
-        return sea.moved(jnp.asarray(self.values["wave_gauge_position.distance"]))
+        return sea.moved(self.distance)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 from jaxhydro.water.water_effect import AbstractWaterEffect
 from jaxhydro.waves.flow import Cylinders, Flow
 from jaxhydro.waves.sea import AbstractSea, StillWater
@@ -94,23 +94,13 @@ class WaveReflection(AbstractWaterEffect):
     Labels are `wave_reflection.coefficient` (r; -), `wave_reflection.delay` (T; s) and `wave_reflection.seen` (s; -).
     """
 
-    values: dict[str, Float[Array, ""]]
+    coefficient: Float[Array, ""] = parameter("-", "share of the waves' height that comes back", -0.3, 0.3)
+    delay: Float[Array, ""] = parameter("s", "from the platform to the beach and back", 0.0, MAX_DELAY, DEFAULT_DELAY)
+    seen: Float[Array, ""] = parameter("-", "share of what comes back that the wave record has", 0.0, 1.0)
     source: ClassVar[str] = "Goda and Suzuki 1976 (incident and reflected waves); one r, a delay and what a gauge saw are ours"
 
-    @classmethod
-    def null(cls, delay: float = DEFAULT_DELAY) -> "WaveReflection":
-        """Effect at its neutral value: no reflection; `delay` (s) is where it starts."""
-        return cls({COEFFICIENT: jnp.zeros(()), DELAY: jnp.asarray(float(delay)), SEEN: jnp.zeros(())})
-
-    def about(self, label: str) -> Parameter:
-        if label == DELAY:
-            return Parameter("s", "from the platform to the beach and back", 0.0, MAX_DELAY, DEFAULT_DELAY)
-        if label == SEEN:
-            return Parameter("-", "share of what comes back that the wave record has", 0.0, 1.0)
-        return Parameter("-", "share of the waves' height that comes back", -0.3, 0.3)
-
     def through(self, sea: AbstractSea) -> AbstractSea:
-        share, delay, seen = (self.values[label] for label in (COEFFICIENT, DELAY, SEEN))
+        share, delay, seen = self.coefficient, self.delay, self.seen
         if isinstance(sea, StillWater):
             return sea
         if isinstance(sea, SupportSea):  # which knows times of its clock only

@@ -3,7 +3,7 @@
 import math
 from functools import cache
 
-import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ from calibration.decay_analysis.model_damping import drag_coefficient, model_dam
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import linearised
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 
 PERIOD = 20.0
 OMEGA = 2 * math.pi / PERIOD
@@ -268,13 +268,10 @@ def test_decay_of_a_model_has_its_coefficients(dof: str, released: float) -> Non
 class Friction(AbstractLoad):
     """F = -F0 tanh(v/0.1) in heave: neither linear nor quadratic."""
 
-    values: dict = eqx.field(default_factory=lambda: {"friction": jnp.array(1e6)})
-
-    def about(self, label: str) -> Parameter:
-        return Parameter("N", "friction")
+    size: jax.Array = parameter("N", "friction", null=1e6)
 
     def act(self, now, memory) -> Action:
-        return Action(body_force=-self.values["friction"] * jnp.tanh(now.velocity / 0.1) * jnp.eye(6)[2])
+        return Action(body_force=-self.size * jnp.tanh(now.velocity / 0.1) * jnp.eye(6)[2])
 
 
 def test_wrong_requests_are_refused() -> None:

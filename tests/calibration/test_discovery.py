@@ -3,6 +3,7 @@
 from time import monotonic
 from types import SimpleNamespace
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -33,7 +34,7 @@ from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 
 PLATFORM = {
     "name": "a rolling body",
@@ -207,13 +208,11 @@ def test_blocks_left_out_in_turn_where_no_test_is_held_out(tmp_path, monkeypatch
 class Sine(AbstractLoad):
     """A torque in roll of one's own: -k sin(10 x)."""
 
-    values: dict
-
-    def about(self, label):
-        return Parameter("N m", "strength of a torque that repeats", -np.inf, np.inf, 0.0)
+    strength: jax.Array = parameter("N m", "strength of a torque that repeats")
+    label_prefix = "repeating"
 
     def act(self, now, memory):
-        torque = -self.values["repeating.strength"] * jnp.sin(10 * now.position[3])
+        torque = -self.strength * jnp.sin(10 * now.position[3])
         return Action(force=jnp.zeros(6).at[3].set(torque))
 
 
@@ -224,7 +223,7 @@ def test_a_law_of_ones_own_takes_part(tmp_path):
         "repeating",
         "roll",
         ("repeating.strength",),
-        load=Sine({"repeating.strength": jnp.zeros(())}),
+        load=Sine(),
         sizes={"repeating.strength": 1.0},
     )
     found = found_in(campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x)), candidates=[own])
@@ -236,16 +235,13 @@ def test_a_law_of_ones_own_takes_part(tmp_path):
 class Runaway(AbstractLoad):
     """A torque in roll from a memory that grows without end: silent at its null, and nothing can be said of its slopes."""
 
-    values: dict
-
-    def about(self, label):
-        return Parameter("N m s/rad", "strength of a torque that runs away", -np.inf, np.inf, 0.0)
+    strength: jax.Array = parameter("N m s/rad", "strength of a torque that runs away")
 
     def rest(self):
         return jnp.zeros(())
 
     def act(self, now, memory):
-        force = jnp.zeros(6).at[3].set(self.values["runaway.strength"] * memory)
+        force = jnp.zeros(6).at[3].set(self.strength * memory)
         return Action(force=force, memory_rate=6.0 * memory + now.earth_velocity()[3])
 
 
@@ -256,7 +252,7 @@ def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
         "runaway",
         "roll",
         ("runaway.strength",),
-        load=Runaway({"runaway.strength": jnp.zeros(())}),
+        load=Runaway(),
         sizes={"runaway.strength": 1.0},
     )
     found = found_in(campaign_of(tmp_path, lambda x, v: -500.0 * x**3), candidates=[own])
@@ -268,7 +264,7 @@ def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
 def test_a_model_of_ones_own_is_calibrated(tmp_path):
     """With a load that no platform file has, freed by its label like any other."""
     campaign = campaign_of(tmp_path, lambda x, v: -4.0 * np.sin(10 * x))
-    own = campaign.with_model(campaign.model.with_effect(Sine({"repeating.strength": jnp.asarray(3.0)})))
+    own = campaign.with_model(campaign.model.with_effect(Sine(3.0)))
     found = calibrate(own, free=["added_mass.A44", "linear_damping.B44", "repeating.strength"])
     assert_allclose(found.parameters["repeating.strength"].value, 4.0, rtol=0.05)
     with pytest.raises(InputError, match=r"repeating\.strength"):

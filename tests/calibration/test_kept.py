@@ -8,6 +8,7 @@ import warnings
 import zipfile
 from types import SimpleNamespace
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ from calibration.results.write_diagnosis import write_diagnosis
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.errors import CheckpointWarning
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.parameters import Parameter
+from jaxhydro.parameters import parameter
 
 
 class Killed(Exception):
@@ -226,25 +227,21 @@ def test_other_options_and_another_model_start_anew(written):
 class Sine(AbstractLoad):
     """A torque of one's own."""
 
-    values: dict
+    strength: jax.Array = parameter("N m", "strength of a torque that repeats")
     steepness: float = 10.0
 
-    def about(self, label):
-        return Parameter("N m", "strength of a torque that repeats", -np.inf, np.inf, 0.0)
-
     def act(self, now, memory):
-        torque = -self.values["repeating.strength"] * jnp.sin(self.steepness * now.position[3])
+        torque = -self.strength * jnp.sin(self.steepness * now.position[3])
         return Action(force=jnp.zeros(6).at[3].set(torque))
 
 
 def test_the_fingerprint_knows_loads_of_ones_own(tmp_path, monkeypatch):
     """Their numbers and fields, and their source: it is in none of the packages."""
-    one = Sine({"repeating.strength": jnp.zeros(())})
+    one = Sine(0.0)
     known = fingerprints.fingerprint(one)
-    assert fingerprints.fingerprint(Sine({"repeating.strength": jnp.zeros(())})) == known
-    assert fingerprints.fingerprint(Sine({"repeating.strength": jnp.ones(())})) != known
-    assert fingerprints.fingerprint(Sine({"repeating.strength": jnp.zeros(())}, 11.0)) != known
-    assert fingerprints.fingerprint(Sine({"repeating.force": jnp.zeros(())})) != known
+    assert fingerprints.fingerprint(Sine(0.0)) == known
+    assert fingerprints.fingerprint(Sine(1.0)) != known
+    assert fingerprints.fingerprint(Sine(0.0, 11.0)) != known
     monkeypatch.syspath_prepend(tmp_path)
     text = "import equinox as eqx\nclass Own(eqx.Module):\n    def force(self, x):\n        return 2 * x\n"
     found = []

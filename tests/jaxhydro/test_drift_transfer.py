@@ -51,7 +51,7 @@ def by_pairs(sea: jh.IrregularSea, time: float, found: np.ndarray) -> np.ndarray
 def test_the_force_is_the_double_sum_over_pairs(newman: bool) -> None:
     """Direct, and prepared on a clock that starts late; Newman's from the diagonal alone."""
     sea, whole = irregular(), table()
-    load = DriftTransfer.of(Transfer.of(GRID, whole, newman), share=0.7)
+    load = DriftTransfer(Transfer.of(GRID, whole, newman), share=0.7)
     if newman:
         curve = np.einsum("ikk->ik", whole).real
         whole = 0.5 * (curve[:, :, None] + curve[:, None, :])
@@ -67,7 +67,7 @@ def test_the_force_is_the_double_sum_over_pairs(newman: bool) -> None:
 def test_in_a_regular_wave_it_is_the_drift_curve() -> None:
     """T_kk a^2, and nothing at frequencies that the table has not."""
     whole = table()
-    model = model_of(build(COLUMN), DriftTransfer.of(Transfer.of(GRID, whole)))
+    model = model_of(build(COLUMN), DriftTransfer(Transfer.of(GRID, whole), 1.0))
     for k, omega in enumerate(GRID):
         sea = jh.regular_wave(0.8, 2 * math.pi / omega, WATER, phase=0.4)
         found, _ = acts(model, np.zeros(6), np.zeros(6), (None,), sea, 7.7)
@@ -77,12 +77,12 @@ def test_in_a_regular_wave_it_is_the_drift_curve() -> None:
 
 
 def test_a_sea_without_the_transfer_function_is_refused() -> None:
-    model = model_of(build(COLUMN), DriftTransfer.of(Transfer.of(GRID, table())))
+    model = model_of(build(COLUMN), DriftTransfer(Transfer.of(GRID, table()), 1.0))
     bare = irregular().prepared(HULL, None, Clock(10.0, 0.25, 40, (0.0,)))
     with pytest.raises(ValueError, match=r"prepare it with `Model\.transfer`"):
         acts(model, np.zeros(6), np.zeros(6), (None,), bare, 12.0)
     with pytest.raises(ValueError, match="two loads"):
-        assert model.with_effect(DriftTransfer.of(Transfer.of(GRID, table()))).transfer is None
+        assert model.with_effect(DriftTransfer(Transfer.of(GRID, table()), 1.0)).transfer is None
 
 
 @pytest.mark.slow
@@ -93,7 +93,7 @@ def test_a_simulation_drifts_by_it() -> None:
     model = jh.load_model("volturnus-s-focal")
     waves = jh.spectrum_components(lambda w: jh.jonswap(w, 3.0, 9.0), 400.0, model.environment, low=0.06, cutoff=0.18, seed=1)
     sea, times = jh.IrregularSea(waves, model.environment), np.arange(0.0, 400.0, 1.0)
-    load = DriftTransfer.of(Transfer.of(GRID, mean))
+    load = DriftTransfer(Transfer.of(GRID, mean), 1.0)
     surge = [np.asarray(jh.simulate(one, times, sea)["surge"]) for one in (model, model.with_effect(load))]
     stiffness = float(np.asarray(linearised(model, jh.equilibrium(model))[1])[0, 0])
     expected = 3e4 * float((np.asarray(waves.amplitude) ** 2).sum()) / stiffness

@@ -44,10 +44,9 @@ KINDS = (CoulombFriction, CubicDamping, StaticForce, MooringNonlinearity, Hyster
 def rig() -> jh.Model:
     """A mass on springs with all effects at their nulls: one program for all that follows."""
     springs = dict.fromkeys(("C11", "C22"), C) | {"C33": LIFT, "C44": TILT, "C55": TILT, "C66": TILT}
-    stiffness = {f"stiffness.{term}": jnp.asarray(value) for term, value in springs.items()}
-    effects = (*(kind.null(("surge",)) for kind in KINDS), NonlinearHydrostatics.null())
+    effects = (*(kind.neutral(("surge",)) for kind in KINDS), NonlinearHydrostatics.neutral())
     body = BODY | {"centre_of_mass": [0, 0, 0]}
-    return model_of(build(rigid_body=body), Stiffness(stiffness, jnp.zeros(6)), *effects)
+    return model_of(build(rigid_body=body), Stiffness(springs), *effects)
 
 
 TIMES = np.linspace(0.0, 240.0, 481)
@@ -185,11 +184,8 @@ def driven(load: AbstractLoad, memory, velocity: jax.Array, step: float) -> tupl
     return jax.lax.scan(advance, memory, stages)[1]
 
 
-HYSTERESIS = {"hysteresis.surge.force": 9e4, "hysteresis.surge.yield_displacement": 0.4}
-
-
 def hysteresis() -> Hysteresis:
-    return Hysteresis({label: jnp.asarray(value) for label, value in HYSTERESIS.items()})
+    return Hysteresis({"surge": 9e4}, {"surge": 0.4})
 
 
 @pytest.mark.parametrize("amplitude", [0.05, 0.6, 4.0])
@@ -238,7 +234,7 @@ RADIATION = {"strength": 4e5, "frequency": 0.5, "damping_ratio": 0.3}
 
 
 def radiation() -> RadiationMemory:
-    return RadiationMemory({f"radiation_memory.surge.{name}": jnp.asarray(value) for name, value in RADIATION.items()})
+    return RadiationMemory(**{name: {"surge": value} for name, value in RADIATION.items()})
 
 
 def kernel(t: np.ndarray) -> np.ndarray:
@@ -396,7 +392,7 @@ def test_a_wrong_mass_is_another_body() -> None:
     """The load makes of the declared body exactly the one with the other mass, centre and inertia."""
     model = floating()
     body = model.body
-    error = MassError.null(body.mass, body.centre)
+    error = MassError(body.mass, body.centre)
     found = {"mass": 7e5, "centre_x": 0.8, "centre_z": -1.1, "inertia_roll": 3e8, "inertia_pitch": -4e8, "inertia_yaw": 2e8}
     wrong = model.with_effect(error).with_values({f"mass_properties.{name}": value for name, value in found.items()})
     inertia = np.asarray(body.inertia) + np.diag([3e8, -4e8, 2e8])
@@ -406,7 +402,7 @@ def test_a_wrong_mass_is_another_body() -> None:
 def test_a_cable_that_is_carried_is_a_point_of_the_body() -> None:
     """Its mass alone: the body with a point mass at the height, by parallel axes."""
     model = floating()
-    carried = model.with_effect(Umbilical.null(20.0)).with_values({"umbilical.mass": 5e5})
+    carried = model.with_effect(Umbilical(height=20.0)).with_values({"umbilical.mass": 5e5})
     centre, point = np.asarray(model.body.centre), np.array([0, 0, 20.0])
     joint = (8e6 * centre + 5e5 * point) / 8.5e6
 
@@ -423,11 +419,11 @@ def test_a_cable_that_is_carried_is_a_point_of_the_body() -> None:
 def test_forces_along_earth_axes_and_body_axes() -> None:
     """Turned by a quarter in yaw: a constant force stays, damping turns with the hull."""
     quarter = (2.0, 0, 0, 0, 0, math.pi / 2)
-    constant = model_of(rig(), StaticForce({"static_offset.surge.force": jnp.asarray(3.0)}))
+    constant = model_of(rig(), StaticForce({"surge": 3.0}))
     assert_allclose(force(constant, position=quarter), [0, -3, 0, 0, 0, 0], atol=1e-15)
-    spring = model_of(rig(), MooringNonlinearity({"mooring_nonlinearity.surge.odd_quadratic": jnp.asarray(3.0)}))
+    spring = model_of(rig(), MooringNonlinearity({"surge": 3.0}))
     assert_allclose(force(spring, position=quarter), [0, 12, 0, 0, 0, 0], atol=1e-14)
-    damping = model_of(rig(), CubicDamping({"cubic_damping.pitch.coefficient": jnp.asarray(2.0)}))
+    damping = model_of(rig(), CubicDamping({"pitch": 2.0}))
     assert_allclose(force(damping, (1, 2, 3, 4, 3, 5), quarter), [0, 0, 0, 0, -54, 0], rtol=1e-14)
     values = {"coulomb_friction.yaw.force": jnp.asarray(7.0), "coulomb_friction.yaw.speed": jnp.asarray(2e-4)}
     friction = model_of(rig(), CoulombFriction(values))
@@ -437,10 +433,10 @@ def test_forces_along_earth_axes_and_body_axes() -> None:
 def test_what_is_refused_and_what_labels_mean() -> None:
     """Wrong names are told with the right ones; units by degree of freedom; shapes of nulls as given."""
     with pytest.raises(ValueError, match="no degree of freedom 'surgee'; there are: surge"):
-        CoulombFriction.null(["surgee"])
-    with pytest.raises(ValueError, match="those of heave, roll and pitch, found 'surge'"):
-        NonlinearHydrostatics.null(["surge"])
-    load = Hysteresis.null(["pitch", "surge"])
+        CoulombFriction.neutral(["surgee"])
+    with pytest.raises(ValueError, match="no degree of freedom 'surge'; there are: heave, roll, pitch"):
+        NonlinearHydrostatics.neutral(["surge"])
+    load = Hysteresis.neutral(["pitch", "surge"])
     assert load.about("hysteresis.pitch.force").unit == "N m" and load.about("hysteresis.surge.force").unit == "N"
     assert {label: float(value) for label, value in load.values.items()} == {
         "hysteresis.surge.force": 0.0,
@@ -448,5 +444,5 @@ def test_what_is_refused_and_what_labels_mean() -> None:
         "hysteresis.pitch.force": 0.0,
         "hysteresis.pitch.yield_displacement": 0.01,
     }
-    assert float(Hysteresis.null(["surge"], 2.0).values["hysteresis.surge.yield_displacement"]) == 2.0
-    assert float(RadiationMemory.null(["heave"], frequency=1.0).values["radiation_memory.heave.frequency"]) == 1.0
+    assert float(Hysteresis.neutral(["surge"], yield_displacement=2.0).values["hysteresis.surge.yield_displacement"]) == 2.0
+    assert float(RadiationMemory.neutral(["heave"], frequency=1.0).values["radiation_memory.heave.frequency"]) == 1.0

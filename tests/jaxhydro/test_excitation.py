@@ -55,7 +55,7 @@ def by_sum(sea: jh.IrregularSea, time: float, table: np.ndarray, place=(0.0, 0.0
 def test_the_force_is_the_sum_over_components(order: int, heading: float) -> None:
     """Direct, and prepared on a clock that starts late, where the platform is; bound waves add nothing to it."""
     sea, table = irregular(order, heading), forces()
-    model = model_of(build(COLUMN), ComputedExcitation.of(Excitation.of(GRID, table), share=0.7))
+    model = model_of(build(COLUMN), ComputedExcitation(Excitation.of(GRID, table), share=0.7))
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
     for position in (REST, AWAY * [1, 1, 1, 0, 0, 0]):
         for time in (10.0, 36.5, 107.25):
@@ -69,7 +69,7 @@ def test_the_force_is_the_sum_over_components(order: int, heading: float) -> Non
 def test_it_takes_the_place_of_the_strips_own() -> None:
     """Share s: s of the table's, 1 - s of what acceleration and pressure do to strips and ends; added mass is as it was."""
     strips = only(build(COLUMN, PONTOON), StripInertia, EndInertia)
-    table = ComputedExcitation.of(Excitation.of(GRID, forces()), 0.0)
+    table = ComputedExcitation(Excitation.of(GRID, forces()), 0.0)
     sea, none = irregular(2).direct(), (None,) * 3
     model = strips.with_effect(table)
     own, _ = acts(strips, AWAY, REST, none[:2], sea, 20.0)
@@ -81,7 +81,7 @@ def test_it_takes_the_place_of_the_strips_own() -> None:
         assert_allclose(found, (1 - share) * own + share * theirs, atol=1e-9 * np.abs(theirs).max())
     still = [
         np.asarray(one.rate(jnp.zeros(()), one.rest(), jh.StillWater()).velocity)
-        for one in (build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_effect(ComputedExcitation.of(table.excitation)))
+        for one in (build(COLUMN, PONTOON), build(COLUMN, PONTOON).with_effect(ComputedExcitation(table.excitation, 1.0)))
     ]
     assert_allclose(still[1], still[0], rtol=1e-12, atol=1e-12)
 
@@ -98,7 +98,7 @@ def test_what_strips_do_in_small_waves_is_their_excitation() -> None:
             table[:, k] += found / 0.01 * (1.0 if phase == 0 else 1j)
     sea = irregular()
     own = [acts(strips, REST, REST, none, sea.direct(), t)[0] for t in (5.0, 41.3)]
-    load = ComputedExcitation.of(Excitation.of(omega, table))
+    load = ComputedExcitation(Excitation.of(omega, table), 1.0)
     found = [acts(model_of(strips, load), REST, REST, (None,), sea.direct(), t)[0] for t in (5.0, 41.3)]
     assert_allclose(found, own, atol=2e-3 * np.abs(own).max())
 
@@ -106,22 +106,22 @@ def test_what_strips_do_in_small_waves_is_their_excitation() -> None:
 def test_it_moves_with_the_waves() -> None:
     """Where the gauge stood 4 m further along, so does the force: every component by its own wavenumber."""
     sea, table = irregular(), forces()
-    gauge = with_values(WaveGaugePosition.null(), distance=4.0)
-    model = model_of(build(COLUMN), gauge, ComputedExcitation.of(Excitation.of(GRID, table)))
+    gauge = with_values(WaveGaugePosition(), distance=4.0)
+    model = model_of(build(COLUMN), gauge, ComputedExcitation(Excitation.of(GRID, table), 1.0))
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 400, (0.0,)), exciting=model.excitation)
     exact = by_sum(sea, 36.5, table, (-4.0, 0.0))
     for met, error in ((prepared, 2e-5), (sea, 1e-9)):
-        found, _ = acts(model, REST, REST, (None,) * 2, met, 36.5)
+        found, _ = acts(model, REST, REST, (None,), met, 36.5)
         assert_allclose(found, exact, atol=error * np.abs(exact).max())
 
 
 def test_a_sea_without_it_is_refused() -> None:
-    model = model_of(build(COLUMN), ComputedExcitation.of(Excitation.of(GRID, forces())))
+    model = model_of(build(COLUMN), ComputedExcitation(Excitation.of(GRID, forces()), 1.0))
     bare = irregular().prepared(HULL, None, Clock(10.0, 0.25, 40, (0.0,)))
     with pytest.raises(ValueError, match=r"prepare it with `Model\.excitation`"):
         acts(model, REST, REST, (None,), bare, 12.0)
     with pytest.raises(ValueError, match="two loads"):
-        assert model.with_effect(ComputedExcitation.of(Excitation.of(GRID, forces()))).excitation is None
+        assert model.with_effect(ComputedExcitation(Excitation.of(GRID, forces()), 1.0)).excitation is None
     with pytest.raises(ValueError, match="two ascending frequencies or more"):
         Excitation.of(GRID[::-1], forces())
 
@@ -133,10 +133,10 @@ def test_a_simulation_follows_it() -> None:
     model = model.with_values({label: 0.0 for label in model.values if ".Cd_" in label})
     waves = jh.spectrum_components(lambda w: jh.jonswap(w, 3.0, 9.0), 300.0, model.environment, low=0.06, cutoff=0.18, seed=1)
     sea, times = jh.IrregularSea(waves, model.environment), np.arange(0.0, 300.0, 1.0)
-    silent = ComputedExcitation.of(Excitation.of(GRID, 0 * forces()))
+    silent = ComputedExcitation(Excitation.of(GRID, 0 * forces()), 1.0)
     heave = [
         np.asarray(jh.simulate(one, times, sea)["heave"])
-        for one in (model, model.with_effect(silent), model.with_effect(ComputedExcitation.of(silent.excitation, 0.0)))
+        for one in (model, model.with_effect(silent), model.with_effect(ComputedExcitation(silent.excitation)))
     ]
     assert heave[1].std() < 1e-6 * heave[0].std()
     assert_allclose(heave[2], heave[0], rtol=1e-9, atol=1e-12)

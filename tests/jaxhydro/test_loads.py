@@ -159,30 +159,35 @@ RADIATION += (1e3 * RADIATION[1].T,)
 def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad, ...]:
     """The loads that no platform file declares, at their nulls."""
     return (
-        Umbilical.null(),
-        NonlinearHydrostatics.null(),
-        MassError.null(model.body.mass, model.body.centre),
-        ComputedRadiation.of(*RADIATION),
-        *(kind.null(dofs) for kind in (CoulombFriction, CubicDamping, StaticForce, MooringNonlinearity)),
-        *(kind.null(dofs) for kind in (Hysteresis, RadiationMemory, HiddenOscillator)),
+        Umbilical(),
+        NonlinearHydrostatics.neutral(),
+        MassError(model.body.mass, model.body.centre),
+        ComputedRadiation(*map(jnp.asarray, RADIATION)),
+        *(kind.neutral(dofs) for kind in (CoulombFriction, CubicDamping, StaticForce, MooringNonlinearity)),
+        *(kind.neutral(dofs) for kind in (Hysteresis, RadiationMemory, HiddenOscillator)),
     )
 
 
 def in_water(model: jh.Model) -> jh.Model:
     """The model with the effects of the water and the sensors at their nulls; three drag coefficients get laws of their own."""
-    taken = {"column.Cd_t": PowerDrag, "pontoon.Cd_t": SlowDrag, "column.Cd_z": ChangingDrag}
+    taken = {("column", "t"): PowerDrag.neutral, ("pontoon", "t"): SlowDrag, ("column", "z"): ChangingDrag.neutral}
     plain = [
-        dataclasses.replace(load, values={k: v for k, v in load.values.items() if k not in taken})
+        dataclasses.replace(load, Cd={k: v for k, v in load.Cd.items() if k not in taken})
         if isinstance(load, StripDrag)
         else load
         for load in model.loads
     ]
-    drag = [law.null({label: model.values[label]}) for label, law in taken.items()]
-    others = (CoupledDamping, CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
-    computed = (DriftTransfer.of(TRANSFER, 0.0), ComputedExcitation.of(EXCITATION, 0.0))
-    drift = (WaveDrift.null(DOFS), WaveDriftDamping.null(), *computed)
-    pressed = WaveExcitation.null([label.replace(".Ca_", ".Cp_") for label in model.values if ".Ca_" in label])
-    return model_of(model, *plain, *drag, *(kind.null() for kind in others), *drift, pressed)
+    drag = [law({key: COEFFICIENTS[f"Cd_{key[1]}"]}) for key, law in taken.items()]
+    others = (CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
+    computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION))
+    drift = (
+        CoupledDamping({"B15": 0.0}),
+        WaveDrift.neutral(DOFS),
+        WaveDriftDamping.neutral(("surge", "heave", "pitch")),
+        *computed,
+    )
+    pressed = WaveExcitation({(group, kind): 1.0 for group in EVERYTHING["coefficients"] for kind in "tz"})
+    return model_of(model, *plain, *drag, *(kind() for kind in others), *drift, pressed)
 
 
 @cache
@@ -191,7 +196,7 @@ def everything() -> jh.Model:
     model = build(**EVERYTHING)
     coupled = np.zeros((6, 6))
     coupled[2, 4] = coupled[4, 2] = 3e6  # N
-    model = model.with_effect(HydrostaticCoupling(stiffness=jnp.asarray(coupled), values={}))
+    model = model.with_effect(HydrostaticCoupling(stiffness=jnp.asarray(coupled)))
     for load in effects(model):
         model = model.with_effect(load)
     model = in_water(model)
@@ -280,6 +285,28 @@ def test_contract(name: str) -> None:
     if load.values:
         null = model.with_values({label: load.about(label).null for label in load.values})
         assert all(bool((part == 0).all()) for part in wrench(null, positions[0], velocities[0]))
+
+
+@pytest.mark.parametrize("name", WATER_EFFECTS)
+def test_a_water_effect_at_its_neutral_value(name: str) -> None:
+    """The sea is what it was, and there is no current; elsewhere it is another sea, or there is one."""
+    effect, point = WATER_EFFECTS[name](), jnp.array([[12.0], [5.0], [-3.0]])
+    time = jnp.asarray(7.3)
+    alone, same = SEA.flow(time, point), effect.through(SEA).flow(time, point)
+    assert all(bool((a == b).all()) for a, b in zip(jax.tree.leaves(alone), jax.tree.leaves(same), strict=True))
+    assert effect.current() is None or bool((effect.current() == 0).all())
+    other = effect.at_values({label: 0.2 for label in effect.values})
+    changed, current = other.through(SEA).flow(time, point), other.current()
+    assert bool((changed.velocity != alone.velocity).any()) or float(jnp.abs(current).max()) == 0.2
+
+
+@pytest.mark.parametrize("name", SENSOR_EFFECTS)
+def test_a_sensor_effect_at_its_neutral_value(name: str) -> None:
+    """The reading is the motion, at once; elsewhere it is another, or later."""
+    effect, position = SENSOR_EFFECTS[name](), jnp.array([3.0, 1.0, -2.0, 0.1, 0.2, -0.3])
+    assert bool((effect.seen(position) == position).all()) and not effect.clock_lag()
+    other = effect.at_values({label: 0.2 for label in effect.values})
+    assert bool((other.seen(position) != position).any()) or float(other.clock_lag()) == 0.2
 
 
 def test_waves_at_the_reference_position() -> None:
@@ -494,7 +521,7 @@ def test_centripetal_part_of_added_mass() -> None:
 
 def test_linear_damping_and_its_labels() -> None:
     """F_i = -B_ij v_j in body axes, row before column."""
-    model = model_of(build(), LinearDamping({"linear_damping.B15": 3.0, "linear_damping.B22": 2.0}))
+    model = model_of(build(), LinearDamping({"B15": 3.0, "B22": 2.0}))
     assert_allclose(force(model, [0, 4, 0, 0, 5, 0], [0, 0, 0, 0.1, 0.2, 0.3]), [-15, -8, 0, 0, 0, 0], rtol=1e-14)
     assert model.about("linear_damping.B15").unit == "N s"
     assert model.about("linear_damping.B15").meaning == "linear damping: surge force from pitch velocity"
@@ -503,7 +530,7 @@ def test_linear_damping_and_its_labels() -> None:
 
 def test_quadratic_damping_and_its_labels() -> None:
     """F_i = -Q_ii |v_i| v_i."""
-    model = model_of(build(), QuadraticDamping({"quadratic_damping.B33": 2.0, "quadratic_damping.B55": 7.0}))
+    model = model_of(build(), QuadraticDamping({"B33": 2.0, "B55": 7.0}))
     assert_allclose(force(model, [1, 0, -4, 0, 5, 0]), [0, 0, 32, 0, -175, 0], rtol=1e-12)
     assert model.about("quadratic_damping.B55").unit == "N m s2/rad2"
     assert model.about("quadratic_damping.B55").meaning == "quadratic damping in pitch"
@@ -511,7 +538,7 @@ def test_quadratic_damping_and_its_labels() -> None:
 
 def test_lumped_added_mass_and_its_labels() -> None:
     """A matrix of its labels, in body axes."""
-    model = model_of(build(), AddedMass({"added_mass.A15": 3.0, "added_mass.A51": 3.0, "added_mass.A66": 8.0}))
+    model = model_of(build(), AddedMass({"A15": 3.0, "A51": 3.0, "A66": 8.0}))
     expected = np.zeros((6, 6))
     expected[0, 4] = expected[4, 0] = 3.0
     expected[5, 5] = 8.0
@@ -528,11 +555,11 @@ def test_lumped_added_mass_and_its_labels() -> None:
 def test_lumped_stiffness_acts_along_earth_axes() -> None:
     """F0 - C q on a platform that is turned: not turned with it."""
     preload = jnp.array([1.0, 0, -2.0, 0, 0, 4.0])
-    model = model_of(build(), Stiffness({"mooring.C11": jnp.asarray(5.0), "mooring.C15": jnp.asarray(7.0)}, preload))
+    model = model_of(build(), Stiffness({"C11": 5.0, "C15": 7.0}, preload, "mooring"))
     position = jnp.array([2.0, 1.0, 0, 0.1, 0.2, 0.5])
     assert_allclose(at_rest(model, position), [1 - 10 - 1.4, 0, -2, 0, 0, 4], rtol=1e-13, atol=1e-14)
     meanings = [
-        Stiffness({}, preload, name).about(f"{name}.{label}").meaning
+        Stiffness({label: 1.0}, preload, name).about(f"{name}.{label}").meaning
         for name in ("mooring", "stiffness")
         for label in ("C11", "C15")
     ]
@@ -542,7 +569,7 @@ def test_lumped_stiffness_acts_along_earth_axes() -> None:
         "stiffness in surge",
         "stiffness: surge force from pitch displacement",
     ]
-    assert CoupledDamping.null().about("coupled_damping.B15").meaning == "linear damping that couples surge and pitch"
+    assert CoupledDamping({"B15": 0.0}).about("coupled_damping.B15").meaning == "linear damping that couples surge and pitch"
 
 
 def test_weight() -> None:

@@ -139,11 +139,11 @@ M, C = 2e7, np.array([8e4, 0.0, 4e6, 2e9, 2e9, 0.0])
 
 def platform(share: float = 1.0) -> jh.Model:
     """A mass on springs, its centre at the reference point, with the memory above."""
-    springs = {f"stiffness.C{i}{i}": jnp.asarray(C[i - 1]) for i in (1, 3, 4, 5)}
+    springs = {f"C{i}{i}": C[i - 1] for i in (1, 3, 4, 5)}
     body = BODY | {"mass": M, "centre_of_mass": [0, 0, 0]}
     space = realise(coefficients(), 0.002)
-    load = ComputedRadiation.of(space.rates, space.drive, space.output, share)
-    return model_of(build(COLUMN, rigid_body=body), Stiffness(springs, jnp.zeros(6)), load)
+    load = ComputedRadiation(*map(jnp.asarray, (space.rates, space.drive, space.output)), share)
+    return model_of(build(COLUMN, rigid_body=body), Stiffness(springs), load)
 
 
 def convolved(inertia: float, spring: float, size: float, start: float, times: np.ndarray) -> np.ndarray:

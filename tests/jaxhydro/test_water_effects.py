@@ -27,6 +27,7 @@ from jaxhydro.loads import (
     WaveDriftDamping,
     WaveExcitation,
 )
+from jaxhydro.parameters import AbstractEffect
 from jaxhydro.sensors import SensorLag, SensorReference
 from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
 from jaxhydro.waves import Clock, PlaneWaves, WaveSea
@@ -39,10 +40,9 @@ VELOCITY = np.array([1.1, -0.6, 0.7, 0.02, -0.03, 0.01])
 POSITION = (3.0, -2.0, 1.0, 0.05, -0.1, 0.2)
 
 
-def with_values(load: AbstractLoad, **values: float) -> AbstractLoad:
-    """A load with parameters of these last parts of their labels."""
-    changed = {k: jnp.asarray(values.get(k.rsplit(".", 1)[1], v)) for k, v in load.values.items()}
-    return dataclasses.replace(load, values=changed)
+def with_values(load: AbstractEffect, **values: float) -> AbstractEffect:
+    """An effect with parameters of these last parts of their labels."""
+    return load.at_values({label: values.get(label.rsplit(".", 1)[1], value) for label, value in load.values.items()})
 
 
 def irregular(order: int = 1, heading: float = 0.0, ramp: float = 0.0) -> jh.IrregularSea:
@@ -80,7 +80,7 @@ def water(sea: jh.AbstractSea, time, points, load: AbstractLoad | None = None) -
 def test_drag_in_a_current() -> None:
     """1/2 rho Cd D T |U| U on a column that is held, oblique; as much on one that is moved the other way in still water."""
     plain = only(build(COLUMN), StripDrag)
-    flowing = plain.with_effect(with_values(Current.null(), x=0.9, y=-1.2))
+    flowing = plain.with_effect(with_values(Current(), x=0.9, y=-1.2))
     expected = 0.5 * RHO * CD_T * AREA * 1.5 * np.array([0.9, -1.2])
     assert_allclose(force(flowing)[:2], expected, rtol=1e-11)
     assert_allclose(force(plain, [-0.9, 1.2, 0, 0, 0, 0])[:2], expected, rtol=1e-11)
@@ -90,7 +90,7 @@ def test_a_current_is_galilean() -> None:
     """Whoever goes with the stream feels none; any motion in it is that of the difference, in an attitude, too."""
     plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
     stream = np.array([0.9, -1.2, 0.0])
-    flowing = plain.with_effect(with_values(Current.null(), x=0.9, y=-1.2))
+    flowing = plain.with_effect(with_values(Current(), x=0.9, y=-1.2))
     in_body = np.concatenate([Rotation.from_euler("ZYX", POSITION[:2:-1]).as_matrix().T @ stream, np.zeros(3)])
     assert_allclose(force(flowing, in_body, POSITION), 0.0, atol=1e-5)
     expected = force(plain, VELOCITY - in_body, POSITION)
@@ -103,20 +103,16 @@ def test_a_current_is_galilean() -> None:
 def test_what_a_point_off_the_reference_reads() -> None:
     """p + R o - o with scipy's rotation, over any leading axes; at zero attitude, and at the null, p to the bit."""
     position = np.random.default_rng(0).uniform(-0.5, 0.5, (2, 3, 6))
-    load = with_values(SensorReference.null(), x=4.0, z=-6.0)
+    load = with_values(SensorReference(), x=4.0, z=-6.0)
     offset = np.array([4.0, 0.0, -6.0])
     found = np.asarray(load.seen(jnp.asarray(position)))
     turned = Rotation.from_euler("ZYX", position[..., :2:-1].reshape(-1, 3)).apply(offset).reshape(2, 3, 3)
     assert_allclose(found[..., :3], position[..., :3] + turned - offset, atol=1e-14)
     assert (found[..., 3:] == position[..., 3:]).all()
-    assert (np.asarray(SensorReference.null().seen(jnp.asarray(position))) == position).all()
+    assert (np.asarray(SensorReference().seen(jnp.asarray(position))) == position).all()
     upright = position * [1, 1, 1, 0, 0, 0]
     assert (np.asarray(load.seen(jnp.asarray(upright))) == upright).all()
-    slope = jax.jacfwd(
-        lambda z: dataclasses.replace(load, values=load.values | {"sensor_reference.z": z}).seen(
-            jnp.array([0.0, 0, 0, 0, 0.1, 0])
-        )
-    )(jnp.zeros(()))
+    slope = jax.jacfwd(lambda z: dataclasses.replace(load, z=z).seen(jnp.array([0.0, 0, 0, 0, 0.1, 0])))(jnp.zeros(()))
     assert_allclose(slope, [math.sin(0.1), 0, math.cos(0.1) - 1, 0, 0, 0], atol=1e-15)
 
 
@@ -124,7 +120,7 @@ def test_a_delay_is_late() -> None:
     """y_rec(t) = y(t - delay), through the model; None where no load is about clocks."""
     model = build(COLUMN)
     assert model.clock_lag() is None
-    late = model.with_effect(with_values(SensorLag.null(), delay=0.7))
+    late = model.with_effect(with_values(SensorLag(), delay=0.7))
     assert float(late.clock_lag()) == 0.7
     assert (force(late, VELOCITY, POSITION) == force(model, VELOCITY, POSITION)).all()
 
@@ -140,7 +136,7 @@ def test_a_gauge_further_along_by_hand() -> None:
     t = jnp.asarray(3.3)
     recorded = math.cos(2 * math.pi / 8.0 * 3.3)
     assert float(said.elevation(t, jnp.array([[12.0], [0.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
-    load = with_values(WaveGaugePosition.null(), distance=30.0)
+    load = with_values(WaveGaugePosition(), distance=30.0)
     assert float(load.through(said).elevation(t, jnp.array([[42.0], [5.0]]))[0]) == pytest.approx(recorded, abs=1e-12)
 
 
@@ -150,7 +146,7 @@ def test_a_moved_sea_is_one_of_other_phases(order: int, heading: float) -> None:
     sea = irregular(order, heading)
     waves = sea.components
     expected = dataclasses.replace(sea, components=dataclasses.replace(waves, phase=waves.phase + 9.0 * waves.wavenumber))
-    load = with_values(WaveGaugePosition.null(), distance=9.0)
+    load = with_values(WaveGaugePosition(), distance=9.0)
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 100, (0.0,)))
     along = np.array([-20.0, 3.0, 25.0])
     points = jnp.asarray(np.stack([along * np.cos(heading), along * np.sin(heading), [-15.0, -4.0, 0.0]]))
@@ -163,7 +159,7 @@ def test_a_moved_sea_is_one_of_other_phases(order: int, heading: float) -> None:
         for part, other in zip(found, exact, strict=True):
             assert_allclose(part, other, atol=5 * tolerance * np.abs(other).max())
         assert one is prepared or bool(jnp.abs(drifting - drift).max() < 1e-9)
-    same = zip(*(jax.tree.leaves(one) for one in (WaveGaugePosition.null().through(prepared), prepared)), strict=True)
+    same = zip(*(jax.tree.leaves(one) for one in (WaveGaugePosition().through(prepared), prepared)), strict=True)
     assert all(np.array_equal(a, b) for a, b in same)
     assert isinstance(load.through(jh.StillWater()), jh.StillWater)
 
@@ -171,7 +167,7 @@ def test_a_moved_sea_is_one_of_other_phases(order: int, heading: float) -> None:
 def test_a_moved_envelope_goes_with_the_group() -> None:
     """In a narrow band the squared envelope that passes 12 m further down is that of before, but for dispersion."""
     waves = jh.spectrum_components(lambda w: jh.jonswap(w, 5.0, 10.0), 400.0, WATER, low=0.085, cutoff=0.115, seed=3)
-    sea, load = jh.IrregularSea(waves, WATER), with_values(WaveGaugePosition.null(), distance=12.0)
+    sea, load = jh.IrregularSea(waves, WATER), with_values(WaveGaugePosition(), distance=12.0)
     prepared, direct = sea.prepared(HULL, None, Clock(10.0, 0.25, 1000, (0.0,))), sea.direct()
     times = jnp.linspace(20.0, 240.0, 60)
     found, exact, still = (
@@ -225,7 +221,7 @@ def test_the_envelope_grows_with_the_waves() -> None:
 def test_wave_drift_is_its_transfer_function() -> None:
     """Double sum over A_k conj(A_l) T_kl with T of the docstring; Newman's mean in a regular wave; nothing in still water."""
     sea, (d0, d1, d2) = irregular(), (2e4, -7e3, 9e3)
-    load = with_values(WaveDrift.null(("surge", "pitch")), envelope=d0, quadrature=d1, frequency_weighted=d2)
+    load = with_values(WaveDrift.neutral(("surge", "pitch")), envelope=d0, quadrature=d1, frequency_weighted=d2)
     model = model_of(build(COLUMN), load)
     waves = sea.components
     amplitude, omega, t = np.asarray(waves.complex_amplitude()), np.asarray(waves.omega), 36.5
@@ -242,7 +238,7 @@ def test_wave_drift_is_its_transfer_function() -> None:
 
 def test_wave_drift_damping() -> None:
     """-alpha A^2 v in a regular wave of amplitude 1.5 m, in the degrees of freedom that it has; none in still water."""
-    model = model_of(build(COLUMN), with_values(WaveDriftDamping.null(("surge", "pitch")), coefficient=3e4))
+    model = model_of(build(COLUMN), with_values(WaveDriftDamping.neutral(("surge", "pitch")), coefficient=3e4))
     expected = -3e4 * 1.5**2 * VELOCITY * [1, 0, 0, 0, 1, 0]
     assert_allclose(force(model, VELOCITY, POSITION, SEA), expected, rtol=1e-11, atol=1e-9)
     assert (force(model, VELOCITY) == 0).all()
@@ -252,7 +248,7 @@ def test_wave_drift_damping() -> None:
 def test_wave_drift_damping_of_a_sea_state_and_of_groups(steady: float) -> None:
     """In two waves, |a|^2 = a1^2 + a2^2 + 2 a1 a2 cos((w1 - w2) t + phase), of which the steady share has the mean."""
     waves = [jh.regular_wave(height, period, WATER).waves for height, period in ((2.0, 9.0), (3.0, 11.0))]
-    model = model_of(build(COLUMN), with_values(WaveDriftDamping.null(("surge",)), coefficient=3e4, steady=steady))
+    model = model_of(build(COLUMN), with_values(WaveDriftDamping.neutral(("surge",)), coefficient=3e4, steady=steady))
     beat = 2 * math.pi * (1 / 9.0 - 1 / 11.0)
     mean, group = 1.0 + 1.5**2, 3.0 * math.cos(beat * 7.7)
     found, _ = acts(model, np.zeros(6), VELOCITY, (None,), WaveSea(waves[0] + waves[1], WATER), 7.7)
@@ -271,18 +267,21 @@ def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
 
     bare, whole = (cost(plain, one) for one in (dataclasses.replace(sea, envelope=None), sea))
     assert bare[0] == whole[0] and (bare[1] == whole[1]).all()
-    assert cost(plain.with_effect(WaveDrift.null()), sea)[0] > whole[0]
+    assert cost(plain.with_effect(WaveDrift.neutral(("surge", "heave", "pitch"))), sea)[0] > whole[0]
 
 
 # drag
 
 
+NEUTRAL = {PowerDrag: PowerDrag.neutral, SlowDrag: SlowDrag}
+
+
 def replaced(law: type, model: jh.Model, **values: float) -> jh.Model:
     """Plain drag of strips and ends replaced by another law, of the same coefficients."""
     drag = [load for load in model.loads if isinstance(load, (StripDrag, EndDrag))]
-    taken = {label: value for load in drag for label, value in load.values.items()}
+    taken = {key: value for load in drag for key, value in load.Cd.items()}
     rest = [load for load in model.loads if load not in drag]
-    return model_of(model, *rest, with_values(law.null(taken, drag[0].coupled), **values))
+    return model_of(model, *rest, with_values(NEUTRAL[law](taken, coupled=drag[0].coupled), **values))
 
 
 @pytest.mark.parametrize("speed", ["vector", "component"])
@@ -325,10 +324,10 @@ def test_slow_motion_has_a_coefficient_of_its_own() -> None:
 def test_slow_motion_in_a_current() -> None:
     """A platform that drifts slowly in it feels r of the whole, and of the current the rest: that is no slow motion."""
     plain = only(build(COLUMN), StripDrag)
-    load = SlowDrag.of(plain.loads[0].values | {"sea_state_dependent_drag.low_share": jnp.asarray(0.3)})
-    flowing = model_of(plain, load, with_values(Current.null(), x=1.0))
+    load = SlowDrag(plain.loads[0].Cd, low_share=jnp.asarray(0.3))
+    flowing = model_of(plain, load, with_values(Current(), x=1.0))
     slow = jnp.array([0.4, 0, 0, 0, 0, 0])
-    found, _ = acts(flowing, np.zeros(6), slow, (slow, None), jh.StillWater())
+    found, _ = acts(flowing, np.zeros(6), slow, (slow,), jh.StillWater())
     assert float(found[0]) == pytest.approx(0.5 * RHO * CD_T * AREA * (0.3 * 0.6**2 + 0.7 * 1.0**2), rel=1e-9)
 
 
@@ -338,7 +337,7 @@ def test_slow_motion_in_a_current() -> None:
 def test_a_regular_wave_comes_back() -> None:
     """a cos(omega t - k x) + r a cos(omega (t - T) + k x), and its flow: along with the sign turned, up without."""
     sea = jh.regular_wave(2.0, 7.0, WATER, heading=0.5)
-    load = with_values(WaveReflection.null(13.0), coefficient=-0.2)
+    load = with_values(WaveReflection(delay=13.0), coefficient=-0.2)
     omega, k = 2 * math.pi / 7.0, float(np.hypot(*np.asarray(sea.waves.vector[:, 0])))
     x, z, t = 17.0, -4.0, 23.0
     points = jnp.array([[x * math.cos(0.5)], [x * math.sin(0.5)], [z]])
@@ -357,12 +356,12 @@ def test_a_prepared_sea_comes_back() -> None:
     """Between the steps of its clock, too, as the direct sum does; nothing before the delay, and nothing at the null."""
     sea = irregular(2, 0.3)
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
-    load = with_values(WaveReflection.null(8.1), coefficient=0.25)
+    load = with_values(WaveReflection(delay=8.1), coefficient=0.25)
     points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, -1.0]])
     met, exact = load.through(prepared), load.through(sea.direct())
     for one, other in zip(*(water(one, jnp.asarray(40.5), points) for one in (met, exact)), strict=True):
         assert_allclose(one, other, atol=2e-5 * np.abs(other).max())
-    for time, one in ((17.75, met), (10.125, met), (40.5, WaveReflection.null(8.1).through(prepared))):
+    for time, one in ((17.75, met), (10.125, met), (40.5, WaveReflection(delay=8.1).through(prepared))):
         found, expected = (water(which, jnp.asarray(time), points) for which in (one, prepared))
         assert_allclose(found[0], expected[0], rtol=1e-13)
     assert isinstance(load.through(jh.StillWater()), jh.StillWater)
@@ -372,7 +371,7 @@ def test_what_the_gauge_saw_come_back() -> None:
     """With r = 0.25, all of it in the record: the elevation at the origin is as measured, and the flow along the waves what
     r^2 leaves of sent and sent back."""
     sea = irregular(1, 0.3).direct()
-    met = with_values(WaveReflection.null(8.1), coefficient=0.25, seen=1.0).through(sea)
+    met = with_values(WaveReflection(delay=8.1), coefficient=0.25, seen=1.0).through(sea)
     time, here, along = jnp.asarray(40.5), jnp.array([[0.0], [0.0], [-4.0]]), np.asarray(sea.direction())
     assert_allclose(met.elevation(time, here[:2]), sea.elevation(time, here[:2]), atol=1e-12)
     now, then = (sea.flow(one, here) for one in (time, time - 8.1))
@@ -384,7 +383,7 @@ def test_slopes_of_a_prepared_sea_that_comes_back() -> None:
     """By the share, the delay, what the gauge saw and where it stood: those of the direct sum, and differences, on and above
     the surface."""
     sea = irregular(1, 0.3)
-    model = model_of(only(build(COLUMN)), WaveGaugePosition.null(), WaveReflection.null())
+    model = model_of(only(build(COLUMN)), WaveGaugePosition(), WaveReflection())
     points = jnp.array([[-9.0, 21.0], [4.0, 7.0], [-12.0, 0.4]])
     labels = (*(f"wave_reflection.{name}" for name in ("coefficient", "delay", "seen")), "wave_gauge_position.distance")
 
@@ -412,7 +411,7 @@ def test_pressure_on_a_column_in_deep_water() -> None:
     wave = jh.regular_wave(2 * amplitude, 9.0, deep, phase=0.7)
     k = (2 * np.pi / 9.0) ** 2 / G
     bare = only(build(COLUMN, water={"density": RHO, "depth": 2000.0, "gravity": G}))
-    excited = model_of(bare, with_values(WaveExcitation.null(["column.Cp_t", "column.Cp_z"]), Cp_t=1.4, Cp_z=0.7))
+    excited = model_of(bare, with_values(WaveExcitation({("column", kind): 1.0 for kind in "tz"}), Cp_t=1.4, Cp_z=0.7))
     found = np.stack([acts(excited, np.zeros(6), np.zeros(6), (None,), wave, time)[0] for time in (0.0, 9.0 / 4)])
     area = np.pi * radius**2
     diffracted = 2 / (np.pi * (k * radius) ** 2 * abs(h1vp(1, k * radius)))
@@ -431,10 +430,10 @@ def test_every_parameter_has_a_slope_at_its_null() -> None:
     sea = WaveSea(first + second, WATER)
     assert isinstance(sea.waves, PlaneWaves)
     plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
-    values = {label: value for load in plain.loads for label, value in load.values.items()}
+    taken = {key: value for load in plain.loads for key, value in load.Cd.items()}
     kinds = (Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
-    laws = [PowerDrag.null(values), SlowDrag.null(values), WaveDrift.null(DOFS), WaveDriftDamping.null(DOFS)]
-    model = model_of(plain, *plain.loads, *laws, *(kind.null() for kind in kinds))
+    laws = [PowerDrag.neutral(taken), SlowDrag(taken), WaveDrift.neutral(DOFS), WaveDriftDamping.neutral(DOFS)]
+    model = model_of(plain, *plain.loads, *laws, *(kind() for kind in kinds))
     labels = [label for label in model.values if ".Cd_" not in label]
     memory = tuple(None if m is None else jnp.asarray(VELOCITY[::-1].copy()) for m in model.rest().memory)
     state = jh.State(jnp.asarray(POSITION), jnp.asarray(VELOCITY), memory)

@@ -19,8 +19,7 @@ FAMILIES = {"loads": LOADS, "water": WATER_EFFECTS, "sensors": SENSOR_EFFECTS}
 
 SHARED_BY_LOADS = {  # what a load may import from another load's file, and the helpers that are no load
     "matrix": "*",
-    "strip_inertia": {"spread"},
-    "end_inertia": {"spread_ends"},
+    "coefficients": "*",
     "drag": "*",
     "per_dof": "*",
     "instant": "*",

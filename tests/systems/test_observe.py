@@ -46,7 +46,7 @@ NOISE = {"surge": 1e-3, "heave": 1e-3, "pitch": 1e-5}
 
 def with_sensors(model: Model, point: tuple[float, float] = POINT, lag: float = LAG) -> Model:
     """The model with a tracked point off the reference point and motions that are recorded late."""
-    model = model.with_effect(SensorReference.null()).with_effect(SensorLag.null())
+    model = model.with_effect(SensorReference()).with_effect(SensorLag())
     return model.with_values({"sensor_reference.x": point[0], "sensor_reference.z": point[1], "sensor_lag.delay": lag})
 
 

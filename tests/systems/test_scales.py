@@ -156,7 +156,7 @@ def test_boxes_of_seas_are_of_one_shape() -> None:
 
 def test_bounds_of_lengths_and_times_follow_the_hull() -> None:
     large, small = (
-        model.with_effect(Hysteresis.null(["surge", "pitch"])).about("hysteresis.surge.yield_displacement")
+        model.with_effect(Hysteresis.neutral(["surge", "pitch"])).about("hysteresis.surge.yield_displacement")
         for model in (barge(1.0), barge(SMALL))
     )
     assert small.upper == pytest.approx(max(large.upper * SMALL, small.null))

@@ -4,8 +4,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-import jax.numpy as jnp
-
 from calibration.discovery.effects.mode_splitting import StartingValuesFinder
 from calibration.discovery.effects.oscillator_start import ShapeFinder
 from calibration.discovery.effects.phase_shift_start import PhasePerUnit
@@ -97,13 +95,13 @@ class Candidate:
 
 def with_drag(model: Model) -> Model:
     """The model with `ChangingDrag` in place of plain drag; unchanged where it has none."""
-    plain = [load for load in model.loads if type(load) in (StripDrag, EndDrag)]
+    plain = [load for load in model.loads if isinstance(load, StripDrag | EndDrag)]
     if not plain or any(isinstance(load, ChangingDrag) for load in model.loads):
         return model
     coupled = all(load.coupled for load in plain if isinstance(load, StripDrag))
-    values = {label: value for load in plain for label, value in load.values.items()}
-    kept = tuple(load for load in model.loads if type(load) not in (StripDrag, EndDrag))
-    return replace(model, loads=(*kept, ChangingDrag.of(values, coupled)))
+    coefficients = {key: value for load in plain for key, value in load.Cd.items()}
+    kept = tuple(load for load in model.loads if not isinstance(load, StripDrag | EndDrag))
+    return replace(model, loads=(*kept, ChangingDrag.neutral(coefficients, coupled)))
 
 
 def _dofs(labels: Iterable[str], effect: str) -> list[str]:
@@ -112,25 +110,25 @@ def _dofs(labels: Iterable[str], effect: str) -> list[str]:
 
 
 PER_MOTION_LOADS: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
-    "coulomb_friction": CoulombFriction.null,
-    "hysteresis": Hysteresis.null,
-    "mooring_nonlinearity": MooringNonlinearity.null,
-    "nonlinear_hydrostatics": NonlinearHydrostatics.null,
-    "cubic_damping": CubicDamping.null,
-    "radiation_memory": RadiationMemory.null,
-    "hidden_oscillator": HiddenOscillator.null,
-    "static_offset": StaticForce.null,
-    "wave_drift": WaveDrift.null,
-    "wave_drift_damping": WaveDriftDamping.null,
+    "coulomb_friction": CoulombFriction.neutral,
+    "hysteresis": Hysteresis.neutral,
+    "mooring_nonlinearity": MooringNonlinearity.neutral,
+    "nonlinear_hydrostatics": NonlinearHydrostatics.neutral,
+    "cubic_damping": CubicDamping.neutral,
+    "radiation_memory": RadiationMemory.neutral,
+    "hidden_oscillator": HiddenOscillator.neutral,
+    "static_offset": StaticForce.neutral,
+    "wave_drift": WaveDrift.neutral,
+    "wave_drift_damping": WaveDriftDamping.neutral,
 }
 WHOLE_PLATFORM_LOADS: dict[str, Callable[[], AbstractEffect]] = {
-    "umbilical": Umbilical.null,
-    "current": Current.null,
-    "sensor_reference": SensorReference.null,
-    "sensor_lag": SensorLag.null,
-    "wave_gauge_position": WaveGaugePosition.null,
-    "wave_reflection": WaveReflection.null,
-    "covered_ends": CoveredEnds.null,
+    "umbilical": Umbilical,
+    "current": Current,
+    "sensor_reference": SensorReference,
+    "sensor_lag": SensorLag,
+    "wave_gauge_position": WaveGaugePosition,
+    "wave_reflection": WaveReflection,
+    "covered_ends": CoveredEnds,
 }
 DRAG_EFFECTS = ("amplitude_dependent_drag", "sea_state_dependent_drag")
 
@@ -176,18 +174,21 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
     effects = dict.fromkeys(label.split(".")[0] for label in labels)
     for effect in effects:
         mine = [label for label in labels if label.startswith(f"{effect}.")]
+        keys = [label.removeprefix(f"{effect}.") for label in mine]
         if effect in PER_MOTION_LOADS:
             model = model.with_effect(PER_MOTION_LOADS[effect](_dofs(mine, effect)))
         elif effect in WHOLE_PLATFORM_LOADS:
             model = model.with_effect(WHOLE_PLATFORM_LOADS[effect]())
         elif effect == "mass_properties":
-            model = model.with_effect(MassError.null(model.body.mass, model.body.centre))
+            model = model.with_effect(MassError(model.body.mass, model.body.centre))
         elif effect == "coupled_damping":
-            model = model.with_effect(CoupledDamping.null([label.split(".")[1] for label in mine]))
+            model = model.with_effect(CoupledDamping(dict.fromkeys(keys, 0.0)))
         elif effect == "quadratic_damping":
-            model = model.with_effect(QuadraticDamping({label: jnp.zeros(()) for label in mine}))
+            model = model.with_effect(QuadraticDamping(dict.fromkeys(keys, 0.0)))
         elif effect == "wave_excitation":
-            model = model.with_effect(WaveExcitation.null([label.split(".", 1)[1] for label in mine]))
+            model = model.with_effect(
+                WaveExcitation({(group, kind): 1.0 for group, kind in (key.rsplit(".Cp_", 1) for key in keys)})
+            )
         elif effect in DRAG_EFFECTS:
             model = with_drag(model)
         else:
