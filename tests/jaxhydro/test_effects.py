@@ -346,8 +346,7 @@ def test_wall_sided_roll() -> None:
 
 def test_the_spring_and_pull_of_a_cable_have_a_potential() -> None:
     """U = k/2 (x^2 + y^2) - p x of the point, by differences: in surge, sway and a turn about any axis."""
-    spring = {"umbilical.stiffness": 3e4, "umbilical.pull": 2e5, "umbilical.mass": 0.0, "umbilical.height": 14.0}
-    model = model_of(rig(), Umbilical({label: jnp.asarray(value) for label, value in spring.items()}))
+    model = model_of(rig(), Umbilical(stiffness=3e4, pull=2e5, mass=0.0, height=14.0))
 
     def potential(q: np.ndarray, turn: np.ndarray) -> float:
         attitude = Rotation.from_rotvec(turn) * Rotation.from_euler("ZYX", q[:2:-1])
@@ -378,7 +377,7 @@ def changed(model: jh.Model, mass: float, centre: np.ndarray, inertia: np.ndarra
     """The model with another rigid body and its weight."""
     body = type(model.body)(jnp.asarray(mass), jnp.asarray(centre), jnp.asarray(inertia))
     kept = next(load for load in model.loads if isinstance(load, Buoyancy))
-    return eqx.tree_at(lambda m: m.body, model_of(model, Weight(body.mass, body.centre, {}), kept), body)
+    return eqx.tree_at(lambda m: m.body, model_of(model, Weight(body.mass, body.centre), kept), body)
 
 
 def assert_alike(one: jh.Model, other: jh.Model) -> None:
@@ -425,8 +424,7 @@ def test_forces_along_earth_axes_and_body_axes() -> None:
     assert_allclose(force(spring, position=quarter), [0, 12, 0, 0, 0, 0], atol=1e-14)
     damping = model_of(rig(), CubicDamping({"pitch": 2.0}))
     assert_allclose(force(damping, (1, 2, 3, 4, 3, 5), quarter), [0, 0, 0, 0, -54, 0], rtol=1e-14)
-    values = {"coulomb_friction.yaw.force": jnp.asarray(7.0), "coulomb_friction.yaw.speed": jnp.asarray(2e-4)}
-    friction = model_of(rig(), CoulombFriction(values))
+    friction = model_of(rig(), CoulombFriction({"yaw": 7.0}, {"yaw": 2e-4}))
     assert_allclose(force(friction, (0, 0, 0, 0, 0, -0.02), quarter), [0, 0, 0, 0, 0, 7], rtol=1e-14)
 
 
