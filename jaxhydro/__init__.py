@@ -12,7 +12,7 @@ Your own JAX settings have precedence: `JAX_ENABLE_X64`, `JAX_COMPILATION_CACHE_
 cache folder that is set with `jax.config` before the import.
 """
 
-from jaxhydro.start import start as _start
+from jaxhydro.jax_settings import start as _start
 
 _start()  # before the imports below, which may compute
 

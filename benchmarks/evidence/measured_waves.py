@@ -199,7 +199,7 @@ def draw(found: dict[str, dict[str, Any]], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from calibration.plots.sea_figures import LOW_BAND, WAVE_BAND
+    from calibration.plots.comparison_figures import LOW_BAND, WAVE_BAND
     from jaxhydro.analysis.sea_statistics import bands_of
     from jaxhydro.plots.style import BEFORE, MEASURED, SIMULATED, header, save, style
 

@@ -14,9 +14,9 @@ from calibration.fitting.decay_fit import calibrate
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.law_choice import SeaLaws, choose_law
 from calibration.fitting.law_parameters import LAWS, is_law_parameter
-from calibration.fitting.part import Loss
 from calibration.fitting.progress import Interrupted
 from calibration.fitting.sea_fit import calibrate_in_waves
+from calibration.fitting.weighted_residuals import Loss
 from calibration.global_search.run_search import SearchInterrupted, search
 from calibration.global_search.task import Budget
 from calibration.report import sea_tables, tables

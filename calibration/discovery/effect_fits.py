@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.acceptance import FitState, HeldOutComparison, ResidualSummary, Verdict, assess_effect
-from calibration.discovery.effect_descent import FitOutcome, fit
+from calibration.discovery.broyden_fit import FitOutcome, fit
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.expected_residuals import expected_rows

@@ -18,7 +18,7 @@ from calibration.fitting.decay_fit import STEPS_PER_PERIOD
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.decays import DecayProblem, crossing_period, gather_decays
 from calibration.residuals.measured_seas import Options, moving_channels, sea_step, seas_of
-from calibration.residuals.stretches import samples_after_transient
+from calibration.residuals.run_segments import samples_after_transient
 from jaxhydro.dynamics.integrate import clock
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.simulate import excursion_of, memory_step

@@ -12,7 +12,7 @@ import numpy as np
 
 from calibration.campaign.records import Record
 from calibration.discovery.acceptance import FitState, ResidualSummary
-from calibration.discovery.effect_descent import fit
+from calibration.discovery.broyden_fit import fit
 from calibration.discovery.expected_residuals import expected_rows
 from calibration.discovery.gather import gather_decay_series, gather_sea, highest_frequency
 from calibration.discovery.linearisations import Point, Prior

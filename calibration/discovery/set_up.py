@@ -10,7 +10,7 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.discovery.effects.candidates import Candidate, requested_table_labels, with_candidates, with_drag
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import noticeable_scales
+from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.effects.nearly_known import PRETENSION, STIFFNESS
 from calibration.discovery.gather import study_of
 from calibration.discovery.linearisations import Prior

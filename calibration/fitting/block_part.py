@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.fitting.part import AbstractPart, Kind, ResidualErrors
+from calibration.fitting.weighted_residuals import AbstractPart, Kind, ResidualErrors
 from calibration.formatting import listed, percent
 from calibration.identifiability.information import pseudo_inverse
 from calibration.identifiability.standard_deviations import WeightedProducts, correlated_samples, gauss_newton_matrix

@@ -12,11 +12,11 @@ from calibration.fitting.decay_fit import held_out, labels_of, prepare_fit, run_
 from calibration.fitting.decay_part import DecayPart
 from calibration.fitting.fit import Fit
 from calibration.fitting.fit_conclusion import calibration_of, records_not_followed
-from calibration.fitting.part import AbstractPart, Kind, Loss
 from calibration.fitting.progress import Progress, run_interruptibly
 from calibration.fitting.sea_fit import tests_in_waves
 from calibration.fitting.sea_part import SeaPart
 from calibration.fitting.static_parts import OffsetPart, PeriodPart
+from calibration.fitting.weighted_residuals import AbstractPart, Kind, Loss
 from calibration.formatting import listed, number, percent, with_deviation
 from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction

@@ -13,7 +13,7 @@ from calibration.fitting.progress import Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.identifiability.directions import Identifiability
 from calibration.residuals.measured_seas import Options, Seas, options_of, seas_of
-from calibration.residuals.stretches import sea_state
+from calibration.residuals.run_segments import sea_state
 from calibration.result import Calibration, error_of_energies
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import stopping

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from calibration.residuals.measured_seas import Options, Seas
-from calibration.residuals.stretches import sea_state
+from calibration.residuals.run_segments import sea_state
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.loads.sea_state_law import exponent_label, is_exponent, split, with_exponents

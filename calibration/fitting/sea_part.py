@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from calibration.fitting.part import AbstractPart, Kind, Loss, ResidualErrors, mean_square
+from calibration.fitting.weighted_residuals import AbstractPart, Kind, Loss, ResidualErrors, mean_square
 from calibration.identifiability.information import MIN_VARIANCE
 from calibration.identifiability.standard_deviations import WeightedProducts, correlated_samples
 from calibration.residuals.abstract_residual import Unknowns

@@ -6,7 +6,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from calibration.fitting.part import AbstractPart, Kind, Loss, ResidualErrors, mean_square
+from calibration.fitting.weighted_residuals import AbstractPart, Kind, Loss, ResidualErrors, mean_square
 from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.static import OffsetProblem, PeriodProblem
 

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from calibration.discovery.diagnosis import Diagnosis, Effect
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.formatting import percent
-from calibration.plots.decay_figures import BAND_COLOURS, DECADES, MAX_FREQUENCY
+from calibration.plots.calibration_figures import BAND_COLOURS, DECADES, MAX_FREQUENCY
 from calibration.plots.search_figures import MIN_SHOWN_GAIN, anatomy_figure, latent_figure, scores_figure
 from calibration.result import Calibration, Series, TestFit
 from calibration.vocabulary import USE

@@ -16,7 +16,7 @@ from jaxtyping import Array, Float, Int
 from calibration.campaign.records import Record
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractResidual, Unknowns, cauchy_residual
-from calibration.residuals.ladder import padded_size
+from calibration.residuals.padded_sizes import padded_size
 from jaxhydro.dynamics.integrate import integrate
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.dynamics.observe import observe

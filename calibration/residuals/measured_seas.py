@@ -20,7 +20,7 @@ from calibration.campaign.records import Record
 from calibration.campaign.runs import Run, runs
 from calibration.campaign.second_order_hint import second_order_hint
 from calibration.campaign.wave_band import wave_band
-from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
+from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
 from calibration.result import Series, TestFit
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.choices import check

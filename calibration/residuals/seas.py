@@ -20,7 +20,7 @@ from calibration.campaign.runs import Run
 from calibration.parameters.space import ParameterSpace
 from calibration.residuals.abstract_residual import AbstractGroupedResidual
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, peak_period
-from calibration.residuals.stretches import run_segments, samples_after_transient, simulate_segments
+from calibration.residuals.run_segments import run_segments, samples_after_transient, simulate_segments
 from jaxhydro.analysis.sea_statistics import bands_of
 from jaxhydro.analysis.spectral import SEGMENT, band_weights
 from jaxhydro.dynamics.integrate import integrate

@@ -54,7 +54,7 @@ def write_calibration(
     with staged(folder, lambda temporary: outdated(folder, temporary)) as temporary:
         drawn = []
         if figures:
-            from calibration.plots import decay_figures as plot
+            from calibration.plots import calibration_figures as plot
 
             drawn = draw(plot.figures(calibration), temporary)
         content = document(calibration).model_copy(update={**stated(truth=truth), "figures": drawn})

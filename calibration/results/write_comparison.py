@@ -55,7 +55,7 @@ def write_comparison(
     with staged(folder, lambda temporary: outdated(folder, temporary, COMPARISON_FILE)) as temporary:
         drawn = []
         if figures:
-            from calibration.plots import sea_figures as seas_plot
+            from calibration.plots import comparison_figures as seas_plot
 
             drawn = draw(seas_plot.figures(found.tests), temporary)
         content = content.model_copy(update={"figures": drawn})

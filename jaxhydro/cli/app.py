@@ -54,7 +54,7 @@ class Guarded(TyperGroup):
             raise typer.Exit(STOPPED) from None
         except RuntimeError as error:
             from jaxhydro.dynamics.statics import EquilibriumError
-            from jaxhydro.start import Float64Error
+            from jaxhydro.jax_settings import Float64Error
 
             if not isinstance(error, EquilibriumError | Float64Error):
                 raise

@@ -27,9 +27,9 @@ from jaxhydro.sensors.sensor_effect import AbstractSensorEffect
 from jaxhydro.water.water_effect import AbstractWaterEffect
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders
+from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
-from jaxhydro.waves.transfer import Transfer
 
 
 class Model(eqx.Module):

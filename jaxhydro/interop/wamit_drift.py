@@ -8,7 +8,7 @@ from jaxtyping import Complex, Int
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.wamit_tables import UNITS, contradictions, of_heading, table_of, to_omega
-from jaxhydro.waves.transfer import Transfer
+from jaxhydro.waves.quadratic_transfer import Transfer
 
 COLUMNS = "PER1 PER2 BETA1 BETA2 I MOD PHASE RE IM"
 FREQUENCY_TOLERANCE = 1e-6  # of a period or frequency

@@ -8,8 +8,8 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import AbstractEffect
 from jaxhydro.waves.excitation import Excitation
+from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.sea_state import SeaState
-from jaxhydro.waves.transfer import Transfer
 
 
 class Action(NamedTuple):

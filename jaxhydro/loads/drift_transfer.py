@@ -7,8 +7,8 @@ from jaxtyping import Array, Float
 from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.instant import Instant
 from jaxhydro.parameters import parameter
+from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.sea import DRIFT_ENTRIES
-from jaxhydro.waves.transfer import Transfer
 
 
 class DriftTransfer(AbstractLoad):

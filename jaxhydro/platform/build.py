@@ -19,6 +19,7 @@ from jaxhydro.hull.coefficient_labels import shared_hint, shares_of
 from jaxhydro.hull.ends import Ends
 from jaxhydro.hull.hull import Hull
 from jaxhydro.hull.strips import COLUMN_SLOPE, Elements, Member
+from jaxhydro.jax_settings import need_float64
 from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
@@ -43,7 +44,6 @@ from jaxhydro.platform.computed_loads import tables_of
 from jaxhydro.platform.drag_laws import DragLaw, plain_drag, with_drag_laws
 from jaxhydro.remarks import Remark, as_warnings
 from jaxhydro.scales import size_of
-from jaxhydro.start import need_float64
 from jaxhydro.waves.sea_state import SeaState
 
 

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from jaxhydro.environment import Environment
 from jaxhydro.waves.components import Components
-from jaxhydro.waves.transfer import Transfer
+from jaxhydro.waves.quadratic_transfer import Transfer
 
 
 class Envelope(eqx.Module):

@@ -19,7 +19,7 @@ from jaxhydro.waves.components import PlaneWaves, components
 from jaxhydro.waves.diffraction import long_waves, maccamy_fuchs
 from jaxhydro.waves.excitation import Excitation
 from jaxhydro.waves.flow import Cylinders, Flow
-from jaxhydro.waves.transfer import Transfer
+from jaxhydro.waves.quadratic_transfer import Transfer
 
 Stretching = Literal["none", "vertical", "wheeler", "extrapolation"]
 DRIFT_REFERENCE_FREQUENCY = 0.6  # rad/s at which `AbstractSea.drift` weighs a wave by one

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from calibration.discovery.effect_descent import MIN_RELATIVE_GAIN, broyden_update, fit
+from calibration.discovery.broyden_fit import MIN_RELATIVE_GAIN, broyden_update, fit
 from calibration.discovery.eliminated_least_squares import cost_of, linear_residual, minus_two_log_likelihood, predict_gain
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Point, Prior

@@ -21,7 +21,7 @@ from calibration.discovery.candidate_trials import AcceptedEffect, ScoredCandida
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import noticeable_scales
+from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.eliminated_least_squares import FirstOrderGain
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.greedy_search import Search

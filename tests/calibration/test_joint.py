@@ -17,8 +17,8 @@ from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.parameters.space import parameter_space
 from calibration.residuals.abstract_residual import cauchy_residual, parameters_only
 from calibration.residuals.measured_seas import seas_of, with_diffraction
+from calibration.residuals.run_segments import run_segments, simulate_segments
 from calibration.residuals.static import natural_period, set_up_offsets, set_up_periods
-from calibration.residuals.stretches import run_segments, simulate_segments
 from jaxhydro.dynamics.statics import held_at
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError

@@ -21,12 +21,12 @@ from calibration.discovery.acceptance import (
     reason_to_reject,
     worsened_motion,
 )
+from calibration.discovery.broyden_fit import fit
 from calibration.discovery.candidate_trials import RefittedCandidate, in_order_of_belief
 from calibration.discovery.checkpoint import _packed, _rebuilt
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
 from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
-from calibration.discovery.effect_descent import fit
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, symmetric_inverse
 from calibration.discovery.frequency_bands import FourierRows, band_powers, cut_into_bands

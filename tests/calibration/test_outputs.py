@@ -21,7 +21,7 @@ import calibration
 from calibration.decay_analysis.linear_quadratic import classical
 from calibration.fitting.fit_conclusion import records_not_followed
 from calibration.formatting import number, percent, with_deviation
-from calibration.plots import decay_figures as plot
+from calibration.plots import calibration_figures as plot
 from calibration.report.write_report import write_report
 from calibration.result import BandError, Calibration, Estimate
 from calibration.results import schema

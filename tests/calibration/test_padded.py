@@ -10,7 +10,7 @@ from calibration import load_campaign
 from calibration.campaign.load_campaign import Campaign
 from calibration.fitting.decay_fit import prepare_fit
 from calibration.residuals.decays import DecayProblem
-from calibration.residuals.ladder import padded_size
+from calibration.residuals.padded_sizes import padded_size
 
 DECAYS = "jaxhydro/campaigns/volturnus-s-decays"
 

@@ -28,8 +28,8 @@ def motion(n: int = 200) -> tuple[np.ndarray, np.ndarray]:
 
 def seen(position: np.ndarray, point: tuple[float, float, float]) -> np.ndarray:
     """By the sensor effect that `diagnose` knows."""
-    values = {"sensor_reference.x": jnp.asarray(point[0]), "sensor_reference.z": jnp.asarray(point[2])}
-    return np.asarray(jax.vmap(SensorReference(values).seen)(jnp.asarray(position)))
+    sensor = SensorReference(x=point[0], z=point[2])
+    return np.asarray(jax.vmap(sensor.seen)(jnp.asarray(position)))
 
 
 def campaign(folder, point=POINT, names=DOFS, change=lambda columns: columns) -> None:

@@ -15,14 +15,14 @@ from test_water_effects import HULL, WATER, acts, irregular
 import jaxhydro as jh
 from calibration.discovery.effects.candidates import requested_table_labels
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import NoticeableScales
+from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from jaxhydro.dynamics.statics import linearised
 from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_drift import COLUMNS, read_transfer
 from jaxhydro.loads import DriftTransfer
 from jaxhydro.sweep.execute import _platform_text
+from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.support_sea import Clock
-from jaxhydro.waves.transfer import Transfer
 
 GRID = np.linspace(0.2, 2.2, 9)  # rad/s
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "reference"

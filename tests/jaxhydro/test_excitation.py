@@ -16,7 +16,7 @@ import jaxhydro as jh
 from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery.effects.candidates import requested_table_labels
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import NoticeableScales
+from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from jaxhydro.cli import app as cli
 from jaxhydro.errors import InputError
 from jaxhydro.interop.wamit_excitation import read_excitation

@@ -60,7 +60,7 @@ from jaxhydro.parameters import AbstractEffect
 from jaxhydro.sensors import SENSOR_EFFECTS, SensorLag, SensorReference
 from jaxhydro.water import WATER_EFFECTS, Current, WaveGaugePosition, WaveReflection
 from jaxhydro.waves.excitation import Excitation
-from jaxhydro.waves.transfer import Transfer
+from jaxhydro.waves.quadratic_transfer import Transfer
 
 RHO, G = 1025.0, 9.81
 BODY = {"mass": 8e6, "centre_of_mass": [0, 0, -8], "inertia": {"Ixx": 4e9, "Iyy": 5e9, "Izz": 6e9}}

@@ -18,7 +18,7 @@ from test_loads import BODY, COEFFICIENTS, COLUMN, build, model_of, only
 import jaxhydro as jh
 from calibration.discovery.effects.candidates import requested_table_labels, with_candidates
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import NoticeableScales
+from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from jaxhydro.dynamics.simulate import default_step, memory_step
 from jaxhydro.errors import InputError
 from jaxhydro.interop.capytaine_radiation import read_capytaine

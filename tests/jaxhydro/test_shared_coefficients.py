@@ -17,7 +17,7 @@ from calibration import calibrate, load_campaign
 from calibration.decay_analysis.model_damping import model_damping
 from calibration.discovery.effects.candidates import with_effects
 from calibration.discovery.effects.catalogue import catalogue
-from calibration.discovery.effects.listed import NoticeableScales
+from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from calibration.parameters.space import match_free_labels
 from jaxhydro.errors import InputError, validate
 from jaxhydro.loads import WaveExcitation

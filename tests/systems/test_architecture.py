@@ -147,7 +147,7 @@ def test_numerics_are_pure(name: str) -> None:
         assert roots <= STANDARD | ARRAYS | {"jaxhydro"}, f"{name} imports {sorted(roots - STANDARD - ARRAYS)}"
     called = {ast.unparse(node.func) for node in ast.walk(modules()[name]) if isinstance(node, ast.Call)}
     assert "print" not in called
-    assert name == "jaxhydro.start" or not any(function.endswith("config.update") for function in called)
+    assert name == "jaxhydro.jax_settings" or not any(function.endswith("config.update") for function in called)
 
 
 def test_matplotlib_has_no_global_state_in_the_packages() -> None:

@@ -13,8 +13,8 @@ import pytest
 from test_cli import run
 
 import jaxhydro as jh
-from jaxhydro import start as module
-from jaxhydro.start import QUICK, need_float64, quick_compilation, start
+from jaxhydro import jax_settings as module
+from jaxhydro.jax_settings import QUICK, need_float64, quick_compilation, start
 
 ROOT = Path(__file__).resolve().parents[2]
 SETTINGS = {

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from calibration.discovery.effects.candidates import TABLE_EFFECTS, Candidate, requested_table_labels
+from calibration.discovery.effects.catalogue_builder import CatalogueBuilder, NoticeableScales
 from calibration.discovery.effects.catalogue_of_motions import add_motion_effects
-from calibration.discovery.effects.listed import CatalogueBuilder, NoticeableScales
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, displaced_length
 from calibration.discovery.effects.reflection_start import ZERO_DELAY_GRID, reflection_delays
 from calibration.parameters.space import FreeParameter

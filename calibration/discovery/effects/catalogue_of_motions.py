@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from functools import partial
 
-from calibration.discovery.effects.listed import CatalogueBuilder, NoticeableScales
+from calibration.discovery.effects.catalogue_builder import CatalogueBuilder, NoticeableScales
 from calibration.discovery.effects.mode_splitting import oscillator_starts
 from calibration.discovery.effects.oscillator_start import NEUTRAL_DAMPING_RATIO, oscillator_period_finder
 from jaxhydro.environment import DOFS
