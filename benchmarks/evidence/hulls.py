@@ -115,7 +115,7 @@ def run(figures: Path) -> Section:
 
 
 def text(results: dict[str, Any], variants: dict[str, Any], panels: dict[str, Any]) -> Section:
-    """The section, of results by hull, of those of the variants and of panels' numbers."""
+    """Section of the page from the results by hull, by variant, and by panel method."""
     rows_of_periods, rows_of_motion, short = [], [], []
     for name, case in CASES.items():
         found = results[name]

@@ -159,7 +159,7 @@ def _likelihood(
 
 
 def _check_same_fit(likely: Likelihood, there: np.ndarray, saved: CalibrationFile, path: Path) -> None:
-    """Raises InputError where a fit to the campaign's decays does not end at the file's values."""
+    """Raise InputError where a fit to the campaign's decays does not end at the file's values."""
     p = len(likely.labels)
     moved = np.abs(likely.estimate[:p] - there) / likely.deviation()
     worst = int(np.argmax(moved))

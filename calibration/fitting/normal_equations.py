@@ -17,7 +17,7 @@ OWN_ROUNDING = 1e-12  # of a diagonal entry, added to it: own unknowns of a chan
 
 
 class ArrowMatrix(lx.AbstractLinearOperator):
-    """Symmetric matrix of unknowns that all records share, and of those that each record has to itself.
+    """Symmetric matrix of the shared unknowns and of each record's own unknowns.
 
     Its arrays are JAX's or NumPy's; `eliminated` keeps to them.
 

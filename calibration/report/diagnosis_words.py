@@ -99,7 +99,7 @@ def describe_change(before: float, after: float) -> str:
 
 
 def objectives_sentence(saved: DiagnosisFile) -> str:
-    """Objective before and after, of the fitted tests and of those held out."""
+    """Objective of the fitted and of the held-out tests, before and after the effects were added."""
     before, after = saved.baseline.objective, saved.augmented.objective
     said = f"The error of the fitted tests {describe_change(before.fit, after.fit)}"
     if before.holdout is not None and after.holdout is not None:

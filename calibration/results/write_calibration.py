@@ -183,7 +183,7 @@ def _linear_quadratic(test: TestFit) -> LinearQuadraticDamping | None:
             )
             for name in ("linear", "quadratic")
         }
-    except ValueError:  # too few cycles; pydantic's error of what is not finite is one, too
+    except ValueError:  # too few cycles, or a value that is not finite (pydantic's ValidationError is a ValueError)
         return None
     unit = "m" if unit_of(main.channel) == "m" else "rad"
     return LinearQuadraticDamping(period=measured.period, unit=unit, **terms)

@@ -37,7 +37,7 @@ from jaxhydro.units import for_people, unit_of
 def write_comparison(
     found: Comparison, content: ComparisonFile, folder: str | PathLike[str], figures: bool = True
 ) -> ComparisonFile:
-    """Write all results in place of those of an earlier comparison.
+    """Write all results; they replace those of an earlier comparison.
 
     Args:
         found: The comparison.

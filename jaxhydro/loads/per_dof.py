@@ -54,7 +54,7 @@ class AbstractLoadPerDof(AbstractLoad):
     allowed: ClassVar[tuple[str, ...]] = DOFS
 
     def __check_init__(self) -> None:
-        """Raise UnknownName for a degree of freedom that there is none of, or that the law is not for."""
+        """Raise UnknownName for a degree of freedom that does not exist or that the law does not apply to."""
         for name in self._per_dof():
             for dof in getattr(self, name):
                 if dof not in self.allowed:

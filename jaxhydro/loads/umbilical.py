@@ -20,9 +20,8 @@ class Umbilical(AbstractLoad):
 
     k (N/m) is the horizontal spring of a slack cable, alike along x and y, p (N) its mean pull along x, m (kg) the part of
     it that hangs on the platform: weight and inertia of a point that moves with the hull. As all this acts at the displaced
-    point,
-    surge couples with pitch, and sway with roll, by the lever h. No drag, no damping, no vertical spring, no lever in yaw:
-    where the cable leaves off the axis, `static_force` in yaw is what is left.
+    point, surge couples with pitch, and sway with roll, by the lever h. No drag, no damping, no vertical spring, no lever in
+    yaw: where the cable leaves off the axis, `static_force` in yaw is what is left.
 
     Fossen 2011, Handbook of Marine Craft Hydrodynamics and Motion Control, section 3.3, for the point's mass; spring and
     pull are the cable's statics, linearised, and ours. Labels are `umbilical.stiffness`, `.pull`, `.mass`, `.height` (h; m).

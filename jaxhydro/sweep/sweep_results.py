@@ -7,7 +7,7 @@ from jaxhydro.result_model import ReferenceSeaState, ResultModel
 
 
 class RunCounts(ResultModel):
-    """Number of runs in all, of those done, and of those that failed."""
+    """Number of all runs, of finished runs and of failed runs."""
 
     total: int
     done: int
