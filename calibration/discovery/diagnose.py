@@ -14,8 +14,8 @@ from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.diagnosis_conclusion import conclude, unexplained_motions
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.greedy_search import MAX_EFFECTS, Search
 from calibration.discovery.residual_anatomy import anatomy
+from calibration.discovery.selection.joint_search import JointSearch
 from calibration.discovery.set_up import set_up_study
 from calibration.fitting.progress import Progress
 from calibration.residuals.measured_seas import NO_ZERO, Options, options_of
@@ -37,7 +37,8 @@ def diagnose(
 ) -> Diagnosis:
     """Find the effects that a model lacks to explain a campaign.
 
-    Effects are added one by one. Each is accepted by its gain in the fitted tests and in those marked `holdout`.
+    All candidate effects are selected together on a linearised model (`calibration.discovery.selection`). Each that is selected
+    is verified by simulation, in the fitted tests and in those marked `holdout`.
 
     Args:
         model: The model to diagnose; the declared one is `campaign.model`.
@@ -76,9 +77,9 @@ def diagnose(
 
     say("reading the records", 0.0)
 
-    def begun_with(campaign: Campaign) -> Search:
+    def begun_with(campaign: Campaign) -> JointSearch:
         how = options_of(campaign) if options is None else options
-        search = Search(campaign, set_up_study(campaign, how, candidates), say)
+        search = JointSearch(campaign, set_up_study(campaign, how, candidates), say)
         states.extend([] if kept is None else load_checkpoint(kept, search, unusable.append))
         return search
 
@@ -102,17 +103,7 @@ def diagnose(
         return conclude(campaign, search, states[0], states[-1], every, spent(), tuple(wrong.values()))
 
     try:
-        for again in range(2 * MAX_EFFECTS):
-            if len(states) > MAX_EFFECTS:  # an earlier run may have reached them
-                break
-            states[-1], after = search.add_effect(fitted := states[-1], len(states))
-            if after is not None:
-                reach(after)
-            elif states[-1] is fitted or again >= MAX_EFFECTS:
-                break
-        if len(states) > MAX_EFFECTS:
-            search.notes.append(f"the search ended with the effect number {MAX_EFFECTS}, not because nothing more was found")
-        states.append(search.without_needless_effects(states[-1]))
+        states.append(search.verify(states[0], search.search(states, reach)))
         if not unexplained_motions(search, anatomy(search, states[-1])):  # what is unexplained may have bent them
             states.append(search.with_mass_properties(states[-1]))
     except KeyboardInterrupt as stopped:

@@ -28,6 +28,7 @@ class RefusalKind(StrEnum):
     OUTDONE_AT_FIRST_ORDER = "outdone_at_first_order"
     FAR_WEAKER = "far_weaker"
     OUTDONE = "outdone"  # by the effect `name`
+    IMPROBABLE = "improbable"  # posterior probability
 
 
 @dataclass(frozen=True)

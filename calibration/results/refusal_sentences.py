@@ -3,6 +3,7 @@
 from calibration.discovery.acceptance import MIN_FLOOR_MULTIPLE, MIN_MOTION_SHARE
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 
+MIN_SHOWN_PROBABILITY = 0.005  # that is printed as a number
 COMPARED = {
     ComparedData.FITTED: "fitted tests",
     ComparedData.HELD_OUT: "held-out tests",
@@ -51,3 +52,5 @@ def _reason(one: Refusal) -> str:
             return "explains far less than others"
         case RefusalKind.OUTDONE:
             return f"{one.name} explains more"
+        case RefusalKind.IMPROBABLE:
+            return f"improbable ({100 * values[0]:.0f} %)" if values[0] >= MIN_SHOWN_PROBABILITY else "improbable (below 1 %)"

@@ -75,3 +75,18 @@ def phase_shift_start(study: "Study", look: "Linearisation", label: str, turns: 
     best = highest_peaks(gain)[:1]
     far = best[np.abs(tried[best]) * usual > MIN_PHASE_SHIFT]
     return PhaseShiftStart({label: float(tried[far[0]])}, float(gain[far[0]])) if far.size else None
+
+
+def phase_shift_factor(study: "Study", turns: PhasePerUnit, value: float) -> np.ndarray:
+    """Change of the Fourier lines by a phase shift, over the change that slopes at no shift predict (complex; l,).
+
+    Args:
+        study: The study.
+        turns: Phase per unit (rad) by circular frequency and water.
+        value: The parameter's value.
+    """
+    factor = np.ones(len(study.frequency), complex)
+    waves = study.first_order
+    phase = 1j * value * turns(2 * math.pi * study.frequency[waves], study.model.environment)
+    factor[waves] = np.expm1(phase) / phase
+    return factor

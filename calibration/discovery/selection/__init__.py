@@ -1,0 +1,1 @@
+"""Joint selection of missing effects on a linearised model."""

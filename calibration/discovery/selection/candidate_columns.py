@@ -1,0 +1,163 @@
+"""Columns of all candidate effects at a fitted point, and the linear model made of them."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import count
+
+import numpy as np
+
+from calibration.discovery.acceptance import FitState
+from calibration.discovery.effect_fits import EffectFits
+from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
+from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.selection.joint_selection import Variant
+from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
+from calibration.discovery.study import Study
+
+MAX_COEFFICIENT_STEP = 1.0  # of a logarithm in one linearisation
+MAX_NUISANCE = 3.0  # standard deviations of nearly known quantities
+LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
+LABORATORY_LOG_ODDS, PHYSICS_LOG_ODDS = math.log(0.05), math.log(0.02)  # one effect is expected, among some forty
+
+
+@dataclass(frozen=True)
+class CandidateColumns:
+    """A linear model of all candidate effects at a fitted point.
+
+    Attributes:
+        model: The linear model.
+        base: Columns of coefficients and nuisances.
+        variants: Candidates at values of their shapes.
+        values: These values by variant.
+        directions: Direction of the study of every column.
+        series: Series of every pool.
+        look: Linearisation along the base directions and the effects in the model.
+    """
+
+    model: LinearModel
+    base: tuple[int, ...]
+    variants: tuple[Variant, ...]
+    values: tuple[Mapping[str, float], ...]
+    directions: tuple[int, ...]
+    series: np.ndarray
+    look: Linearisation
+
+    def present(self, chosen: Sequence[Candidate]) -> tuple[int, ...]:
+        """Variants of the effects in the model: each effect's first."""
+        names = [one.name for one in self.variants]
+        return tuple(names.index(one.name) for one in chosen)
+
+
+def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
+    """Linearise a fitted model along every candidate effect, at every value of its shapes.
+
+    Args:
+        fits: Study, candidates, priors.
+        state: The fitted model.
+    """
+    study, look = fits.study, state.look
+    columns, directions = [look.slopes], list(look.active)
+    base = tuple(range(len(fits.base)))
+    variants: list[Variant] = []
+    values: list[Mapping[str, float]] = []
+
+    def add(one: Candidate, mine: Sequence[int], at: Mapping[str, float]) -> None:
+        odds = LABORATORY_LOG_ODDS if one.effect in LABORATORY_EFFECTS else PHYSICS_LOG_ODDS
+        variants.append(Variant(one.name, tuple(mine), odds))
+        values.append(at)
+
+    for one in state.chosen:
+        add(one, [look.active.index(i) for i in study.index(one.labels) if i not in fits.base], {})
+    names = {one.name for one in state.chosen}
+    others = [
+        one for one in fits.setup.candidates if one.name not in names and not set(study.index(one.amplitudes)) <= set(fits.base)
+    ]
+    grids = {one.name: one.grid or ({},) for one in others}
+    for g in count():
+        if not (todo := [one for one in others if g < len(grids[one.name])]):
+            break
+        place = fits.with_values(look.place, {k: v for one in todo for k, v in grids[one.name][g].items()})
+        free = dict.fromkeys(i for one in todo for i in study.index(one.amplitudes) if i not in look.active)
+        seen = study.linearise(place, list(free))
+        begin = len(directions)
+        columns.append(seen.slopes)
+        directions += seen.active
+        for one in todo:
+            mine = [
+                look.active.index(i) if i in look.active else begin + seen.active.index(i) for i in study.index(one.amplitudes)
+            ]
+            add(one, mine, grids[one.name][g])
+            if one.shape_finder is not None and g < len(one.grid):
+                some = one.shape_finder(study, look, seen.slopes[:, mine[0] - begin])
+                grids[one.name] += tuple({**one.grid[g], **shape} for shape in some)
+            if one.phase_per_unit is not None:
+                there = replace(look.joined_with(seen.restricted_to([directions[mine[0]]])), place=place)
+                far = phase_shift_start(study, there, one.amplitudes[0], one.phase_per_unit)
+                if far is not None:
+                    factor = phase_shift_factor(study, one.phase_per_unit, far.values[one.amplitudes[0]])
+                    lines = (seen.slopes[:, mine[0] - begin].reshape(-1, 2) @ [1, 1j]) * factor
+                    columns.append(np.stack([lines.real, lines.imag], axis=1).reshape(-1, 1))
+                    directions.append(directions[mine[0]])
+                    add(one, [len(directions) - 1], far.values)
+    return CandidateColumns(
+        linear_model(fits, look, np.hstack(columns), directions),
+        base,
+        tuple(variants),
+        tuple(values),
+        tuple(directions),
+        np.repeat(np.arange(len(study.series)), study.dof.shape[1]),
+        look,
+    )
+
+
+def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, directions: Sequence[int]) -> LinearModel:
+    """The linear model of some columns at a linearisation's point.
+
+    Args:
+        fits: Study, candidates, priors.
+        look: The linearisation.
+        slopes: The columns (n, k).
+        directions: Their directions (k,).
+    """
+    study, prior = fits.study, fits.setup.prior
+    directions = list(directions)
+    now = study.steps(look.place.x)[directions]
+    low, high = (study.limits[directions] - now[:, None]).T
+    base = np.isin(directions, fits.base)
+    width = prior.width[directions]
+    step = np.where(study.logarithmic[directions], MAX_COEFFICIENT_STEP, np.inf)
+    low, high = np.maximum(low, -step), np.minimum(high, step)
+    nuisance = base & np.isin(directions, study.index(fits.setup.nuisances))
+    low = np.where(nuisance, np.minimum(np.maximum(low, -MAX_NUISANCE * width - now), 0.0), low)
+    high = np.where(nuisance, np.maximum(np.minimum(high, MAX_NUISANCE * width - now), 0.0), high)
+    positive = {label for one in fits.setup.candidates for label in one.positive}
+    signed = ~base & np.isin(np.array(study.names)[directions], sorted(positive))
+    low = np.where(signed, np.maximum(low, -now), low)
+    amplitudes = {label for one in fits.setup.candidates for label in one.amplitudes}
+    sized = ~base & np.isin(np.array(study.names)[directions], sorted(amplitudes))
+    used = study.used[study.row_series]
+    return LinearModel(
+        slopes,
+        look.residual,
+        own_unknowns(study, look),
+        study.pool,
+        study.share * used,
+        (study.pooled * study.used[:, None]).ravel(),
+        np.where(sized, -now, prior.mean[directions] - now),
+        width,
+        low,
+        high,
+        np.where(sized, -now, 0.0),
+    )
+
+
+def own_unknowns(study: Study, look: Linearisation) -> tuple[OwnUnknowns, ...]:
+    """The fitted decays' own unknowns."""
+    found = []
+    for i, (rows, fitted) in enumerate(zip(study.spans, study.fitted_decays, strict=True)):
+        there = look.own[rows].any(axis=0)
+        if fitted and there.any():
+            found.append(OwnUnknowns(rows, look.own[rows][:, there], study.own_width[i][there], look.place.own[i][there]))
+    return tuple(found)

@@ -1,0 +1,62 @@
+"""Cross-validation on a linear model: tests left out in turn.
+
+References:
+    Stone 1974, Journal of the Royal Statistical Society B 36, 111-147.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.discovery.selection.linear_model import LinearFit, LinearModel
+
+
+class HeldOutGain(NamedTuple):
+    """Gain of an effect in tests that were left out in turn.
+
+    Attributes:
+        by_group: Decrease of -2 ln L of every test, fitted to all others (t,).
+    """
+
+    by_group: np.ndarray
+
+    @property
+    def total(self) -> float:
+        """Sum over the tests."""
+        return float(self.by_group.sum())
+
+
+def left_out_deviances(model: LinearModel, columns: Sequence[int], group: np.ndarray, begin: LinearFit) -> np.ndarray:
+    """-2 ln L of every group of pools (g,), where columns are fitted to all others.
+
+    A decay's own unknowns, such as its release, are fitted to the decay.
+
+    Args:
+        model: The linear model.
+        columns: Columns that are fitted.
+        group: Group of every pool (p,).
+        begin: A fit of these columns to all groups.
+    """
+    found = np.zeros(group.max() + 1)
+    for number in np.unique(group[model.used]):
+        out = group == number
+        rest = replace(model, freedom=np.where(out, 0.0, model.freedom)).fit(columns, begin)
+        residual = model.residual_after(rest._replace(own=tuple(0 * y for y in rest.own)))
+        there = replace(model, residual=residual, freedom=np.where(out, model.freedom, 0.0), neutral=0 * model.neutral).fit(())
+        found[number] = float(there.deviance.sum())
+    return found
+
+
+def held_out_gain(model: LinearModel, fitted: LinearFit, without: LinearFit, group: np.ndarray) -> HeldOutGain:
+    """Gain of the columns that one fit has and another has not.
+
+    Args:
+        model: The linear model.
+        fitted: The fit with them.
+        without: The fit without them.
+        group: Group of every pool (p,): its test.
+    """
+    before, after = (left_out_deviances(model, one.columns, group, one) for one in (without, fitted))
+    return HeldOutGain(before - after)

@@ -1,0 +1,201 @@
+"""Joint search: select effects on a linearised model, go there, linearise again, verify by simulation."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.discovery.acceptance import FitState, Verdict
+from calibration.discovery.candidate_trials import INDISTINGUISHABLE_SHARE, AcceptedEffect
+from calibration.discovery.diagnosis import Score
+from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.greedy_search import Search
+from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.refusal import Refusal, RefusalKind
+from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates
+from calibration.discovery.selection.cross_validation import HeldOutGain, held_out_gain
+from calibration.discovery.selection.joint_selection import JointSelection, Subset
+from calibration.discovery.set_up import StudySetup
+from calibration.formatting import listed
+
+MAX_ROUNDS = 6  # linearisations along all candidates
+STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
+BEGIN, END = 0.2, 0.9  # progress of the rounds
+
+
+class JointSearch(Search):
+    """Joint selection of effects on a linearised model.
+
+    Attributes:
+        columns: The last linear model of all candidates.
+        selector: The subsets that were compared on it.
+        probability: Posterior probability of every effect in the last selection.
+        held_out: Gain of every effect in tests that were left out in turn, on the last linear model.
+    """
+
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+        super().__init__(campaign, setup, say)
+        self.candidates = {one.name: one for one in setup.candidates}
+        self.columns: CandidateColumns
+        self.selector: JointSelection
+        self.probability: dict[str, float] = {}
+        self.held_out: dict[str, HeldOutGain] = {}
+
+    def share(self, number: float) -> float:
+        """Progress after so many rounds."""
+        return BEGIN + (END - BEGIN) * number / MAX_ROUNDS
+
+    def select(self, state: FitState, number: int) -> Subset:
+        """Linearise a state along all candidates, and select.
+
+        Args:
+            state: The fitted model.
+            number: Number of the round.
+
+        Returns:
+            The most probable subset.
+        """
+        name = f"round {number}: comparing sets of effects"
+        self.say(f"round {number}: linearising along {len(self.setup.candidates)} effects", self.share(number - 1))
+        self.columns = columns = linearise_candidates(self, state)
+
+        def told(count: int) -> None:
+            self.say(f"{name} ({count})", self.share(number - 0.6))
+
+        told(0)
+        self.selector = JointSelection(columns.model, columns.base, columns.variants, columns.series, told)
+        present = columns.present(state.chosen)
+        found = self.selector.run(present)
+        self.probability = found.probability()
+        best: dict[str, float] = {}
+        for i, gain in self.selector.first_order_gains(self.selector.subset(present)).items():
+            best[columns.variants[i].name] = max(best.get(columns.variants[i].name, 0.0), gain)
+        self.scores = [one for one in self.scores if one.round != number]
+        for one_name, gain in sorted(best.items(), key=lambda item: -item[1]):
+            one = self.candidates[one_name]
+            self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
+        return found.best
+
+    def move(self, state: FitState, subset: Subset, number: float) -> FitState:
+        """Fit the effects of a subset, from a state on, with the slopes of the last linear model.
+
+        Args:
+            state: The state that was linearised.
+            subset: The subset.
+            number: Number of the round.
+        """
+        columns, place = self.columns, state.look.place
+        chosen = tuple(self.candidates[columns.variants[i].name] for i in subset.variants)
+        present = {one.name for one in state.chosen}
+        gone = [label for one in state.chosen if one not in chosen for label in one.labels]
+        place, anew = self.with_starting_values(place, gone) if gone else place, False
+        for i, one in zip(subset.variants, chosen, strict=True):
+            if one.name not in present:
+                place = self.with_values(place, columns.values[i])
+                anew |= any(label in one.amplitudes for label in columns.values[i])
+        directions = tuple(columns.directions[i] for i in subset.fit.columns)
+        if anew:  # far from where slopes were taken
+            look = self.study.linearise(place, directions)
+        else:
+            residual = self.study.residual(place) if gone else columns.look.residual
+            slopes = columns.model.slopes[:, list(subset.fit.columns)]
+            look = Linearisation(place, directions, residual, slopes, columns.look.own)
+        names = listed([effect_in_words(one.name) for one in chosen]) or "no effect"
+        return self.state(
+            chosen, self.fit(look, chosen, STEP_ITERATIONS, 0, f"round {int(number)}: fit with {names}", self.share(number))
+        )
+
+    def settle(self, state: FitState, number: float) -> FitState:
+        """Fit a state to convergence with slopes of its own, the shapes of its effects free."""
+        name = f"round {int(number)}: fit of all parameters"
+        return self.refit(
+            self.study.linearise(state.look.place, self.active(state.chosen)), state.chosen, name, self.share(number)
+        )
+
+    def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
+        """Select and move until the selection stays.
+
+        Args:
+            states: The fitted declared model, and what earlier rounds reached.
+            reach: Called with the state after every round.
+
+        Returns:
+            The last state, its linear model in `columns`.
+        """
+        state, visited = states[-1], {frozenset(one.name for one in some.chosen) for some in states}
+        for number in range(len(states), MAX_ROUNDS + 1):
+            best = self.select(state, number)
+            names = frozenset(self.columns.variants[i].name for i in best.variants)
+            if names in visited or number == MAX_ROUNDS:
+                break
+            visited.add(names)
+            state = self.settle(self.move(state, best, number - 0.5), number - 0.2)
+            reach(state)
+        return state
+
+    def verify(self, baseline: FitState, state: FitState) -> FitState:
+        """Take every effect out in turn, simulate, and keep those that the records ask for.
+
+        Args:
+            baseline: The fitted declared model.
+            state: The last state of the search.
+        """
+        while state.chosen:
+            present = self.columns.present(state.chosen)
+            whole, test = self.selector.subset(present), self.test_of_pool
+            verdicts: dict[str, Verdict] = {}
+            for i, one in zip(present, state.chosen, strict=True):
+                self.say(f"verification: the model without {effect_in_words(one.name)}", END)
+                rest = self.selector.subset([j for j in present if j != i], whole)
+                self.held_out[one.name] = held_out_gain(self.columns.model, whole.fit, rest.fit, test)
+                without = self.move(state, rest, float("nan")) if len(present) > 1 else baseline
+                verdict = self.assess(without, state, one, last=True)
+                verdicts[one.name] = verdict
+                gain = next(
+                    (score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)),
+                    0.0,
+                )
+                self.found[one.name] = AcceptedEffect(gain, without, state, verdict, self.look_alikes(whole, i))
+            refused = [one for one in state.chosen if verdicts[one.name].refused]
+            if not refused:
+                break
+            least = min(refused, key=lambda one: verdicts[one.name].worth)
+            self.reject(least, verdicts[least.name].refused, verdicts[least.name])
+            state = self.settle(self.found[least.name].before, MAX_ROUNDS) if len(state.chosen) > 1 else baseline
+            self.select(state, MAX_ROUNDS)
+        order = sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)
+        self.reject_others(state)
+        return replace(state, chosen=tuple(order))
+
+    @property
+    def test_of_pool(self) -> np.ndarray:
+        """Number of the test of every pool (p,)."""
+        tests = list(dict.fromkeys(one.test for one in self.study.series))
+        return np.repeat([tests.index(one.test) for one in self.study.series], self.study.dof.shape[1])
+
+    def look_alikes(self, whole: Subset, out: int) -> tuple[str, ...]:
+        """Effects that would do nearly as well in the place of one of a subset.
+
+        Args:
+            whole: The subset.
+            out: Variant of the effect that is exchanged.
+        """
+        rest = self.selector.subset([i for i in whole.variants if i != out], whole)
+        mine = self.columns.variants[out].name
+        best: dict[str, float] = {}
+        for i in self.selector.additions(rest):
+            name = self.columns.variants[i].name
+            if name != mine and tuple(sorted((*rest.variants, i))) in self.selector.fitted:
+                best[name] = max(best.get(name, -np.inf), self.selector.subset([*rest.variants, i]).evidence)
+        asked = whole.evidence - INDISTINGUISHABLE_SHARE * (whole.evidence - rest.evidence)
+        return tuple(name for name, evidence in best.items() if evidence > asked)
+
+    def reject_others(self, state: FitState) -> None:
+        """Record why the other candidates are not in the model: their probability is low."""
+        present = {one.name for one in state.chosen}
+        for one in self.setup.candidates:
+            if one.name not in present and one.name not in self.rejected:
+                self.reject(one, Refusal(RefusalKind.IMPROBABLE, (self.probability.get(one.name, 0.0),)))
+        for name in present:
+            self.rejected.pop(name, None)

@@ -1,0 +1,199 @@
+"""Selection of effects: subsets of candidates compared by their evidence on a linearised model.
+
+The best subsets are found best first: from every one of the few best, effects are added, removed and exchanged. The posterior
+probability of a subset is its evidence times its prior. A linear model with the wrong noise is too sure. So the posterior is
+averaged over resampled series of the records (bagged posterior). Each series' -2 ln L at the fitted point is resampled; nothing
+is fitted again.
+
+References:
+    Huggins and Miller 2023, Bayesian Analysis 18, 79-104: reproducible model selection with bagged posteriors.
+    Kishino, Miyata and Hasegawa 1990, Journal of Molecular Evolution 31, 151-160: resampled estimated log-likelihoods.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.discovery.selection.linear_model import LinearFit, LinearModel, bounded_minimum
+from calibration.identifiability.information import pseudo_inverse
+from jaxhydro.interrupts import stop_if_asked
+
+EXPANDED_SUBSETS = 5  # best subsets whose neighbours are all tried
+MAX_SUBSETS = 400  # subsets that are fitted
+PROMISING = 8  # additions that are fitted, of those ranked by one linear step
+EXCHANGED = 3  # exchanges of each effect that are fitted
+RESAMPLES = 400  # resamplings of the series
+SEED = 7
+
+
+class Variant(NamedTuple):
+    """A candidate effect at some values of its shapes.
+
+    Attributes:
+        name: Name of the candidate.
+        columns: Its columns of the linear model.
+        log_odds: Logarithm of its prior odds.
+    """
+
+    name: str
+    columns: tuple[int, ...]
+    log_odds: float
+
+
+@dataclass(frozen=True)
+class Subset:
+    """Some effects with their fit.
+
+    Attributes:
+        variants: Numbers of the variants.
+        fit: Their fit, with the base columns.
+        evidence: Logarithm of evidence times prior.
+    """
+
+    variants: tuple[int, ...]
+    fit: LinearFit
+    evidence: float
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Posterior over subsets of effects.
+
+    Attributes:
+        subsets: Subsets, the most probable first.
+        variants: The variants.
+        weights: Bagged posterior probability of every subset.
+    """
+
+    subsets: tuple[Subset, ...]
+    variants: tuple[Variant, ...]
+    weights: np.ndarray
+
+    @property
+    def best(self) -> Subset:
+        """The subset with the highest evidence."""
+        return self.subsets[0]
+
+    def names(self, subset: Subset) -> tuple[str, ...]:
+        """Names of a subset's effects."""
+        return tuple(self.variants[i].name for i in subset.variants)
+
+    def probability(self) -> dict[str, float]:
+        """Posterior probability of every effect that is in any subset."""
+        found: dict[str, float] = {}
+        for subset, weight in zip(self.subsets, self.weights, strict=True):
+            for name in self.names(subset):
+                found[name] = found.get(name, 0.0) + float(weight)
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+class JointSelection:
+    """Search for the most probable subsets of effects.
+
+    Attributes:
+        model: The linear model.
+        base: Columns that are always fitted.
+        variants: Candidate effects at values of their shapes.
+        series: Series of every pool (p,), for resampling.
+    """
+
+    def __init__(
+        self,
+        model: LinearModel,
+        base: Sequence[int],
+        variants: Sequence[Variant],
+        series: np.ndarray,
+        told: Callable[[int], None] = lambda count: None,
+    ) -> None:
+        self.model, self.base, self.variants, self.series, self.told = model, tuple(base), tuple(variants), series, told
+        self.fitted: dict[tuple[int, ...], Subset] = {}
+
+    def subset(self, variants: Sequence[int], begin: Subset | None = None) -> Subset:
+        """A subset, fitted."""
+        key = tuple(sorted(variants))
+        if key not in self.fitted:
+            mine = [column for i in key for column in self.variants[i].columns if column not in self.base]
+            fit = self.model.fit([*self.base, *dict.fromkeys(mine)], None if begin is None else begin.fit)
+            odds = sum(self.variants[i].log_odds for i in key)
+            self.fitted[key] = Subset(key, fit, self.model.log_evidence(fit) + odds)
+        return self.fitted[key]
+
+    def steps(self, subset: Subset) -> dict[int, tuple[float, float]]:
+        """What one linear step along each variant of other candidates would gain, with the subset's weights.
+
+        Returns:
+            By variant: decrease of -2 ln L and prior, and of -2 times the logarithm of evidence times prior.
+        """
+        model, mine = self.model, list(subset.fit.columns)
+        there = {self.variants[i].name for i in subset.variants}
+        others = [i for i, one in enumerate(self.variants) if one.name not in there and not set(one.columns) <= set(mine)]
+        columns = list(dict.fromkeys([*mine, *(c for i in others for c in self.variants[i].columns)]))
+        residual = model.residual_after(subset.fit)
+        whole, _ = model.products(model.weights(residual), columns, residual)
+        base = len(mine)
+        inner = whole[:base, :base] + np.diag(1 / model.width[mine] ** 2)
+        rest = whole[base:, base:] - whole[base:, :base] @ pseudo_inverse(inner) @ whole[:base, base:]
+        at = {column: i for i, column in enumerate(columns[base:])}
+        found = {}
+        for i in others:
+            some = [c for c in self.variants[i].columns if c in at]
+            rows, width = [at[c] for c in some], model.width[some]
+            matrix, slope = rest[np.ix_(rows, rows)] + np.diag(1 / width**2), rest[rows, -1]
+            step = bounded_minimum(matrix, slope, model.lower[some], model.upper[some])
+            gain = float(-(step @ matrix @ step) - 2 * slope @ step)
+            occam = float(np.linalg.slogdet(matrix * np.outer(width, width))[1]) if step.any() else 0.0
+            found[i] = gain, gain - occam + 2 * self.variants[i].log_odds
+        return found
+
+    def additions(self, subset: Subset) -> list[int]:
+        """Variants of other candidates, the most promising first, by one linear step."""
+        found = self.steps(subset)
+        return sorted(found, key=lambda i: -found[i][1])
+
+    def first_order_gains(self, subset: Subset) -> dict[int, float]:
+        """Decrease of -2 ln L and prior by one linear step along each variant of other candidates."""
+        return {i: gain for i, (gain, _) in self.steps(subset).items()}
+
+    def neighbours(self, subset: Subset) -> list[Subset]:
+        """Subsets with one effect more, one less, or one exchanged."""
+        found = [self.subset([*subset.variants, i], subset) for i in self.additions(subset)[:PROMISING]]
+        for i in subset.variants:
+            rest = self.subset([j for j in subset.variants if j != i], subset)
+            found.append(rest)
+            others = [j for j in self.additions(rest) if j != i][:EXCHANGED]
+            found += [self.subset([*rest.variants, j], rest) for j in others]
+        return found
+
+    def run(self, begin: Sequence[int] = ()) -> Selection:
+        """The most probable subsets.
+
+        Args:
+            begin: Variants of a subset to begin with, beside none.
+        """
+        self.subset(())
+        if begin:
+            self.subset(begin)
+        done: set[tuple[int, ...]] = set()
+        while len(self.fitted) < MAX_SUBSETS:
+            best = sorted(self.fitted.values(), key=lambda one: -one.evidence)[:EXPANDED_SUBSETS]
+            todo = next((one for one in best if one.variants not in done), None)
+            if todo is None:
+                break
+            done.add(todo.variants)
+            stop_if_asked()
+            self.neighbours(todo)
+            self.told(len(self.fitted))
+        ordered = tuple(sorted(self.fitted.values(), key=lambda one: -one.evidence))
+        return Selection(ordered, self.variants, self.bagged(ordered))
+
+    def bagged(self, subsets: Sequence[Subset]) -> np.ndarray:
+        """Posterior probability of subsets, averaged over resampled series."""
+        used = np.unique(self.series[self.model.used])
+        deviance = np.array([np.bincount(self.series, one.fit.deviance, self.series.max() + 1)[used] for one in subsets])
+        constant = np.array([one.evidence for one in subsets]) + 0.5 * deviance.sum(axis=1)
+        count = np.random.default_rng(SEED).multinomial(len(used), np.full(len(used), 1 / len(used)), RESAMPLES)
+        log = constant[:, None] - 0.5 * deviance @ count.T
+        weight = np.exp(log - log.max(axis=0))
+        return (weight / weight.sum(axis=0)).mean(axis=1)

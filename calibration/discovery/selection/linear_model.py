@@ -1,0 +1,217 @@
+"""Linearised model of all records: fits of any few columns, within bounds, in linear algebra.
+
+Near a point the residual is r + X theta + Y y: theta are steps along columns (coefficients, nuisances, candidate effects), y the
+decays' own unknowns. A fit minimises -2 ln L (see `eliminated_least_squares`) and the squares of the priors. The deviance n ln m
+of a pool of bands is concave in its mean square m. Least squares with weights n / m therefore decrease it at each update.
+
+References:
+    Hunter and Lange 2004, American Statistician 58, 30-37: majorisation by a tangent.
+    Kass and Raftery 1995, Journal of the American Statistical Association 90, 773-795, equation 5: Laplace approximation.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.optimize import lsq_linear
+
+REWEIGHTINGS = 12  # updates of the weights at most
+SMALL_CHANGE = 0.01  # of -2 ln L: an update that changes less is the last
+RIDGE = 1e-12  # of the diagonal: dependent columns stay solvable
+
+
+class OwnUnknowns(NamedTuple):
+    """A decay's own unknowns.
+
+    Attributes:
+        rows: Rows of the decay.
+        slopes: Slopes along them (m, o).
+        width: Standard deviations of their priors (o,).
+        value: Present values (o,).
+    """
+
+    rows: slice
+    slopes: np.ndarray
+    width: np.ndarray
+    value: np.ndarray
+
+
+class LinearFit(NamedTuple):
+    """Fit of some columns.
+
+    Attributes:
+        columns: Numbers of the columns (m,).
+        step: Steps along them (m,).
+        own: Steps of every decay's own unknowns.
+        deviance: -2 ln L by pool (p,).
+        penalty: Squares of the priors.
+        matrix: Gauss-Newton matrix of the columns, the decays' own unknowns eliminated (m, m).
+        at_bound: Which columns are at a bound (m,).
+    """
+
+    columns: tuple[int, ...]
+    step: np.ndarray
+    own: tuple[np.ndarray, ...]
+    deviance: np.ndarray
+    penalty: float
+    matrix: np.ndarray
+    at_bound: np.ndarray
+
+    @property
+    def cost(self) -> float:
+        """-2 ln L and the squares of the priors."""
+        return float(self.deviance.sum()) + self.penalty
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Covariance of the steps (m, m)."""
+        scale = 1 / np.sqrt(np.diag(self.matrix))
+        both = self.matrix * np.outer(scale, scale)
+        return np.linalg.pinv(both, hermitian=True, rcond=RIDGE) * np.outer(scale, scale)
+
+    def deviation(self) -> np.ndarray:
+        """Standard deviations of the steps (m,)."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+
+@dataclass(frozen=True)
+class LinearModel:
+    """Residual and slopes of the fitted tests, with priors and bounds of all columns.
+
+    Attributes:
+        slopes: Slopes along the columns (n, k).
+        residual: Residual (n,).
+        own: The decays' own unknowns.
+        pool: Pool of every row (n,).
+        share: Weight of every row's square in the mean square of its pool, over the floor's (n,).
+        freedom: Degrees of freedom by pool (p,).
+        mean: Means of the priors, as steps from here (k,).
+        width: Standard deviations of the priors (k,).
+        lower: Lowest steps (k,).
+        upper: Highest steps (k,).
+        neutral: Steps to where columns have no effect (k,); columns that are not fitted are there.
+    """
+
+    slopes: np.ndarray
+    residual: np.ndarray
+    own: tuple[OwnUnknowns, ...]
+    pool: np.ndarray
+    share: np.ndarray
+    freedom: np.ndarray
+    mean: np.ndarray
+    width: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    neutral: np.ndarray
+
+    def levels(self, residual: np.ndarray) -> np.ndarray:
+        """Mean square over the floor's by pool (p,)."""
+        return np.bincount(self.pool, self.share * residual**2, len(self.freedom))
+
+    def deviances(self, residual: np.ndarray) -> np.ndarray:
+        """-2 ln L by pool (p,): n ln m, and n (m - 1) below the floor."""
+        level = self.levels(residual)
+        return self.freedom * (np.log(np.maximum(level, 1.0)) + np.minimum(level - 1, 0.0))
+
+    def weights(self, residual: np.ndarray) -> np.ndarray:
+        """Weights of the rows (n,) in the tangent of -2 ln L."""
+        return (self.freedom / np.maximum(self.levels(residual), 1.0))[self.pool] * self.share
+
+    def products(self, weight: np.ndarray, columns: Sequence[int], residual: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Products of [slopes, residual] with the decays' own unknowns eliminated.
+
+        Returns:
+            Products (m + 1, m + 1), and by decay what gives its own unknowns: -(this @ [step, 1]) (o, m + 1).
+        """
+        every = np.column_stack([self.slopes[:, list(columns)], residual])
+        whole = every.T @ (weight[:, None] * every)
+        back = []
+        for one in self.own:
+            weighed = weight[one.rows, None] * one.slopes
+            inner = weighed.T @ one.slopes + np.diag(1 / one.width**2)
+            cross = weighed.T @ every[one.rows]
+            cross[:, -1] += one.value / one.width**2
+            inner[np.diag_indices_from(inner)] += RIDGE * np.diag(inner).mean()
+            solved = cho_solve(cho_factor(inner), cross)
+            whole -= cross.T @ solved
+            back.append(solved)
+        return whole, back
+
+    def fit(self, columns: Sequence[int], begin: LinearFit | None = None) -> LinearFit:
+        """Fit some columns and the decays' own unknowns.
+
+        Args:
+            columns: Numbers of the columns.
+            begin: A fit whose weights are the first.
+        """
+        columns = list(columns)
+        mean, width = self.mean[columns], self.width[columns]
+        low, high = self.lower[columns], self.upper[columns]
+        without = self._without(columns)
+        residual = without if begin is None else self.residual_after(begin)
+        cost, found = math.inf, None
+        for _ in range(REWEIGHTINGS):
+            weight = self.weights(residual)
+            whole, back = self.products(weight, columns, without)
+            matrix = whole[:-1, :-1] + np.diag(1 / width**2)
+            step = bounded_minimum(matrix, whole[:-1, -1] - mean / width**2, low, high)
+            own = tuple(-(one @ np.append(step, 1.0)) for one in back)
+            residual = self._moved(without, columns, step, own)
+            penalty = float((((step - mean) / width) ** 2).sum())
+            penalty += sum(float((((one.value + y) / one.width) ** 2).sum()) for one, y in zip(self.own, own, strict=True))
+            at_bound = (step <= low) | (step >= high)
+            before, found = cost, LinearFit(tuple(columns), step, own, self.deviances(residual), penalty, matrix, at_bound)
+            cost = found.cost
+            if abs(before - cost) < SMALL_CHANGE:
+                break
+        assert found is not None
+        return found
+
+    def residual_after(self, found: LinearFit) -> np.ndarray:
+        """Residual (n,) after the steps of a fit."""
+        return self._moved(self._without(found.columns), found.columns, found.step, found.own)
+
+    def _without(self, columns: Sequence[int]) -> np.ndarray:
+        """Residual (n,) where all other columns are neutral."""
+        others = np.flatnonzero(self.neutral)
+        others = others[~np.isin(others, list(columns))]
+        return self.residual + self.slopes[:, others] @ self.neutral[others]
+
+    def _moved(self, residual: np.ndarray, columns: Sequence[int], step: np.ndarray, own: Sequence[np.ndarray]) -> np.ndarray:
+        residual = residual + self.slopes[:, list(columns)] @ step
+        for one, y in zip(self.own, own, strict=True):
+            residual[one.rows] += one.slopes @ y
+        return residual
+
+    def log_evidence(self, found: LinearFit) -> float:
+        """Logarithm of the evidence of a fit's columns, by Laplace's approximation.
+
+        A column that a bound keeps neutral counts as fixed.
+        """
+        free = ~(found.at_bound & (np.abs(found.step - self.neutral[list(found.columns)]) < 1e-12))
+        width = self.width[list(found.columns)][free]
+        scaled = found.matrix[np.ix_(free, free)] * np.outer(width, width)
+        return -0.5 * found.cost - 0.5 * float(np.linalg.slogdet(scaled)[1])
+
+    @cached_property
+    def used(self) -> np.ndarray:
+        """Which pools count (p,)."""
+        return self.freedom > 0
+
+
+def bounded_minimum(matrix: np.ndarray, slope: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Minimum of x^T matrix x / 2 + slope^T x within bounds."""
+    scale = 1 / np.sqrt(np.diag(matrix))
+    both = matrix * np.outer(scale, scale)
+    both[np.diag_indices_from(both)] += RIDGE
+    step = -scale * np.linalg.solve(both, scale * slope)
+    if (step >= low).all() and (step <= high).all():
+        return step
+    root = np.linalg.cholesky(both).T
+    target = -np.linalg.solve(root.T, scale * slope)
+    found = lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
+    return np.clip(scale * found.x, low, high)

@@ -1,0 +1,127 @@
+"""Fits, evidence and selection on linear models whose answers are known."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+from scipy.optimize import minimize
+
+from calibration.discovery.selection.joint_selection import JointSelection, Variant
+from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
+
+ROWS, POOLS = 240, 12
+
+
+def linear_model(columns: int, truth: dict[int, float], seed: int = 1, noise: float = 1.0, own: int = 0) -> LinearModel:
+    """A linear model of `columns` random columns, whose residual is -X truth and noise; rows in twelve pools of one floor."""
+    random = np.random.default_rng(seed)
+    slopes = random.standard_normal((ROWS, columns))
+    step = np.zeros(columns)
+    step[list(truth)] = list(truth.values())
+    residual = -slopes @ step + noise * random.standard_normal(ROWS)
+    pool = np.repeat(np.arange(POOLS), ROWS // POOLS)
+    decays = []
+    if own:
+        mine = slice(0, ROWS // 2)
+        side = random.standard_normal((ROWS // 2, own))
+        residual[mine] -= side @ np.full(own, 2.0)
+        decays.append(OwnUnknowns(mine, side, np.full(own, 50.0), np.full(own, 0.5)))
+    freedom = np.full(POOLS, float(ROWS // POOLS))
+    wide, none = np.full(columns, 10.0), np.zeros(columns)
+    return LinearModel(
+        slopes, residual, tuple(decays), pool, np.full(ROWS, POOLS / ROWS), freedom, none, wide, none - 1e3, none + 1e3, none
+    )
+
+
+def test_a_fit_is_the_minimum_of_likelihood_and_priors_found_by_another_method() -> None:
+    model = linear_model(3, {0: 0.8, 1: -0.5}, noise=3.0, own=2)
+    found = model.fit([0, 1, 2])
+
+    def cost(both: np.ndarray) -> float:
+        residual = model.residual + model.slopes @ both[:3]
+        residual[model.own[0].rows] += model.own[0].slopes @ both[3:]
+        own = (model.own[0].value + both[3:]) / model.own[0].width
+        return float(model.deviances(residual).sum() + ((both[:3] / model.width) ** 2).sum() + (own**2).sum())
+
+    best = minimize(cost, np.zeros(5), method="BFGS")
+    assert found.cost == pytest.approx(best.fun, abs=0.02)
+    assert found.step == pytest.approx(best.x[:3], abs=0.02)
+    assert found.own[0] == pytest.approx(best.x[3:], abs=0.02)
+    assert cost(np.append(found.step, found.own[0])) == pytest.approx(found.cost, abs=1e-8)
+
+
+def test_bounds_hold_and_the_other_columns_are_solved_for_again() -> None:
+    model = linear_model(2, {0: 2.0, 1: 1.0})
+    model.slopes[:, 1] += 0.8 * model.slopes[:, 0]
+    free = model.fit([0, 1])
+    bounded = replace(model, upper=np.array([free.step[0] - 1.0, 1e3])).fit([0, 1])
+    assert bounded.step[0] == pytest.approx(free.step[0] - 1.0) and bounded.at_bound.tolist() == [True, False]
+    assert bounded.step[1] > free.step[1] + 0.2  # what it stands for goes to its neighbour
+
+
+def test_the_evidence_is_the_integral_over_the_columns() -> None:
+    model = linear_model(2, {0: 0.1}, noise=1.0)
+    model = replace(model, freedom=0.2 * model.freedom)  # wide enough to integrate
+    found = model.fit([0, 1])
+
+    def density(b: float, a: float) -> float:
+        step = np.array([a, b])
+        cost = model.deviances(model.residual + model.slopes @ step).sum() + ((step / model.width) ** 2).sum()
+        return math.exp(-0.5 * (cost - found.cost)) / (2 * math.pi * model.width.prod())
+
+    total = dblquad(density, -2, 2, -2, 2, epsabs=1e-9)[0]
+    assert model.log_evidence(found) == pytest.approx(math.log(total) - 0.5 * found.cost, abs=0.15)
+
+
+def test_a_column_that_is_not_fitted_is_neutral() -> None:
+    model = replace(linear_model(2, {0: 1.0}), neutral=np.array([0.0, 0.7]))
+    without = model.fit([0])
+    assert model.residual_after(without) == pytest.approx(
+        model.residual + model.slopes @ np.array([without.step[0], 0.7]), abs=1e-12
+    )
+
+
+def selection(model: LinearModel, variants: list[Variant] | None = None, base: int = 2) -> JointSelection:
+    every = [Variant(f"effect {i}", (i,), math.log(0.03)) for i in range(base, model.slopes.shape[1])]
+    return JointSelection(model, range(base), variants or every, np.arange(POOLS))
+
+
+def test_the_effects_that_are_there_are_selected_and_no_others() -> None:
+    found = selection(linear_model(20, {0: 1.0, 5: 0.6, 11: -0.8})).run()
+    assert set(found.names(found.best)) == {"effect 5", "effect 11"}
+    probability = found.probability()
+    assert min(probability["effect 5"], probability["effect 11"]) > 0.95
+    assert max(p for name, p in probability.items() if name not in ("effect 5", "effect 11")) < 0.2
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_nothing_is_selected_where_nothing_is_missing(seed: int) -> None:
+    found = selection(linear_model(20, {0: 1.0}, seed)).run()
+    assert found.names(found.best) == ()
+    assert max(found.probability().values(), default=0.0) < 0.5
+
+
+def test_of_two_that_look_alike_each_has_its_part_of_the_probability() -> None:
+    model = linear_model(8, {3: 0.5})
+    model.slopes[:, 4] = model.slopes[:, 3] + 0.02 * model.slopes[:, 4]
+    probability = selection(model).run().probability()
+    assert probability["effect 3"] + probability["effect 4"] > 0.95
+    assert min(probability["effect 3"], probability["effect 4"]) > 0.1
+
+
+def test_a_candidate_is_taken_at_one_of_its_values_only() -> None:
+    variants = [Variant("memory", (2,), -3.0), Variant("memory", (3,), -3.0), Variant("friction", (4,), -3.0)]
+    found = selection(linear_model(5, {2: 0.7, 3: 0.7}), variants).run()
+    assert all(len(set(found.names(one))) == len(one.variants) for one in found.subsets)
+
+
+def test_what_one_series_alone_shows_is_less_sure_than_what_all_show() -> None:
+    everywhere = linear_model(6, {2: 0.6})
+    there = everywhere.pool == 3
+    noise = everywhere.residual + 0.6 * everywhere.slopes[:, 2]
+    slopes = everywhere.slopes * np.where(there[:, None] | (np.arange(6) != 2), 1.0, 0.0)
+    once = replace(everywhere, slopes=slopes, residual=noise - 2.5 * slopes[:, 2])
+    sure, unsure = (selection(one).run().probability()["effect 2"] for one in (everywhere, once))
+    assert sure > 0.9 and 0.4 < unsure < 0.8  # a series is missing from 37 % of the resamplings
