@@ -1,4 +1,7 @@
-"""Units of files and of printed motions (m and degrees)."""
+"""Units of files, of stated quantities, and of printed motions (m and degrees)."""
+
+import re
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,3 +22,61 @@ def unit_of(channel: str) -> str:
 def for_people(channel: str, values: np.ndarray | float) -> np.ndarray:
     """SI values of a channel in the unit in which it is printed."""
     return np.rad2deg(values) if unit_of(channel) == "deg" else np.asarray(values)
+
+
+BASE = ("m", "kg", "s", "rad")  # units that all others are products of
+_BASE_OF_QUANTITY = {"length": (1, 0, 0, 0), "time": (0, 0, 1, 0), "angle": (0, 0, 0, 1)}
+_FORCE, _MASS = (1, 1, -2, 0), (0, 1, 0, 0)
+SYMBOLS: dict[str, tuple[float, tuple[int, ...]]] = {
+    **{name: (size, _BASE_OF_QUANTITY[quantity]) for quantity, units in SI.items() for name, size in units.items()},
+    **{"N": (1.0, _FORCE), "kN": (1e3, _FORCE), "MN": (1e6, _FORCE), "GN": (1e9, _FORCE)},
+    **{"g": (1e-3, _MASS), "kg": (1.0, _MASS), "t": (1e3, _MASS), "Hz": (1.0, (0, 0, -1, 0))},
+}
+"""Factor to SI and powers of `BASE` of every unit that a product of units may have."""
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻·*", "0123456789-  ")
+_FACTOR = re.compile(r"([A-Za-z]+)(?:\^?(-?[0-9]))?")
+_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*)")
+
+
+class Unit(NamedTuple):
+    """Unit made of others.
+
+    Attributes:
+        factor: Value in SI of one such unit.
+        powers: Powers of `BASE`.
+    """
+
+    factor: float
+    powers: tuple[int, ...]
+
+
+class UnknownUnit(ValueError):
+    """A text that is no product of known units; its one argument is the part that is not known."""
+
+
+def parse_unit(text: str) -> Unit:
+    """Unit from a text such as "kN s2/m2", "N m/rad", "N·s²/m²" or "-".
+
+    All that follows a slash is divided by, as in "N s/(m rad)".
+
+    Raises:
+        UnknownUnit: The text is no product of the units in `SYMBOLS`.
+    """
+    factor, powers = 1.0, [0] * len(BASE)
+    parts = [part.strip("() ") for part in text.replace("**", "^").translate(_SUPERSCRIPTS).split("/")]
+    for i, part in enumerate(parts):
+        for name in [] if i == 0 and part in ("-", "1") else part.split() or [part]:
+            found = _FACTOR.fullmatch(name)
+            if found is None or found[1] not in SYMBOLS:
+                raise UnknownUnit(found[1] if found else name)
+            power = int(found[2] or 1) * (-1 if i else 1)
+            size, base = SYMBOLS[found[1]]
+            factor *= size**power
+            powers = [one + power * other for one, other in zip(powers, base, strict=True)]
+    return Unit(factor, tuple(powers))
+
+
+def split_quantity(text: str) -> tuple[float, str] | None:
+    """Number and unit of a text such as "0.3 m" or "2 %"; None where it is no finite number with a unit."""
+    found = _QUANTITY.fullmatch(text.strip())
+    return (float(found[1]), found[2]) if found and np.isfinite(float(found[1])) else None

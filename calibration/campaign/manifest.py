@@ -1,7 +1,8 @@
 """Schema of campaign.yaml: tests, channels, units, and the use of each test.
 
 Everything in a manifest is stated as it was recorded: windows, `transient`, noise, wave heights and positions are in
-the units and at the scale of the files, whatever `scale` says.
+the units and at the scale of the files, whatever `scale` says. Bounds and priors of `calibrate`, and `plausible`, are about the
+model's parameters and at the scale of the platform file.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
+from calibration.campaign.stated_sizes import check_stated_size, stated_size_problems
 from calibration.campaign.tracked_point import missing_angles
 from jaxhydro.errors import (
     Faults,
@@ -177,6 +179,9 @@ class Calibrate(Schema):
     natural_periods: dict[Text, Period] = Field(default_factory=dict)
 
 
+StatedQuantity = Annotated[str | float, PlainValidator(check_stated_size)]
+
+
 class Manifest(Schema):
     """A campaign.yaml."""
 
@@ -193,6 +198,7 @@ class Manifest(Schema):
     records: Recording = Recording()
     tests: tuple[Test, ...]
     calibrate: Calibrate = Calibrate()
+    plausible: dict[Text, StatedQuantity] = Field(default_factory=dict)  # sizes that effects may have
 
     @model_validator(mode="after")
     def _consistent(self) -> Manifest:
@@ -293,6 +299,7 @@ def _other_problems(manifest: Manifest) -> Iterator[Problem]:
     for name in manifest.calibrate.natural_periods:
         if name not in DOFS:
             yield _unknown("calibrate.natural_periods", "a motion", name, DOFS)
+    yield from stated_size_problems(manifest.plausible)
     zero, ids = manifest.zero, [test.id for test in manifest.tests]
     if zero is not None and zero.test is not None and zero.test not in ids:
         yield _unknown("zero.test", "the id of a test", zero.test, ids)

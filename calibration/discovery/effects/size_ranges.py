@@ -1,0 +1,154 @@
+"""Ranges of the sizes that effects can have in a basin, by label, with their sources."""
+
+from collections.abc import Callable
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+from calibration.discovery.effects import reference_sizes as ref
+from calibration.discovery.effects.reference_sizes import Case
+from jaxhydro.loads.matrix import row_and_column
+
+
+class Reach(NamedTuple):
+    """How far a size may be from its neutral value.
+
+    Attributes:
+        below: Distance downwards, 0 or less, in the SI unit of the size.
+        above: Distance upwards, 0 or more.
+        whole: Size that 100 % stands for in campaign.yaml, or None.
+        source: Reference, or the judgement behind it, in a sentence.
+    """
+
+    below: float
+    above: float
+    whole: float | None
+    source: str
+
+
+Rule = Callable[[Case, str], Reach]
+Quantity = Callable[[Case, str], float]
+
+
+def _share(below: float, above: float, whole: Quantity, source: str) -> Rule:
+    """Shares of a reference quantity."""
+    return lambda case, label: Reach(below * whole(case, label), above * whole(case, label), whole(case, label), source)
+
+
+def _entry(share: float, whole: Quantity, source: str) -> Rule:
+    """A share of a reference quantity for an entry of a matrix: upwards on the diagonal, either way beside it."""
+
+    def rule(case: Case, label: str) -> Reach:
+        i, j = row_and_column(label)
+        size = whole(case, label)
+        return Reach(0.0 if i == j else -share * size, share * size, size, source)
+
+    return rule
+
+
+def _froude(size: float, power: float, source: str) -> Rule:
+    """A size of a platform of 20 000 t, either way, that grows with a power of its length: 1 of a length, 1/2 of a time."""
+    return lambda case, label: Reach(-size * case.size**power, size * case.size**power, None, source)
+
+
+def _hull(axis: int, source: str) -> Rule:
+    """A coordinate within the hull."""
+    return lambda case, label: Reach(*case.hull_extent(axis), None, source)
+
+
+JUDGEMENT = "engineering judgement: "
+IMO = "IMO MSC.1/Circ.1200, 4.3.3"
+ROBERTSON = "Robertson et al. 2020, Ocean Engineering 195, 106605"
+INERTIA = f"{IMO} asks for a radius of gyration or a natural period within 2 %, so for a moment of inertia within 4 to 5 %."
+HULL = JUDGEMENT + "what is tracked is fixed to the hull, between its lowest and its highest point."
+DAMPING = (
+    JUDGEMENT + "hulls with bilge keels or heave plates stay below a fifth of critical damping, counted at the largest speed."
+)
+SMALL_DAMPING = JUDGEMENT + "linear damping of moored floaters is a few per cent of critical, a tenth at most."
+FRICTION = JUDGEMENT + "more than a tenth of the largest restoring force would leave the model visibly off its rest position."
+HYSTERESIS = JUDGEMENT + "lines and cables lose less than a sixth of the largest restoring force to their loop."
+OFFSET = JUDGEMENT + "half the largest excursion, 1 % of the length or 1 degree would have been seen when records were zeroed."
+MOORING = JUDGEMENT + "a declared stiffness is off by half at the largest excursion at most, a catenary's or taut line's alike."
+HYDROSTATICS = (
+    "Barrass and Derrett, Ship Stability for Masters and Mates, wall-sided formula: with BM = 2 GM the cubic term is below 0.3 "
+    "of the linear one up to 30 degrees; engineering judgement: flare and pontoons likewise."
+)
+DRIFT = "Maruo 1960 in Faltinsen 1990, chapter 5: waves all sent back drift by rho g/2 times width and squared amplitude."
+ARANHA = (
+    "Aranha 1994, Journal of Fluid Mechanics 275, 147-155: (4 omega D + omega^2 dD/domega)/g, with the D of waves all sent "
+    "back, growing as omega^2."
+)
+OSCILLATOR = JUDGEMENT + "tuned dampers, anti-roll tanks and flexible towers are a few per cent of what moves, a tenth at most."
+UMBILICAL = (
+    JUDGEMENT + "a slack cable bundle has a fifth of the mooring's stiffness and pull at most, or it would be called a line."
+)
+RADIATION = (
+    JUDGEMENT
+    + "published potential-flow tables of a semisubmersible (FOCAL campaign 4) have up to 0.44 in surge, 0.13 in heave "
+    "of moving mass times (g/L)^(1/2)."
+)
+ROLL_RADIATION = JUDGEMENT + "roll and pitch radiate less than heave: a fifth of moving mass times (g/L)^(1/2) at most."
+GRAHAM = "Graham 1980, Journal of Fluid Mechanics 97, 331-346: -1/3 at sharp edges, 0 at square ones; twice that either way."
+SHARE_OF_TABLE = JUDGEMENT + "none of a program's forces, or all of them within 30 %, as programs and basins agree."
+PRESSURE = JUDGEMENT + "shading and diffraction change the Froude-Krylov force of slender members by 40 % at most."
+
+RANGES: dict[str, Rule] = {
+    "mass_properties.mass": _share(
+        -0.02, 0.02, ref.body_mass, JUDGEMENT + "published masses of one as-built FOCAL hull differ by a per cent or so."
+    ),
+    "mass_properties.inertia_*": _share(-0.05, 0.05, ref.body_inertia, INERTIA),
+    "mass_properties.centre_z": _froude(
+        0.2, 1, f"{JUDGEMENT}3 mm at 1:70; {IMO} asks for 1 mm or 2 % of GM, {ROBERTSON} find responses most sensitive to it."
+    ),
+    "mass_properties.centre_x": _froude(0.1, 1, JUDGEMENT + "1.5 mm at 1:70: a model is trimmed level by its draught marks."),
+    "sensor_reference.x": _hull(0, HULL),
+    "sensor_reference.z": _hull(2, HULL),
+    "sensor_lag.delay": _froude(1.0, 0.5, JUDGEMENT + "0.12 s at 1:70: filters, and a few frames of a camera or of a logger."),
+    "wave_gauge_position.distance": _froude(
+        8.0,
+        1,
+        JUDGEMENT + "0.12 m at 1:70: a gauge is placed by tape, abeam of where the model was to lie before it drifted off.",
+    ),
+    "wave_reflection.coefficient": _share(
+        -0.1,
+        0.1,
+        ref.unity,
+        JUDGEMENT + "beaches of basins send back 5 to 10 % of the height (Goda and Suzuki 1976 measure it).",
+    ),
+    "current.*": _froude(0.4, 0.5, JUDGEMENT + "5 cm/s at 1:70: what circulation and the waves' return flow leave in a basin."),
+    "umbilical.stiffness": _share(0.0, 0.2, ref.surge_stiffness, UMBILICAL),
+    "umbilical.pull": _share(-0.2, 0.2, ref.surge_force, UMBILICAL),
+    "umbilical.mass": _share(0.0, 0.01, ref.body_mass, JUDGEMENT + "a metre or two of cable: 0.6 kg on a model of 60 kg."),
+    "coulomb_friction.*": _share(0.0, 0.1, ref.restoring_force, FRICTION),
+    "hysteresis.*": _share(0.0, 0.15, ref.restoring_force, HYSTERESIS),
+    "static_offset.*": _share(-0.5, 0.5, ref.offset_force, OFFSET),
+    "linear_damping.*": _entry(0.1, ref.entry_damping, SMALL_DAMPING),
+    "coupled_damping.*": _entry(0.1, ref.entry_damping, SMALL_DAMPING),
+    "quadratic_damping.*": _entry(0.2, ref.quadratic_damping, DAMPING),
+    "cubic_damping.*": _share(0.0, 0.2, ref.cubic_damping, DAMPING),
+    "radiation_memory.roll.*": _share(0.0, 0.2, ref.radiation_damping, ROLL_RADIATION),
+    "radiation_memory.pitch.*": _share(0.0, 0.2, ref.radiation_damping, ROLL_RADIATION),
+    "radiation_memory.*": _share(0.0, 0.5, ref.radiation_damping, RADIATION),
+    "hidden_oscillator.*": _share(0.0, 0.1, ref.moving_mass, OSCILLATOR),
+    "stiffness.*": _share(
+        -0.1, 0.1, ref.entry_stiffness, f"{JUDGEMENT}a tenth; {ROBERTSON} find responses most sensitive to mooring stiffness."
+    ),
+    "added_mass.*": _share(-0.1, 0.1, ref.entry_mass, JUDGEMENT + "added mass beyond the strips' own, a tenth of what moves."),
+    "mooring_nonlinearity.*": _share(-0.5, 0.5, ref.equal_polynomial, MOORING),
+    "nonlinear_hydrostatics.*": _share(-0.3, 0.3, ref.equal_polynomial, HYDROSTATICS),
+    "wave_drift.*": _share(-1.0, 1.0, ref.total_reflection, DRIFT),
+    "wave_drift_damping.*": _share(0.0, 1.5, ref.aranha_damping, ARANHA),
+    "amplitude_dependent_drag.*": _froude(0.67, 0, GRAHAM),
+    "sea_state_dependent_drag.*": _share(
+        -1.0, 0.0, ref.unity, "OpenFAST HydroDyn, pull request 2895: drag on slow motion is scaled between none and all of it."
+    ),
+    "wave_excitation.*": _share(-0.4, 0.4, ref.unity, PRESSURE),
+    "computed_excitation.share": _share(0.0, 1.3, ref.unity, SHARE_OF_TABLE),
+    "computed_radiation.share": _share(0.0, 1.3, ref.unity, SHARE_OF_TABLE),
+    "drift_transfer.share": _share(0.0, 1.3, ref.unity, SHARE_OF_TABLE),
+}
+"""Rules by pattern of labels; the first that fits counts."""
+
+
+def reach_of(case: Case, label: str) -> Reach | None:
+    """Plausible distance of a size from its neutral value; None for a label that no rule is about."""
+    return next((rule(case, label) for pattern, rule in RANGES.items() if fnmatchcase(label, pattern)), None)

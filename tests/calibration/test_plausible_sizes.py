@@ -1,0 +1,323 @@
+"""Plausible sizes of candidate effects: every label, Froude's similarity, and what campaign.yaml states."""
+
+import json
+from functools import cache
+
+import jax
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import jaxhydro as jh
+from calibration.campaign.manifest import Manifest, read_manifest
+from calibration.campaign.stated_sizes import STATED_SIZES, is_about
+from calibration.discovery.effects.candidates import Candidate, with_effects
+from calibration.discovery.effects.catalogue import catalogue
+from calibration.discovery.effects.catalogue_builder import noticeable_scales
+from calibration.discovery.effects.plausible_sizes import PlausibleSize, plausible_sizes
+from calibration.discovery.effects.reference_sizes import Case, Seas
+from calibration.discovery.effects.size_ranges import reach_of
+from jaxhydro.dynamics.model import Model
+from jaxhydro.dynamics.statics import equilibrium, linearised
+from jaxhydro.environment import DOFS
+from jaxhydro.errors import InputError
+from jaxhydro.loads.base import AbstractLoad, Action
+from jaxhydro.parameters import parameter
+from jaxhydro.platform.build import build
+from jaxhydro.platform.schema import Platform
+from jaxhydro.units import parse_unit
+
+ROLL_ONLY = {
+    "name": "a rolling ship at 1:68",
+    "water": {"density": 1000.0, "depth": 5.0, "gravity": 9.81},
+    "rigid_body": {"mass": 994.0, "centre_of_mass": [0.0, 0.0, 0.0], "inertia": {"Ixx": 115.7, "Iyy": 1376.0, "Izz": 1376.0}},
+    "members": [],
+    "added_mass": {"A44": 20.0},
+    "linear_damping": {"B44": 3.0},
+    "hydrostatics": {"C44": 822.0},
+    "mooring": {"kind": "none"},
+}
+SPREAD = {"surge": 2.0, "heave": 0.5, "roll": 0.02, "pitch": 0.03}  # m, rad; of a platform of full size
+LINES = [[150.0, 0.0], [-75.0, 130.0], [-75.0, -130.0]]  # m, anchors
+
+
+def spar(size: float) -> Model:
+    """A stout spar on three springs, lengths times `size`."""
+    point = lambda *x: [size * one for one in x]  # noqa: E731
+    member = {"name": "hull", "group": "hull", "shape": "circ", "d": 20.0 * size, "rA": point(0, 0, -40), "rB": point(0, 0, 10)}
+    line = {"stiffness": 4e4 * size**2, "pretension": 2e5 * size**3}
+    data = {
+        "name": "spar",
+        "water": {"density": 1000.0, "depth": 200.0 * size, "gravity": 9.81},
+        "rigid_body": {
+            "mass": 1.2566e7 * size**3,
+            "centre_of_mass": point(0.0, 0.0, -25.0),
+            "inertia": dict.fromkeys(("Ixx", "Iyy", "Izz"), 3e9 * size**5),
+        },
+        "members": [member],
+        "coefficients": {"hull": {"Ca_t": 1.0, "Ca_z": 0.5, "Cd_t": 1.0, "Cd_z": 2.0}},
+        "mooring": {
+            "kind": "linear_springs",
+            "lines": [
+                {"anchor": point(*one, -20.0), "fairlead": point(one[0] / 15, one[1] / 15, -20.0), **line} for one in LINES
+            ],
+        },
+    }
+    return build(Platform.model_validate(data))
+
+
+@cache
+def case(name: str):
+    """Model, candidates, noticeable sizes by motion, and seas."""
+    size = 1 / 70 if name == "model scale" else 1.0
+    if name == "one motion":
+        model, spread = build(Platform.model_validate(ROLL_ONLY)), {"roll": 0.1}
+    elif name == "semisubmersible":
+        model, spread = jh.load_model("volturnus-s"), dict.fromkeys(DOFS, 0.1)
+    else:
+        model, spread = spar(size), {dof: s * size if dof in DOFS[:3] else s for dof, s in SPREAD.items()}
+    waves = name not in ("one motion", "decays only")
+    scales = noticeable_scales(*(np.asarray(one) for one in linearised(model, equilibrium(model))), spread)
+    candidates = tuple(catalogue(model, scales, waves, size**2)[0])
+    return model, candidates, scales, Seas(10.0 * size**0.5) if waves else None
+
+
+def ranges(name: str, **stated) -> dict[str, PlausibleSize]:
+    return plausible_sizes(*case(name), stated)
+
+
+CASES = ("semisubmersible", "full scale", "model scale", "decays only", "one motion")
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_amplitude_has_a_range_about_its_neutral_value(name):
+    """Within the bounds of its load, one-sided where physics is, with a source; no other label."""
+    model, candidates, *_ = case(name)
+    found = ranges(name)
+    assert set(found) == {label for one in candidates for label in one.amplitudes}
+    for one in candidates:
+        for label in one.amplitudes:
+            size, about = found[label], with_effects(model, [label]).about(label)
+            assert size.lower <= about.null <= size.upper and about.null in size, label
+            assert size.lower < size.upper and np.isfinite([size.lower, size.upper]).all(), label
+            assert about.lower <= size.lower and size.upper <= about.upper, label
+            assert label not in one.positive or size.lower == about.null, label
+            assert size.source.endswith(".") and not size.stated
+            assert size.source.startswith(
+                ("engineering judgement: ", "IMO", "Graham", "Maruo", "Aranha", "OpenFAST", "Barrass")
+            )
+
+
+def test_without_waves_or_motions_what_they_make_is_absent():
+    assert "wave_drift.surge.envelope" in ranges("full scale")
+    assert not {"wave_drift.surge.envelope", "sensor_lag.delay"} & set(ranges("decays only"))
+    assert {label.split(".")[1] for label in ranges("one motion") if label.startswith("hysteresis")} == {"roll"}
+    model, candidates, scales, _ = case("full scale")
+    with pytest.raises(ValueError, match="peak period of the waves"):
+        plausible_sizes(model, candidates, scales, None, {})
+
+
+def test_by_froude_a_model_has_the_same_numbers():
+    """Lengths go with the size, times with its root, masses with its cube; the weight of a drift with omega squared, too."""
+    large, small = ranges("full scale"), ranges("model scale")
+    assert set(large) == set(small)
+    for label in large:
+        length, mass, time, _ = parse_unit(with_effects(case("full scale")[0], [label]).about(label).unit).powers
+        factor = (1 / 70) ** (length + 3 * mass + time / 2 + label.endswith("frequency_weighted"))
+        expected = np.array([large[label].lower, large[label].upper])
+        about = 1.0 if label.startswith(("wave_excitation", "sea_state")) else 0.0
+        assert_allclose([small[label].lower - about, small[label].upper - about], (expected - about) * factor, rtol=1e-6)
+
+
+def test_sizes_of_a_semisubmersible():
+    """Of 20 000 t: what the sources say, in numbers."""
+    found = ranges("semisubmersible")
+    assert (found["sensor_reference.z"].lower, found["sensor_reference.z"].upper) == (-20.0, 15.0)  # m, keel and deck
+    assert found["mass_properties.mass"].upper == pytest.approx(0.02 * float(case("semisubmersible")[0].body.mass))
+    assert found["mass_properties.centre_z"].upper == pytest.approx(0.2, rel=0.01)
+    assert found["wave_gauge_position.distance"].upper == pytest.approx(8.0, rel=0.01)
+    assert found["wave_drift.surge.envelope"].upper == pytest.approx(0.5 * 1025 * 9.81 * 27, rel=0.02)
+    assert (found["wave_excitation.column.Cp_t"].lower, found["wave_excitation.column.Cp_t"].upper) == (0.6, 1.4)
+    assert -1 / 3 in found["amplitude_dependent_drag.column.exponent"]
+    assert 1.5 not in found["sea_state_dependent_drag.low_share"]
+    friction, scales = found["coulomb_friction.surge.force"], case("semisubmersible")[2]["surge"]
+    assert friction.upper == pytest.approx(0.1 * 2 * scales.force / 0.02)  # of the force at twice the amplitude
+
+
+def test_terms_of_the_equation_have_ranges_too():
+    """Linear damping, stiffness and added mass, on and beside the diagonal, whether the catalogue has them or not."""
+    known = Case(case("decays only")[0], case("decays only")[2], None)
+    terms = {"linear_damping": "B", "quadratic_damping": "B", "stiffness": "C", "added_mass": "A"}
+    for term, letter in terms.items():
+        own, beside = (reach_of(known, f"{term}.{letter}{entry}") for entry in ("11", "15"))
+        assert own.above > 0 and own.whole > 0
+        assert -beside.below == beside.above > 0
+        assert own.below == (0.0 if letter == "B" else -own.above)  # damping takes energy
+
+
+class Spring(AbstractLoad):
+    """A spring of one's own."""
+
+    k: jax.Array = parameter("N/m", "spring in heave", 0.0)
+    slant: jax.Array = parameter("N", "pull in heave")
+
+    def act(self, now, memory):
+        return Action(force=now.position * 0.0)
+
+
+def test_of_ones_own_effect():
+    """As many noticeable sizes as its prior has had, within its bounds; or as stated."""
+    model, _, scales, _ = case("decays only")
+    own = Candidate("spring", None, ("spring.k", "spring.slant"), load=Spring(), sizes={"spring.k": 10.0, "spring.slant": 2.0})
+    found = plausible_sizes(model, [own], scales, None, {})
+    assert [(found[k].lower, found[k].upper) for k in own.amplitudes] == [(0.0, 300.0), (-60.0, 60.0)]
+
+
+def test_a_label_that_no_rule_knows_is_an_error():
+    model, _, scales, _ = case("decays only")
+    with pytest.raises(KeyError, match=r"no plausible size of umbilical\.height"):
+        plausible_sizes(model, [Candidate("umbilical", None, ("umbilical.height",))], scales, None, {})
+
+
+@pytest.mark.parametrize("key", STATED_SIZES)
+def test_a_short_key_has_the_units_of_its_labels(key):
+    """Those of the loads, %, where there is a whole; and some catalogue has labels that it is about."""
+    units = {parse_unit(unit).powers for unit in STATED_SIZES[key][1] if unit != "%"}
+    labels = [label for label in ranges("semisubmersible") if is_about(key, label)]
+    later = ("linear_damping", "stiffness", "added_mass", "computed_excitation", "computed_radiation", "drift_transfer")
+    assert labels or key in later
+    model = case("semisubmersible")[0]
+    found = {parse_unit(with_effects(model, [label]).about(label).unit).powers for label in labels}
+    assert not units or found <= units
+    if labels and "%" in STATED_SIZES[key][1]:
+        plausible_sizes(*case("semisubmersible"), {key: "5 %"})
+
+
+def test_stated_sizes_take_the_place_of_ours():
+    """Shares of what is declared; quantities in any unit; the closest key counts; other motions and signs stay as they are."""
+    stated = {
+        "mass": "3 %",
+        "inertia": "2 %",
+        "centre": "30 cm",
+        "wave_gauge": "2 m",
+        "tracked_point": "20 m",
+        "clock": "200 ms",
+        "current": "0.1 m/s",
+        "coulomb_friction": "50 kN",
+        "coulomb_friction.roll": "5 %",
+        "wave_drift.surge.envelope": "100 kN/m^2",
+        "wave_excitation": "10 %",
+        "umbilical.pull": 7.0,
+        "sea_state_dependent_drag": "50 %",
+        "hysteresis.surge.force": "3 kN",
+        "hysteresis": "1 %",
+    }
+    mine, found = ranges("full scale"), ranges("full scale", **stated)
+    model = case("full scale")[0]
+    expected = {
+        "mass_properties.mass": (-0.03 * float(model.body.mass), 0.03 * float(model.body.mass)),
+        "mass_properties.inertia_pitch": (-0.02 * float(model.body.inertia[1, 1]), 0.02 * float(model.body.inertia[1, 1])),
+        "mass_properties.centre_x": (-0.3, 0.3),
+        "mass_properties.centre_z": (-0.3, 0.3),
+        "wave_gauge_position.distance": (-2.0, 2.0),
+        "sensor_reference.z": (-20.0, 20.0),
+        "sensor_lag.delay": (-0.2, 0.2),
+        "current.x": (-0.1, 0.1),
+        "coulomb_friction.surge.force": (0.0, 5e4),
+        "coulomb_friction.heave.force": (0.0, 5e4),
+        "coulomb_friction.roll.force": (0.0, 0.5 * mine["coulomb_friction.roll.force"].upper),
+        "wave_drift.surge.envelope": (-1e5, 1e5),
+        "wave_excitation.hull.Cp_t": (0.9, 1.1),
+        "umbilical.pull": (-7.0, 7.0),
+        "sea_state_dependent_drag.low_share": (0.5, 1.0),
+        "hysteresis.pitch.force": (0.0, mine["hysteresis.pitch.force"].upper / 15),
+        "hysteresis.surge.force": (0.0, 3e3),
+    }
+    for label, (lower, upper) in expected.items():
+        assert_allclose([found[label].lower, found[label].upper], [lower, upper], rtol=1e-9, err_msg=label)
+        assert found[label].stated and found[label].source.startswith("stated in campaign.yaml, plausible.")
+    assert found["coulomb_friction.pitch.force"] == mine["coulomb_friction.pitch.force"]  # a moment is no force
+    assert found["wave_drift.surge.quadrature"] == mine["wave_drift.surge.quadrature"]
+    assert found["hysteresis.surge.force"].source == "stated in campaign.yaml, plausible.hysteresis.surge.force."
+
+
+def test_what_is_no_candidate_may_be_stated():
+    """One manifest serves decays and seas."""
+    assert ranges("decays only", **{"wave_gauge": "2 m", "wave_drift.surge.envelope": 1e5}) == ranges("decays only")
+
+
+@pytest.mark.parametrize(
+    ("stated", "message"),
+    [
+        (
+            {"coulomb_friction.surge.forse": 1.0},
+            "expected a parameter of this effect .*Did you mean 'coulomb_friction.surge.force'",
+        ),
+        ({"coulomb_friction.sway.force": 1.0}, "expected a parameter of this effect .*found 'coulomb_friction.sway.force'"),
+        ({"wave_drift.surge.envelope": "3 m"}, r"wave_drift.surge.envelope: expected a quantity in N/m2 or %, found '3 m'"),
+        ({"sensor_lag.delay": "3 %"}, "sensor_lag.delay: expected a quantity in s, found '3 %'"),
+    ],
+)
+def test_a_label_that_is_wrong_is_told(stated, message):
+    with pytest.raises(InputError, match=f"campaign.yaml: plausible.*{message}"):
+        plausible_sizes(*case("full scale"), stated)
+
+
+def manifest(folder, **plausible):
+    channels = {"time": {"column": "t", "unit": "s"}, "surge": {"column": "x", "unit": "m"}}
+    tests = [{"id": "a", "kind": "decay", "degree_of_freedom": "surge", "file": "a.csv"}]
+    data = {"name": "n", "platform": "volturnus-s", "channels": channels, "tests": tests, "plausible": plausible}
+    (folder / "campaign.yaml").write_text(json.dumps(data).replace("Infinity", ".inf").replace("NaN", ".nan"))
+    (folder / "a.csv").write_text("t,x\n0,1\n1,2\n")
+    return read_manifest(folder)[0]
+
+
+def test_a_manifest_keeps_what_it_states(tmp_path):
+    stated = {
+        "mass": "2 %",
+        "clock": "0.2 s",
+        "umbilical.pull": 5e3,
+        "inertia": "1e9 kg m²",
+        "wave_drift.surge.envelope": "0.1 MN/m2",
+    }
+    found = manifest(tmp_path, **stated)
+    assert found.plausible == stated
+    assert Manifest.model_validate(found.model_dump(mode="json", exclude_unset=True)) == found
+
+
+def test_as_it_is_written_by_hand(tmp_path):
+    """Without quotes, in YAML."""
+    manifest(tmp_path)
+    path = tmp_path / "campaign.yaml"
+    written = "{mass: 2 %, inertia: 5%, wave_gauge: 2 m, coulomb_friction: 50 kN, wave_drift.surge.envelope: 100 kN/m^2}"
+    path.write_text(path.read_text().replace('"plausible": {}', f'"plausible": {written}'))
+    assert list(read_manifest(path)[0].plausible.values()) == ["2 %", "5%", "2 m", "50 kN", "100 kN/m^2"]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("mass", "-2 %", r"plausible.mass: expected a quantity greater than 0 with its unit, .*found '-2 %'"),
+        ("mass", "0 %", "expected a quantity greater than 0"),
+        ("mass", "nan %", "expected a quantity greater than 0 .*found 'nan %'"),
+        ("mass", "1e999 %", "expected a quantity greater than 0"),
+        ("mass", "two per cent", "expected a quantity greater than 0"),
+        ("mass", True, "expected a quantity greater than 0 .*found true"),
+        ("mass", [1, 2], "expected a quantity greater than 0"),
+        ("umbilical.pull", float("nan"), "expected a quantity greater than 0"),
+        ("umbilical.pull", float("inf"), "expected a quantity greater than 0"),
+        ("umbilical.pull", -1.0, "expected a quantity greater than 0"),
+        ("mass", "2 m", "plausible.mass: expected a quantity in kg or %, found '2 m'"),
+        ("mass", 2.0, "plausible.mass: expected a quantity in kg or %, found 2.0"),
+        ("clock", "2 %", "plausible.clock: expected a quantity in s, found '2 %'"),
+        ("coulomb_friction", "50 kNn", r"plausible.coulomb_friction: expected a unit of .*found '50 kNn'. Did you mean 'kN'\?"),
+        ("coulomb_friction", "50 kn", r"Did you mean 'kN'\?"),
+        ("masss", "2 %", r"plausible.masss: expected a size \(mass, .*found 'masss'. Did you mean 'mass'\?"),
+        ("wave_drft.surge.envelope", 1.0, r"Did you mean 'wave_drift.surge.envelope'\?"),
+        ("sensor_reference", "2 m", r"plausible.sensor_reference: expected a size"),
+    ],
+)
+def test_mistakes_in_a_manifest(tmp_path, key, value, message):
+    with pytest.raises(InputError, match=message) as caught:
+        manifest(tmp_path, **{key: value})
+    assert len(caught.value.problems) == 1 and caught.value.source == str(tmp_path / "campaign.yaml")
