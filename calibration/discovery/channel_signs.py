@@ -21,7 +21,7 @@ from calibration.result import Estimate
 from jaxhydro.analysis.sea_statistics import bands_of, record_peak_period
 
 if TYPE_CHECKING:
-    from calibration.discovery.greedy_search import Search
+    from calibration.discovery.search import Search
 
 MAX_REVERSED_CORRELATION = -0.6  # of measurement and model, in every fitted test of a reversed channel
 MIN_MOTION_OVER_NOISE = 5.0  # of a motion that is compared

@@ -16,14 +16,14 @@ import numpy as np
 
 from calibration.campaign.manifest import platform_source
 from calibration.discovery.acceptance import FitState, ResidualSummary
-from calibration.discovery.candidate_trials import AcceptedEffect
 from calibration.discovery.diagnosis import Rejected, Score
 from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.search import AcceptedEffect
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.files import staged
 
 if TYPE_CHECKING:
-    from calibration.discovery.greedy_search import Search
+    from calibration.discovery.search import Search
 
 CHECKPOINT_FILE = ".diagnosis-under-way"
 DOCUMENT_KEY = "about"  # the JSON document in the file; arrays are numbered

@@ -1,6 +1,8 @@
 """Result of a diagnosis: effects with evidence, scores, residuals, latent forces."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -27,6 +29,8 @@ class Outcome(StrEnum):
 
 # reason for doubt in an effect: the effects increase the held-out error, in all or in the effect's motion
 HELD_OUT_ERROR = "held_out_error"
+# reason for doubt in an effect: the records ask for a size at an end of what is plausible, or beyond
+IMPLAUSIBLE_SIZE = "implausible_size"
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +42,35 @@ class Evidence:
         delta_bic: Decrease of BIC after the refit; positive values speak for the effect.
         holdout_gain: Fraction of the held-out squared error removed, where the effect acts most (1: all of it).
         clear: Parameters over their standard deviations.
+        probability: Posterior probability among all candidates, or NaN.
+        left_out: Decrease of -2 ln L summed over the fitted tests, each left out in turn in the linearised model, or NaN.
+        left_out_better: Fraction of these tests that are predicted better with the effect, or NaN.
     """
 
     score: float
     delta_bic: float
     holdout_gain: float
     clear: float
+    probability: float = math.nan
+    left_out: float = math.nan
+    left_out_better: float = math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class PlausibleRange:
+    """Sizes that a parameter of an effect can plausibly have.
+
+    Attributes:
+        lower: Lowest value (SI).
+        upper: Highest value (SI).
+        source: Where the range comes from, in a sentence.
+        at_end: Whether the fitted value is at an end that is not its neutral value.
+    """
+
+    lower: float
+    upper: float
+    source: str
+    at_end: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +87,8 @@ class Effect:
         share: Fraction of the unexplained error of the fitted tests that it explains.
         indistinguishable: Effects that the records cannot tell from it.
         telling_test: The test that would tell them apart, or None.
-        in_doubt: A rejected effect that explains more beside it, or `HELD_OUT_ERROR`; None: no doubt.
+        in_doubt: A rejected effect that explains more beside it, `HELD_OUT_ERROR` or `IMPLAUSIBLE_SIZE`; None: no doubt.
+        plausible: Plausible ranges of its amplitudes by label.
     """
 
     effect: str
@@ -73,6 +101,7 @@ class Effect:
     indistinguishable: tuple[str, ...]
     telling_test: str | None
     in_doubt: str | None = None
+    plausible: Mapping[str, PlausibleRange] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -10,7 +11,15 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.runs import runs
-from calibration.discovery.diagnosis import Diagnosis, Effect, Evidence, Finding, Outcome
+from calibration.discovery.diagnosis import (
+    IMPLAUSIBLE_SIZE,
+    Diagnosis,
+    Effect,
+    Evidence,
+    Finding,
+    Outcome,
+    PlausibleRange,
+)
 from calibration.discovery.doubts import doubted_effects, doubts_of
 from calibration.discovery.effects.candidates import Candidate, with_candidates, with_effects
 from calibration.discovery.effects.effect_names import effect_in_words
@@ -27,12 +36,13 @@ from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
     from calibration.discovery.acceptance import FitState
-    from calibration.discovery.greedy_search import Search
     from calibration.discovery.linearisations import Point
+    from calibration.discovery.search import Search
 
 # of a motion: a larger residual, above twice the noise, is unexplained. Fitted seas of synthetic campaigns with nothing missing
 # leave up to 0.04
 MAX_RESIDUAL_SHARE = {"decay": 0.03, "waves": 0.05}
+END_SHARE = 0.005  # of a plausible range: a size that is nearer to an end is at the end
 
 
 def conclude(
@@ -57,7 +67,12 @@ def conclude(
     """
     baseline = calibration_of(campaign, search, before, None)
     augmented = calibration_of(campaign, search, after, baseline)
-    doubted = doubted_effects(search, after, baseline, augmented)
+    at_end = {
+        one.name: IMPLAUSIBLE_SIZE
+        for one in after.chosen
+        if any(size.at_end for size in plausible_ranges(search, one, after).values())
+    }
+    doubted = at_end | doubted_effects(search, after, baseline, augmented)
     effects = (*first, *(accepted_effect(search, one, after, doubted.get(one.name)) for one in after.chosen))
     share, words = signature(search, before, after)
     left = anatomy(search, after)
@@ -268,15 +283,38 @@ def accepted_effect(search: Search, one: Candidate, after: FitState, doubt: str 
     meanings = dict.fromkeys(search.study.model.about(label).meaning for label in one.amplitudes)
     held = found.verdict.held if found.verdict.unseen else float("nan")
     parameters = estimates_of(search, after, one.labels) | _as_given(search, after, one.choices)
+    left_out = found.held_out[np.abs(found.held_out) > 0]
+    evidence = Evidence(
+        found.score,
+        found.verdict.bic,
+        held,
+        found.verdict.clear,
+        found.probability,
+        float(left_out.sum()) if len(left_out) else math.nan,
+        float((left_out > 0).mean()) if len(left_out) else math.nan,
+    )
     return Effect(
         one.effect,
         one.dof,
         "; ".join(meanings),
         one.source,
         parameters,
-        Evidence(found.score, found.verdict.bic, held, found.verdict.clear),
+        evidence,
         max(0.0, 1 - now / left) if left > 0 else 0.0,
         found.alike,
         one.telling or None,
         doubt,
+        plausible_ranges(search, one, after),
     )
+
+
+def plausible_ranges(search: Search, one: Candidate, state: FitState) -> dict[str, PlausibleRange]:
+    """Plausible ranges of an effect's amplitudes, and which sizes in a fit are at an end."""
+    found = {}
+    for label in one.amplitudes:
+        size, value = search.setup.plausible[label], search.study.value(label, state.look.place.x)
+        null = search.study.space.free[search.study.labels.index(label)].start
+        near = END_SHARE * (size.upper - size.lower)
+        at_end = any(abs(value - end) < near < abs(end - null) for end in (size.lower, size.upper))
+        found[label] = PlausibleRange(size.lower, size.upper, size.source, at_end)
+    return found

@@ -16,7 +16,7 @@ from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
     from calibration.discovery.acceptance import FitState, Verdict
-    from calibration.discovery.greedy_search import Search
+    from calibration.discovery.search import Search
 
 MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency
 MEMORY_EFFECTS = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")

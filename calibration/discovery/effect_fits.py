@@ -15,7 +15,7 @@ from calibration.discovery.eliminated_least_squares import minus_two_log_likelih
 from calibration.discovery.expected_residuals import expected_rows
 from calibration.discovery.held_out_blocks import HeldOutBlocks
 from calibration.discovery.linearisations import Linearisation, Point, Prior
-from calibration.discovery.set_up import CANDIDATE_PRIOR_WIDTH, StudySetup
+from calibration.discovery.set_up import StudySetup
 from calibration.fitting.decay_fit import prepare_fit, run_fit
 from calibration.residuals.decays import first_guess
 
@@ -49,10 +49,10 @@ class EffectFits:
         return list(dict.fromkeys([*self.base, *self.study.index([label for one in chosen for label in one.labels])]))
 
     def prior(self, chosen: Sequence[Candidate]) -> Prior:
-        """Priors with some effects in the model, whose amplitudes have wide ones."""
+        """Priors with some effects in the model, whose amplitudes have those of plausible sizes."""
         width = self.setup.prior.width.copy()
         for one in chosen:
-            width[self.study.index(one.amplitudes)] = CANDIDATE_PRIOR_WIDTH
+            width[self.study.index(one.amplitudes)] = [self.setup.size_width(label) for label in one.amplitudes]
         return Prior(self.setup.prior.mean, width)
 
     @cached_property

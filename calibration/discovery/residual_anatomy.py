@@ -14,7 +14,7 @@ from calibration.formatting import number
 
 if TYPE_CHECKING:
     from calibration.discovery.acceptance import FitState
-    from calibration.discovery.greedy_search import Search
+    from calibration.discovery.search import Search
 
 MIN_RESIDUAL_OVER_NOISE = 1.3  # rms; a smaller residual is at the noise
 

@@ -1,31 +1,35 @@
 """Set-up of a study: motions, candidates, nuisance parameters, scales and priors."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.runs import runs
 from calibration.discovery.effects.candidates import Candidate, requested_table_labels, with_candidates, with_drag
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.effects.nearly_known import PRETENSION, STIFFNESS
+from calibration.discovery.effects.plausible_sizes import PlausibleSize, plausible_sizes
+from calibration.discovery.effects.reference_sizes import Seas
 from calibration.discovery.gather import study_of
 from calibration.discovery.linearisations import Prior
 from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
-from calibration.residuals.measured_seas import Options, moving_channels, sea_step, with_diffraction
+from calibration.residuals.measured_seas import Options, moving_channels, peak_period, sea_step, with_diffraction
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
 
 DIRECTIONS_AT_ONCE = 32  # directions differentiated at a time
-CANDIDATE_PRIOR_WIDTH = 30.0  # of a candidate's amplitudes, in noticeable sizes
+PLAUSIBLE_DEVIATIONS = 2.0  # prior standard deviations from a neutral value to the further end of its plausible range
 MASS_PRIOR_WIDTH = 1.0  # of mass properties, in the deviations of `nearly_known`
 TRIM_PRIOR_WIDTH = 3.0  # of draught and trim, in noticeable sizes
 COVERED_ENDS_PRIOR_WIDTH = 0.7  # of the share of covered ends
@@ -45,6 +49,7 @@ class StudySetup(NamedTuple):
         nuisances: Names of nearly known parameters, free within their priors.
         prior: Priors of all directions.
         motions: The motions that the tests are about.
+        plausible: Plausible sizes of the candidates' amplitudes by label.
     """
 
     study: Study
@@ -54,6 +59,13 @@ class StudySetup(NamedTuple):
     nuisances: tuple[str, ...]
     prior: Prior
     motions: tuple[str, ...]
+    plausible: Mapping[str, PlausibleSize]
+
+    def size_width(self, label: str) -> float:
+        """Prior standard deviation of an amplitude along its direction."""
+        limits = self.study.size_limits
+        assert limits is not None
+        return float(np.abs(limits[self.study.names.index(label)]).max()) / PLAUSIBLE_DEVIATIONS
 
 
 def motions_of(campaign: Campaign) -> dict[str, float]:
@@ -99,7 +111,8 @@ def set_up_study(
     mass, stiffness = (np.asarray(m) for m in linearised(declared, equilibrium(declared)))
     variance = max((float(np.var(r.wave)) for r in waves if r.wave is not None), default=1.0)
     step = sea_step(declared, options) if waves else 0.0
-    candidates, scaled, units = catalogue(declared, noticeable_scales(mass, stiffness, motions), bool(waves), variance, step)
+    scales = noticeable_scales(mass, stiffness, motions)
+    candidates, scaled, units = catalogue(declared, scales, bool(waves), variance, step)
     for own in extra:
         if own.load is None or set(own.sizes) != set(own.amplitudes) or own.shapes:
             raise ValueError(f"{own.name}: one's own candidate has a load, a size of every amplitude, and no shapes")
@@ -171,16 +184,31 @@ def set_up_study(
         direction(name, parts, 0.0, deviation)
     kept = {"mass_properties"} if campaign.manifest.zero is not None else {"mass_properties", "static_offset"}
     candidates = [one for one in candidates if not set(one.amplitudes) <= set(nuisances) or one.effect in kept]
+    stated = campaign.manifest.plausible
+    plausible = plausible_sizes(declared, candidates, scales, highest_seas(campaign), stated, source)
+    reach = {label: (np.array([one.lower, one.upper]) - scaled[label].start) / units[label] for label, one in plausible.items()}
     for candidate in candidates:
         for label in candidate.amplitudes:
             if label not in names:
-                direction(label, {label: 1.0}, 0.0, CANDIDATE_PRIOR_WIDTH)
+                direction(label, {label: 1.0}, 0.0, float(np.abs(reach[label]).max()) / PLAUSIBLE_DEVIATIONS)
         for label in candidate.shapes:
             shaped = isinstance(scaled[label].transform, LogInterval)
             direction(label, {label: 1.0}, 0.0, 0.7 if shaped else 3.0)
-    study = study_of(model, space, names, np.array(rows), campaign, options, width)
+    limits = np.tile([-np.inf, np.inf], (len(names), 1))
+    for label, span in reach.items():
+        limits[names.index(label)] = np.sort(span)
+    study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
-    return StudySetup(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions))
+    return StudySetup(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions), plausible)
+
+
+def highest_seas(campaign: Campaign) -> Seas | None:
+    """Peak period of the test with the highest waves; None without tests in waves."""
+    tests = [(run, one) for run in runs(campaign) for one in run.records if one.kind in IN_WAVES and one.use != "ignore"]
+    if not tests:
+        return None
+    run, record = max(tests, key=lambda each: 0.0 if each[1].wave is None else float(np.var(each[1].wave)))
+    return Seas(peak_period(run, record, campaign.manifest.scale))
 
 
 def prior_width_of(label: str, declared: Model, waves: bool) -> float:

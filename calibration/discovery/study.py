@@ -44,6 +44,7 @@ class Study:
         options: How seas are reconstructed.
         notes: Remarks on the wave records, in words.
         expected: Expected size of rows (n,) over their floor (`expected_residuals`), or None.
+        size_limits: Plausible steps from the start along every direction (d, 2), or None.
     """
 
     space: ParameterSpace
@@ -60,6 +61,7 @@ class Study:
     options: Options
     notes: tuple[str, ...] = ()
     expected: np.ndarray | None = None
+    size_limits: np.ndarray | None = None
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -189,7 +191,7 @@ class Study:
 
     @cached_property
     def limits(self) -> np.ndarray:
-        """Smallest and largest step along every direction (d, 2), of single parameters with bounds."""
+        """Smallest and largest step from the start along every direction (d, 2): bounds and plausible sizes."""
         found = np.tile([-np.inf, np.inf], (len(self.names), 1))
         for at, row in zip(found, self.directions):
             moved = np.flatnonzero(row)
@@ -197,6 +199,10 @@ class Study:
                 about = self.model.about(self.labels[k])
                 ends = np.array([by.inverse(end) for end in (about.lower, about.upper)])
                 at[:] = np.sort((ends - self.start[k]) / row[k])
+        if self.size_limits is not None:
+            found = np.stack(
+                [np.maximum(found[:, 0], self.size_limits[:, 0]), np.minimum(found[:, 1], self.size_limits[:, 1])], 1
+            )
         return found
 
     def value(self, label: str, x: np.ndarray) -> float:

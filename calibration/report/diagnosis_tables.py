@@ -4,7 +4,8 @@ from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.effects.nearly_known import CENTRE_ALONG, CENTRE_UP, INERTIA, MASS, STIFFNESS
 from calibration.formatting import number, percent, quantity, readable_unit, with_deviation
 from calibration.report.diagnosis_words import (
-    evidence_strength,
+    describe_probability,
+    describe_range,
     is_determined,
     plain_name,
     sorted_by_certainty,
@@ -40,13 +41,15 @@ def effects(saved: DiagnosisFile) -> Rows:
     for one in saved.missing.effects:
         first = (
             effect_in_words(one.effect, one.degree_of_freedom),
-            evidence_strength(one.evidence),
+            describe_probability(one.evidence.probability),
             percent(one.evidence.holdout_gain),
         )
         for i, (name, value) in enumerate(sorted_by_certainty(one.parameters)):
             said = quantity(value.value, value.standard_deviation, value.unit) if is_determined(value) else UNDETERMINED
-            rows.append((first[0] if i == 0 else "", plain_name(name), said, *(first[1:] if i == 0 else ("", ""))))
-    return ("Effect", "Parameter", "Value ± 1 sd", "Evidence", f"Gain over {validation_tests(saved)}"), rows
+            size = (plain_name(name), said, describe_range(one, name))
+            rows.append((first[0], *size, *first[1:]) if i == 0 else ("", *size, "", ""))
+    gain = f"Gain over {validation_tests(saved)}"
+    return ("Effect", "Parameter", "Value ± 1 sd", "Plausible", "Probability", gain), rows
 
 
 def errors(saved: DiagnosisFile) -> Rows:

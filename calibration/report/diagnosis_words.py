@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from calibration.discovery.diagnosis import HELD_OUT_ERROR, Outcome
+from calibration.discovery.diagnosis import HELD_OUT_ERROR, IMPLAUSIBLE_SIZE, Outcome
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
 from calibration.formatting import listed, number, percent, quantity
 from calibration.results.calibration_file import Parameter
@@ -107,6 +107,22 @@ def objectives_sentence(saved: DiagnosisFile) -> str:
     return f"{said}."
 
 
+def describe_probability(probability: float | None) -> str:
+    """A probability in per cent, none of which is certain."""
+    if probability is None:
+        return "unknown"
+    return "above 99 %" if probability > 0.99 else "below 1 %" if probability < 0.01 else f"{100 * probability:.0f} %"
+
+
+def describe_range(one: FoundEffect, name: str) -> str:
+    """Plausible range of an effect's parameter."""
+    size = one.plausible.get(name)
+    if size is None:
+        return ""
+    unit = one.parameters[name].unit
+    return f"{quantity(size.lower, None, unit)} to {quantity(size.upper, None, unit)}"
+
+
 def evidence_strength(evidence: Evidence) -> str:
     """The evidence's weight by BIC, in the words of Kass and Raftery."""
     if evidence.delta_bic is None:
@@ -118,6 +134,9 @@ def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
     """How sure an effect is: sentences with their numbers."""
     evidence = one.evidence
     said = []
+    if evidence.probability is not None:
+        many = len(saved.missing.effects) + len(saved.missing.rejected)
+        said.append(f"Its probability is {describe_probability(evidence.probability)}, among {many} effects compared together.")
     if evidence.delta_bic is not None:
         fell = f"BIC falls by {number(evidence.delta_bic, 3)} (above 10 is very strong)"
         said.append(f"{evidence_strength(evidence).capitalize()} evidence on the fitted tests: {fell}.")
@@ -128,6 +147,11 @@ def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
         said.append(f"The squared error of {validation_tests(saved)} falls by {percent(gain)} {WHERE}.")
     else:
         said.append(f"The squared error of {validation_tests(saved)} grows by {percent(-gain)}.")
+    if evidence.left_out is not None and evidence.left_out_better is not None:
+        better = f"{percent(evidence.left_out_better)} of them are predicted better with it"
+        said.append(
+            f"Of fitted tests left out in turn (linearised model), {better}; −2 ln L falls by {number(evidence.left_out, 3)}."
+        )
     share = one.share_of_residual_explained
     whole = share is not None and 0.99 < share < 1
     part = "more than 99 %" if whole else percent(share)
@@ -154,6 +178,16 @@ def describe_alternatives(one: FoundEffect) -> str:
         said += (
             " With all that was found in the model the tests that were not fitted are followed worse than without, altogether "
             "or in this motion: it may stand for something else."
+        )
+    elif one.in_doubt == IMPLAUSIBLE_SIZE:
+        ends = [
+            f"{plain_name(name)}, plausible from {describe_range(one, name)} ({size.source.rstrip('.')})"
+            for name, size in one.plausible.items()
+            if size.at_end
+        ]
+        said += (
+            f" The records ask for a size at the end of what is plausible: {'; '.join(ends)}. Something acts like it, and it is "
+            "not, or not only, this."
         )
     elif one.in_doubt is not None:
         said += (

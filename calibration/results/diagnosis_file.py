@@ -17,6 +17,18 @@ class Evidence(ResultModel):
     delta_bic: Number | None
     holdout_gain: Number | None
     clear: Number | None = None
+    probability: Number | None = None
+    left_out: Number | None = None
+    left_out_better: Number | None = None
+
+
+class PlausibleSizeRange(ResultModel):
+    """Sizes (SI) that a parameter can plausibly have. See `calibration.discovery.diagnosis.PlausibleRange`."""
+
+    lower: Number
+    upper: Number
+    source: str
+    at_end: bool = False
 
 
 class FoundEffect(ResultModel):
@@ -32,6 +44,7 @@ class FoundEffect(ResultModel):
     indistinguishable_from: list[str]
     test_that_would_tell: str | None = None
     in_doubt: str | None = None
+    plausible: dict[str, PlausibleSizeRange] = Field(default_factory=dict)
 
 
 class RejectedEffect(ResultModel):
@@ -40,6 +53,7 @@ class RejectedEffect(ResultModel):
     effect: str
     degree_of_freedom: str | None = None
     reason: str
+    probability: Number | None = None
 
 
 class ForceRelation(ResultModel):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Score
+from calibration.discovery.refusal import RefusalKind
 from calibration.result import BandError, Calibration, Series, TestFit
 from calibration.results import write_calibration as outputs
 from calibration.results.diagnosis_file import (
@@ -21,6 +22,7 @@ from calibration.results.diagnosis_file import (
     ForceTerm,
     FoundEffect,
     MissingEffects,
+    PlausibleSizeRange,
     RejectedEffect,
     Residual,
     ResidualBand,
@@ -71,7 +73,12 @@ def document(diagnosis: Diagnosis) -> DiagnosisFile:
             verdict=diagnosis.verdict,
             effects=[_effect(one) for one in diagnosis.effects],
             rejected=[
-                RejectedEffect(effect=one.effect, degree_of_freedom=one.degree_of_freedom, reason=describe_refusal(one.reason))
+                RejectedEffect(
+                    effect=one.effect,
+                    degree_of_freedom=one.degree_of_freedom,
+                    reason=describe_refusal(one.reason),
+                    probability=one.reason.values[0] if one.reason.kind == RefusalKind.IMPROBABLE else None,
+                )
                 for one in diagnosis.rejected
             ],
             unexplained=Unexplained(
@@ -94,21 +101,21 @@ def document(diagnosis: Diagnosis) -> DiagnosisFile:
 
 
 def _effect(one: Effect) -> FoundEffect:
-    prefix = f"{one.effect}.", f"{one.degree_of_freedom}."  # `force` of `coulomb_friction.surge.force`
+    def short(label: str) -> str:  # `force` of `coulomb_friction.surge.force`
+        return label.removeprefix(f"{one.effect}.").removeprefix(f"{one.degree_of_freedom}.")
+
     return FoundEffect(
         effect=one.effect,
         degree_of_freedom=one.degree_of_freedom,
         meaning=one.meaning,
         source=one.source,
-        parameters={
-            label.removeprefix(prefix[0]).removeprefix(prefix[1]): outputs.parameter(value, label=value.label)
-            for label, value in one.parameters.items()
-        },
+        parameters={short(label): outputs.parameter(value, label=value.label) for label, value in one.parameters.items()},
         evidence=Evidence(**_finite(asdict(one.evidence))),
         share_of_residual_explained=_share(one.share),
         indistinguishable_from=list(one.indistinguishable),
         test_that_would_tell=one.telling_test,
         **stated(in_doubt=one.in_doubt),
+        plausible={short(label): PlausibleSizeRange(**asdict(size)) for label, size in one.plausible.items()},
     )
 
 

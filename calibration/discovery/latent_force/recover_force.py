@@ -42,7 +42,7 @@ from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea import AbstractSea, StillWater
 
 if TYPE_CHECKING:
-    from calibration.discovery.greedy_search import Search
+    from calibration.discovery.search import Search
 
 LINES_AVERAGED = 5  # Fourier lines over which the periodogram is averaged
 MAX_HARMONIC = 6.0  # times a decay's own frequency: faster forces are not reconstructed

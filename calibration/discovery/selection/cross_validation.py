@@ -6,26 +6,10 @@ References:
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from calibration.discovery.selection.linear_model import LinearFit, LinearModel
-
-
-class HeldOutGain(NamedTuple):
-    """Gain of an effect in tests that were left out in turn.
-
-    Attributes:
-        by_group: Decrease of -2 ln L of every test, fitted to all others (t,).
-    """
-
-    by_group: np.ndarray
-
-    @property
-    def total(self) -> float:
-        """Sum over the tests."""
-        return float(self.by_group.sum())
 
 
 def left_out_deviances(model: LinearModel, columns: Sequence[int], group: np.ndarray, begin: LinearFit) -> np.ndarray:
@@ -49,8 +33,8 @@ def left_out_deviances(model: LinearModel, columns: Sequence[int], group: np.nda
     return found
 
 
-def held_out_gain(model: LinearModel, fitted: LinearFit, without: LinearFit, group: np.ndarray) -> HeldOutGain:
-    """Gain of the columns that one fit has and another has not.
+def held_out_gain(model: LinearModel, fitted: LinearFit, without: LinearFit, group: np.ndarray) -> np.ndarray:
+    """Decrease of -2 ln L of every group that is left out (g,), by the columns that one fit has and another has not.
 
     Args:
         model: The linear model.
@@ -59,4 +43,4 @@ def held_out_gain(model: LinearModel, fitted: LinearFit, without: LinearFit, gro
         group: Group of every pool (p,): its test.
     """
     before, after = (left_out_deviances(model, one.columns, group, one) for one in (without, fitted))
-    return HeldOutGain(before - after)
+    return before - after

@@ -1,24 +1,24 @@
 """Joint search: select effects on a linearised model, go there, linearise again, verify by simulation."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.discovery.acceptance import FitState, Verdict
-from calibration.discovery.candidate_trials import INDISTINGUISHABLE_SHARE, AcceptedEffect
+from calibration.discovery.acceptance import MIN_LIKELIHOOD_GAIN, FitState
 from calibration.discovery.diagnosis import Score
 from calibration.discovery.effects.effect_names import effect_in_words
-from calibration.discovery.greedy_search import Search
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.refusal import Refusal, RefusalKind
+from calibration.discovery.search import AcceptedEffect, Search
 from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates
-from calibration.discovery.selection.cross_validation import HeldOutGain, held_out_gain
+from calibration.discovery.selection.cross_validation import held_out_gain
 from calibration.discovery.selection.joint_selection import JointSelection, Subset
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
 
+INDISTINGUISHABLE_SHARE = 0.1  # of an effect's log evidence: another that has all but this much is not told from it
 MAX_ROUNDS = 6  # linearisations along all candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
 BEGIN, END = 0.2, 0.9  # progress of the rounds
@@ -31,7 +31,6 @@ class JointSearch(Search):
         columns: The last linear model of all candidates.
         selector: The subsets that were compared on it.
         probability: Posterior probability of every effect in the last selection.
-        held_out: Gain of every effect in tests that were left out in turn, on the last linear model.
     """
 
     def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
@@ -40,7 +39,6 @@ class JointSearch(Search):
         self.columns: CandidateColumns
         self.selector: JointSelection
         self.probability: dict[str, float] = {}
-        self.held_out: dict[str, HeldOutGain] = {}
 
     def share(self, number: float) -> float:
         """Progress after so many rounds."""
@@ -68,14 +66,19 @@ class JointSearch(Search):
         present = columns.present(state.chosen)
         found = self.selector.run(present)
         self.probability = found.probability()
-        best: dict[str, float] = {}
-        for i, gain in self.selector.first_order_gains(self.selector.subset(present)).items():
-            best[columns.variants[i].name] = max(best.get(columns.variants[i].name, 0.0), gain)
-        self.scores = [one for one in self.scores if one.round != number]
-        for one_name, gain in sorted(best.items(), key=lambda item: -item[1]):
-            one = self.candidates[one_name]
-            self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
+        self.score(self.selector.subset(present), number)
         return found.best
+
+    def score(self, subset: Subset, number: int) -> None:
+        """Record the first-order gain of every candidate beside a subset, in a round."""
+        best: dict[str, float] = {}
+        for i, gain in self.selector.first_order_gains(subset).items():
+            name = self.columns.variants[i].name
+            best[name] = max(best.get(name, 0.0), gain)
+        self.scores = [one for one in self.scores if one.round != number]
+        for name, gain in sorted(best.items(), key=lambda item: -item[1]):
+            one = self.candidates[name]
+            self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
 
     def move(self, state: FitState, subset: Subset, number: float) -> FitState:
         """Fit the effects of a subset, from a state on, with the slopes of the last linear model.
@@ -123,6 +126,8 @@ class JointSearch(Search):
         Returns:
             The last state, its linear model in `columns`.
         """
+        if len(states) == 1 and (better := self.with_split_modes(states[0])) is not None:
+            states.append(better)
         state, visited = states[-1], {frozenset(one.name for one in some.chosen) for some in states}
         for number in range(len(states), MAX_ROUNDS + 1):
             best = self.select(state, number)
@@ -134,6 +139,23 @@ class JointSearch(Search):
             reach(state)
         return state
 
+    def with_split_modes(self, baseline: FitState) -> FitState | None:
+        """The model with an oscillator that splits a mode of a decay, far from where slopes lead; None without one.
+
+        Args:
+            baseline: The fitted declared model.
+        """
+        place = self.with_starting_values(baseline.look.place, self.setup.base)
+        base, width = self.study.index(self.setup.base), self.setup.prior.width
+        found = [baseline]
+        for one in self.setup.candidates:
+            starts = () if one.starting_values_finder is None else one.starting_values_finder(self.study, place, base, width)
+            for values in starts:
+                look = self.study.linearise(self.with_values(place, values), self.active((one,)))
+                found.append(self.refit(look, (one,), f"trial of {effect_in_words(one.name)}", BEGIN))
+        best = self.likeliest(*found)
+        return best if self.likelihood_gain(baseline, best) > MIN_LIKELIHOOD_GAIN else None
+
     def verify(self, baseline: FitState, state: FitState) -> FitState:
         """Take every effect out in turn, simulate, and keep those that the records ask for.
 
@@ -142,31 +164,38 @@ class JointSearch(Search):
             state: The last state of the search.
         """
         while state.chosen:
-            present = self.columns.present(state.chosen)
-            whole, test = self.selector.subset(present), self.test_of_pool
-            verdicts: dict[str, Verdict] = {}
-            for i, one in zip(present, state.chosen, strict=True):
+            for i, one in zip(present := self.columns.present(state.chosen), state.chosen, strict=True):
                 self.say(f"verification: the model without {effect_in_words(one.name)}", END)
-                rest = self.selector.subset([j for j in present if j != i], whole)
-                self.held_out[one.name] = held_out_gain(self.columns.model, whole.fit, rest.fit, test)
-                without = self.move(state, rest, float("nan")) if len(present) > 1 else baseline
-                verdict = self.assess(without, state, one, last=True)
-                verdicts[one.name] = verdict
-                gain = next(
-                    (score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)),
-                    0.0,
-                )
-                self.found[one.name] = AcceptedEffect(gain, without, state, verdict, self.look_alikes(whole, i))
-            refused = [one for one in state.chosen if verdicts[one.name].refused]
+                self.found[one.name] = self.evidence(baseline, state, present, i)
+            refused = [one for one in state.chosen if self.found[one.name].verdict.refused]
             if not refused:
                 break
-            least = min(refused, key=lambda one: verdicts[one.name].worth)
-            self.reject(least, verdicts[least.name].refused, verdicts[least.name])
-            state = self.settle(self.found[least.name].before, MAX_ROUNDS) if len(state.chosen) > 1 else baseline
+            least = min(refused, key=lambda one: self.found[one.name].verdict.worth)
+            gone = self.found.pop(least.name)
+            self.reject(least, gone.verdict.refused, gone.verdict)
+            state = self.settle(gone.before, MAX_ROUNDS) if len(state.chosen) > 1 else baseline
             self.select(state, MAX_ROUNDS)
-        order = sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)
         self.reject_others(state)
-        return replace(state, chosen=tuple(order))
+        return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
+
+    def evidence(self, baseline: FitState, state: FitState, present: Sequence[int], out: int) -> AcceptedEffect:
+        """Evidence of one effect in a model: by simulation without it, and tests left out in turn in the linear model.
+
+        Args:
+            baseline: The fitted declared model.
+            state: The fitted model.
+            present: Variants of its effects.
+            out: Variant of the effect.
+        """
+        one = self.candidates[self.columns.variants[out].name]
+        whole = self.selector.subset(present)
+        rest = self.selector.subset([i for i in present if i != out], whole)
+        held = held_out_gain(self.columns.model, whole.fit, rest.fit, self.test_of_pool)
+        without = self.move(state, rest, MAX_ROUNDS) if rest.variants else baseline
+        verdict = self.assess(without, state, one, last=True)
+        gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
+        probability = self.probability.get(one.name, 0.0)
+        return AcceptedEffect(max(gains, default=0.0), without, state, verdict, self.look_alikes(whole, out), probability, held)
 
     @property
     def test_of_pool(self) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Linearised model of all records: fits of any few columns, within bounds, in linear algebra.
 
-Near a point the residual is r + X theta + Y y: theta are steps along columns (coefficients, nuisances, candidate effects), y the
-decays' own unknowns. A fit minimises -2 ln L (see `eliminated_least_squares`) and the squares of the priors. The deviance n ln m
-of a pool of bands is concave in its mean square m. Least squares with weights n / m therefore decrease it at each update.
+Near a point the residual is r + X theta + Y y. theta are steps along columns: coefficients, nuisances, candidate effects. y are
+the decays' own unknowns. A fit minimises -2 ln L (see `eliminated_least_squares`) and the squares of the priors. The deviance
+n ln m of a pool of bands is concave in its mean square m. Least squares with weights n / m decrease it at each update.
 
 References:
     Hunter and Lange 2004, American Statistician 58, 30-37: majorisation by a tangent.

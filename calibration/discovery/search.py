@@ -1,0 +1,135 @@
+"""Search for missing effects: what it has found so far, the declared model's fit, mass properties."""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.campaign.load_campaign import Campaign
+from calibration.discovery.acceptance import (
+    MIN_BIC_GAIN,
+    MIN_HELD_OUT_GAIN,
+    MIN_SIGNIFICANCE,
+    FitState,
+    ResidualSummary,
+    Verdict,
+)
+from calibration.discovery.diagnosis import Rejected, Score
+from calibration.discovery.effect_fits import EffectFits
+from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.eliminated_least_squares import predict_gain, prior_residuals
+from calibration.discovery.refusal import Refusal
+from calibration.discovery.set_up import StudySetup
+
+MASS_DEVIATIONS_ALLOWED = 2.0  # standard deviations by which weighed mass properties may be off
+
+
+class AcceptedEffect(NamedTuple):
+    """Evidence of an effect in the model.
+
+    Attributes:
+        score: First-order decrease of -2 ln L.
+        before: Fit without the effect.
+        after: Fit with the effect.
+        verdict: Outcome of the acceptance tests.
+        alike: Names of effects that the records cannot tell from it.
+        probability: Posterior probability; NaN where none was computed.
+        held_out: Decrease of -2 ln L of every test that was left out in turn (t,).
+    """
+
+    score: float
+    before: FitState
+    after: FitState
+    verdict: Verdict
+    alike: tuple[str, ...]
+    probability: float
+    held_out: np.ndarray
+
+
+class Search(EffectFits):
+    """Search for missing effects.
+
+    Attributes:
+        scores: First-order gains of the candidates in every round.
+        rejected: Why candidates are not in the model, by name.
+        notes: Notes to report, in words.
+        earlier: Computing time of earlier, stopped runs (s).
+        alone: Residual of a calibration to decays alone, where there are seas too.
+        found: Evidence of the accepted effects by name.
+    """
+
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+        super().__init__(campaign, setup, say)
+        self.scores: list[Score] = []
+        self.rejected: dict[str, Rejected] = {}
+        self.notes: list[str] = []
+        self.earlier = 0.0
+        self.alone: ResidualSummary | None = None
+        self.found: dict[str, AcceptedEffect] = {}
+
+    def fit_baseline(self) -> FitState:
+        """Fit the declared model."""
+        self.say("calibrating the declared model", 0.03)
+        place = self.start
+        self.anchor(place.x)
+        if self.study.decays is not None and self.study.seas:
+            self.alone = ResidualSummary.of(self.study, self.study.residual(place))
+        if self.study.seas:
+            self.weigh_by_expected(place)
+        self.say("declared model: slopes", 0.08)
+        return self.refit(self.study.linearise(place, self.base), (), "declared model", 0.1)
+
+    def likelihood_gain(self, before: FitState, after: FitState) -> float:
+        """Decrease of -2 ln L of the fitted tests from one state to another."""
+        return float((before.likelihood - after.likelihood)[self.study.used].sum())
+
+    def reject(self, one: Candidate, why: Refusal | None, taken_out: Verdict | None = None) -> None:
+        """Record why a candidate is not in the model.
+
+        Args:
+            one: The candidate.
+            why: The reason; None records nothing.
+            taken_out: The verdict that removed it, where it was in the model.
+        """
+        if why is not None:
+            self.rejected[one.name] = Rejected(one.effect, one.dof, why, taken_out)
+
+    def with_mass_properties(self, state: FitState) -> FitState:
+        """The model with mass properties as an effect, where they are further off than weighing usually is.
+
+        They are free within their priors in every fit, so that no error shows that they are wrong.
+        """
+        one = next((one for one in self.setup.candidates if one.effect == "mass_properties"), None)
+        if one is None or one in state.chosen:
+            return state
+        mine, width = self.study.index(one.amplitudes), self.setup.prior.width[self.study.index(one.amplitudes)]
+        if np.abs(self.study.steps(state.look.place.x)[mine] / width).max() < 1:
+            return state
+        chosen = (*state.chosen, one)
+        after = self.refit(self.study.linearise(state.look.place, self.active(chosen)), chosen, "mass properties let go", 0.98)
+        prior = self.prior(chosen)
+        deviation = predict_gain(self.study, after.look, prior).deviation[[after.look.active.index(i) for i in mine]]
+        far = (np.abs(self.study.steps(after.look.place.x)[mine]) - MASS_DEVIATIONS_ALLOWED * width) / deviation
+        squares = [
+            float((prior_residuals(self.study, at.look.place, by)[0][mine] ** 2).sum())
+            for at, by in ((state, self.prior(state.chosen)), (after, prior))
+        ]
+        gain = self.likelihood_gain(state, after) + squares[0] - squares[1]
+        off = [label for label, beyond in zip(one.amplitudes, far) if beyond > MIN_SIGNIFICANCE]
+        if not off or gain - len(off) * math.log(self.count) < MIN_BIC_GAIN:
+            return state
+        verdict = self.assess(state, after, one, last=True)
+        if verdict.net < -MIN_HELD_OUT_GAIN:
+            return state
+        # scores and BIC are of errors, and none tells of it
+        self.found[one.name] = AcceptedEffect(
+            math.nan, state, after, verdict._replace(bic=math.nan, refused=None), (), math.nan, np.zeros(0)
+        )
+        self.rejected.pop(one.name, None)
+        names = " and ".join(label.split(".")[1].replace("_", " ") for label in off)
+        self.notes.append(
+            f"{names} {'are' if len(off) > 1 else 'is'} further from what is declared than what was weighed usually is; the "
+            "records are followed no better for it, as mass properties are free to move a little in every fit"
+        )
+        return after
