@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 import jaxhydro as jh
 from calibration.campaign.manifest import Manifest, read_manifest
 from calibration.campaign.stated_sizes import STATED_SIZES, is_about
-from calibration.discovery.effects.candidates import Candidate, with_effects
+from calibration.discovery.effects.candidates import TABLE_EFFECTS, Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.effects.plausible_sizes import PlausibleSize, plausible_sizes
@@ -171,6 +171,18 @@ def test_terms_of_the_equation_have_ranges_too():
         assert own.below == (0.0 if letter == "B" else -own.above)  # damping takes energy
 
 
+@pytest.mark.parametrize("effect", TABLE_EFFECTS)
+def test_tables_that_a_platform_file_requests_have_ranges_too(effect):
+    reach = reach_of(Case(*case("full scale")[::2], None), f"{effect}.share")
+    assert (reach.below, reach.above, reach.whole) == (0.0, 1.3, 1.0)
+
+
+def test_a_body_without_members_is_as_large_as_the_water_that_it_displaces():
+    ship = Case(case("one motion")[0], {}, None)
+    assert ship.hull_extent(2) == pytest.approx((-0.499, 0.499), abs=1e-3)  # m, half the cube root of 0.994 m3
+    assert Case(case("full scale")[0], {}, None).hull_extent(2) == pytest.approx((-40.0, 11.6), abs=0.1)
+
+
 class Spring(AbstractLoad):
     """A spring of one's own."""
 
@@ -259,6 +271,9 @@ def test_stated_sizes_take_the_place_of_ours():
 
 def test_what_is_no_candidate_may_be_stated():
     """One manifest serves decays and seas."""
+    assert ranges("full scale", sensor_lag="0.2 s")["sensor_lag.delay"] == PlausibleSize(
+        -0.2, 0.2, "stated in campaign.yaml, plausible.sensor_lag.", True
+    )  # by the effect's own name
     assert ranges("decays only", **{"wave_gauge": "2 m", "wave_drift.surge.envelope": 1e5}) == ranges("decays only")
 
 
@@ -330,7 +345,8 @@ def test_as_it_is_written_by_hand(tmp_path):
         ("coulomb_friction", "50 kn", r"Did you mean 'kN'\?"),
         ("masss", "2 %", r"plausible.masss: expected a size \(mass, .*found 'masss'. Did you mean 'mass'\?"),
         ("wave_drft.surge.envelope", 1.0, r"Did you mean 'wave_drift.surge.envelope'\?"),
-        ("sensor_reference", "2 m", r"plausible.sensor_reference: expected a size"),
+        ("sensor_lags", "2 s", r"Did you mean 'sensor_lag'\?"),
+        ("sensor_lag", 2.0, "plausible.sensor_lag: expected a quantity greater than 0 with its unit.* found 2.0"),
     ],
 )
 def test_mistakes_in_a_manifest(tmp_path, key, value, message):

@@ -74,8 +74,8 @@ HYSTERESIS = JUDGEMENT + "lines and cables lose less than a sixth of the largest
 OFFSET = JUDGEMENT + "half the largest excursion, 1 % of the length or 1 degree would have been seen when records were zeroed."
 MOORING = JUDGEMENT + "a declared stiffness is off by half at the largest excursion at most, a catenary's or taut line's alike."
 HYDROSTATICS = (
-    "Barrass and Derrett, Ship Stability for Masters and Mates, wall-sided formula: with BM = 2 GM the cubic term is below 0.3 "
-    "of the linear one up to 30 degrees; engineering judgement: flare and pontoons likewise."
+    "Barrass and Derrett, Ship Stability for Masters and Mates: with BM = 2 GM the cubic term of a wall-sided hull is below "
+    "0.3 of the linear one up to 30 degrees."
 )
 DRIFT = "Maruo 1960 in Faltinsen 1990, chapter 5: waves all sent back drift by rho g/2 times width and squared amplitude."
 ARANHA = (
@@ -87,9 +87,8 @@ UMBILICAL = (
     JUDGEMENT + "a slack cable bundle has a fifth of the mooring's stiffness and pull at most, or it would be called a line."
 )
 RADIATION = (
-    JUDGEMENT
-    + "published potential-flow tables of a semisubmersible (FOCAL campaign 4) have up to 0.44 in surge, 0.13 in heave "
-    "of moving mass times (g/L)^(1/2)."
+    JUDGEMENT + "tables of a semisubmersible (FOCAL campaign 4) reach 0.44 in surge and 0.13 in heave of moving mass times "
+    "(g/L)^(1/2)."
 )
 ROLL_RADIATION = JUDGEMENT + "roll and pitch radiate less than heave: a fifth of moving mass times (g/L)^(1/2) at most."
 GRAHAM = "Graham 1980, Journal of Fluid Mechanics 97, 331-346: -1/3 at sharp edges, 0 at square ones; twice that either way."
