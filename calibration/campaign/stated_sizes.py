@@ -100,10 +100,12 @@ def stated_size_problems(stated: Mapping[str, str | float]) -> Iterator[Problem]
                 yield Problem(where, f"a quantity in {' or '.join(units)}", shown(value))
             continue
         effect, dot, rest = key.partition(".")
-        if not dot or effect not in STATED_EFFECTS:
-            near = nearest(effect, STATED_EFFECTS if dot else STATED_SIZES)
+        if effect not in STATED_EFFECTS:
+            near = nearest(effect, STATED_EFFECTS if dot else {*STATED_SIZES, *STATED_EFFECTS})
             expected = f"a size ({', '.join(STATED_SIZES)}), or the label of an effect's parameter, such as umbilical.pull"
             yield Problem(where, expected, repr(key), f"Did you mean '{near}{dot}{rest}'?" if near else "")
+        elif not dot and not isinstance(value, str):
+            yield Problem(where, EXPECTED, shown(value))
 
 
 def _has_unit(size: StatedSize, units: Sequence[str]) -> bool:

@@ -2,6 +2,7 @@
 
 import json
 from functools import cache
+from types import SimpleNamespace
 
 import jax
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.testing import assert_allclose
 import jaxhydro as jh
 from calibration.campaign.manifest import Manifest, read_manifest
 from calibration.campaign.stated_sizes import STATED_SIZES, is_about
-from calibration.discovery.effects.candidates import Candidate, with_effects
+from calibration.discovery.effects.candidates import TABLE_EFFECTS, Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
 from calibration.discovery.effects.plausible_sizes import PlausibleSize, plausible_sizes
@@ -117,6 +118,21 @@ def test_without_waves_or_motions_what_they_make_is_absent():
         plausible_sizes(model, candidates, scales, None, {})
 
 
+def test_the_highest_sea_counts():
+    """Of tests in waves that are used, in the band of first-order waves."""
+    time = np.arange(0.0, 600.0, 0.5)
+
+    def record(kind, use, height, period):
+        wave = None if period is None else height * np.sin(2 * np.pi * time / period) + np.sin(2 * np.pi * time / 120.0)
+        return SimpleNamespace(kind=kind, use=use, time=time, wave=wave)
+
+    records = [record("irregular", "fit", 0.2, 8.0), record("irregular", "holdout", 0.9, 10.0)]
+    others = [record("decay", "fit", 9.0, 4.0), record("regular", "ignore", 9.0, 5.0), record("regular", "fit", 0.0, None)]
+    assert Seas.of([*records, *others], low=0.03).peak_period == pytest.approx(10.0, rel=0.01)
+    assert Seas.of(records).peak_period > 20.0  # s, with the slow waves below that band
+    assert Seas.of(others) is None
+
+
 def test_by_froude_a_model_has_the_same_numbers():
     """Lengths go with the size, times with its root, masses with its cube; the weight of a drift with omega squared, too."""
     large, small = ranges("full scale"), ranges("model scale")
@@ -134,7 +150,7 @@ def test_sizes_of_a_semisubmersible():
     found = ranges("semisubmersible")
     assert (found["sensor_reference.z"].lower, found["sensor_reference.z"].upper) == (-20.0, 15.0)  # m, keel and deck
     assert found["mass_properties.mass"].upper == pytest.approx(0.02 * float(case("semisubmersible")[0].body.mass))
-    assert found["mass_properties.centre_z"].upper == pytest.approx(0.2, rel=0.01)
+    assert found["mass_properties.centre_z"].upper == pytest.approx(0.4, rel=0.01)
     assert found["wave_gauge_position.distance"].upper == pytest.approx(8.0, rel=0.01)
     assert found["wave_drift.surge.envelope"].upper == pytest.approx(0.5 * 1025 * 9.81 * 27, rel=0.02)
     assert (found["wave_excitation.column.Cp_t"].lower, found["wave_excitation.column.Cp_t"].upper) == (0.6, 1.4)
@@ -153,6 +169,18 @@ def test_terms_of_the_equation_have_ranges_too():
         assert own.above > 0 and own.whole > 0
         assert -beside.below == beside.above > 0
         assert own.below == (0.0 if letter == "B" else -own.above)  # damping takes energy
+
+
+@pytest.mark.parametrize("effect", TABLE_EFFECTS)
+def test_tables_that_a_platform_file_requests_have_ranges_too(effect):
+    reach = reach_of(Case(*case("full scale")[::2], None), f"{effect}.share")
+    assert (reach.below, reach.above, reach.whole) == (0.0, 1.3, 1.0)
+
+
+def test_a_body_without_members_is_as_large_as_the_water_that_it_displaces():
+    ship = Case(case("one motion")[0], {}, None)
+    assert ship.hull_extent(2) == pytest.approx((-0.499, 0.499), abs=1e-3)  # m, half the cube root of 0.994 m3
+    assert Case(case("full scale")[0], {}, None).hull_extent(2) == pytest.approx((-40.0, 11.6), abs=0.1)
 
 
 class Spring(AbstractLoad):
@@ -243,6 +271,9 @@ def test_stated_sizes_take_the_place_of_ours():
 
 def test_what_is_no_candidate_may_be_stated():
     """One manifest serves decays and seas."""
+    assert ranges("full scale", sensor_lag="0.2 s")["sensor_lag.delay"] == PlausibleSize(
+        -0.2, 0.2, "stated in campaign.yaml, plausible.sensor_lag.", True
+    )  # by the effect's own name
     assert ranges("decays only", **{"wave_gauge": "2 m", "wave_drift.surge.envelope": 1e5}) == ranges("decays only")
 
 
@@ -314,7 +345,8 @@ def test_as_it_is_written_by_hand(tmp_path):
         ("coulomb_friction", "50 kn", r"Did you mean 'kN'\?"),
         ("masss", "2 %", r"plausible.masss: expected a size \(mass, .*found 'masss'. Did you mean 'mass'\?"),
         ("wave_drft.surge.envelope", 1.0, r"Did you mean 'wave_drift.surge.envelope'\?"),
-        ("sensor_reference", "2 m", r"plausible.sensor_reference: expected a size"),
+        ("sensor_lags", "2 s", r"Did you mean 'sensor_lag'\?"),
+        ("sensor_lag", 2.0, "plausible.sensor_lag: expected a quantity greater than 0 with its unit.* found 2.0"),
     ],
 )
 def test_mistakes_in_a_manifest(tmp_path, key, value, message):

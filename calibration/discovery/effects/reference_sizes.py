@@ -1,14 +1,17 @@
 """Reference quantities of a platform and its tests, of which plausible sizes are shares."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
+from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.records import Record
 from calibration.discovery.effects.catalogue import REFERENCE_LENGTH
 from calibration.discovery.effects.catalogue_builder import NoticeableScales
 from calibration.discovery.effects.nearly_known import displaced_length
+from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.loads.matrix import row_and_column
@@ -27,6 +30,21 @@ class Seas(NamedTuple):
     """
 
     peak_period: float
+
+    @classmethod
+    def of(cls, records: Iterable[Record], low: float = 0.0, cutoff: float = math.inf) -> "Seas | None":
+        """The highest sea among tests that are not ignored; None without waves.
+
+        Args:
+            records: Records of the tests.
+            low: Lowest frequency of first-order waves (Hz).
+            cutoff: Highest frequency (Hz).
+        """
+        wavy = [(r.time, r.wave) for r in records if r.kind in IN_WAVES and r.use != "ignore" and r.wave is not None]
+        if not wavy:
+            return None
+        time, wave = max(wavy, key=lambda one: float(np.var(one[1])))
+        return cls(record_peak_period(wave, float(np.median(np.diff(time))), low, cutoff))
 
 
 class Motion(NamedTuple):
