@@ -204,9 +204,9 @@ def set_up_study(
 
 def highest_seas(campaign: Campaign) -> Seas | None:
     """Peak period of the test with the highest waves; None without tests in waves."""
-    tests = [(run, one) for run in runs(campaign) for one in run.records if one.kind in IN_WAVES and one.use != "ignore"]
-    if not tests:
+    if not any(one.kind in IN_WAVES and one.use != "ignore" for one in campaign.records):
         return None
+    tests = [(run, one) for run in runs(campaign) for one in run.records]
     run, record = max(tests, key=lambda each: 0.0 if each[1].wave is None else float(np.var(each[1].wave)))
     return Seas(peak_period(run, record, campaign.manifest.scale))
 

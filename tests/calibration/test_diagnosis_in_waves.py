@@ -19,8 +19,8 @@ from calibration.discovery.channel_signs import with_signs_reversed
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis_conclusion import conclude
 from calibration.discovery.effects.phase_shift_start import PHASE_SPACING, phase_shift_start
-from calibration.discovery.greedy_search import Search
 from calibration.discovery.linearisations import Point
+from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
 from calibration.report.write_report import write_report
 from calibration.residuals.measured_seas import options_of

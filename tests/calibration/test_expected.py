@@ -14,9 +14,9 @@ import jaxhydro as jh
 from calibration.discovery.eliminated_least_squares import deviances, row_weights
 from calibration.discovery.expected_residuals import expected_over_floor, force_spectrum, impedance
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
-from calibration.discovery.greedy_search import Search
 from calibration.discovery.linearisations import MotionSeries, Prior
 from calibration.discovery.residuals import SeaRecord
+from calibration.discovery.search import Search
 from calibration.discovery.set_up import COEFFICIENT_PRIOR_WIDTH, DAMPING_PRIOR_WIDTH, StudySetup, prior_width_of
 from calibration.discovery.study import Study
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace

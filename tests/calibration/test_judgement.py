@@ -22,7 +22,6 @@ from calibration.discovery.acceptance import (
     worsened_motion,
 )
 from calibration.discovery.broyden_fit import fit
-from calibration.discovery.candidate_trials import RefittedCandidate, in_order_of_belief
 from calibration.discovery.checkpoint import _packed, _rebuilt
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, Finding, Rejected, Score
 from calibration.discovery.diagnosis_conclusion import unexplained_motions
@@ -342,25 +341,6 @@ def test_blocks_are_consecutive_and_whole():
     assert len({one.id for one in cut}) == BLOCKS_PER_TEST
     assert_allclose(np.concatenate([one.time for one in cut]), TIME)
     assert_allclose(np.concatenate([one.values["surge"] for one in cut]), np.sin(TIME))
-
-
-def test_of_what_cannot_be_told_apart_the_simplest_is_believed_first():
-    """Sensors before others within a tenth of the best one's worth, few parameters before many; else by worth."""
-
-    def tried(effect: str, count: int, worth: float) -> RefittedCandidate:
-        return RefittedCandidate(Candidate(effect, None, tuple(map(str, range(count)))), 0.0, None, None, worth)  # type: ignore[arg-type]
-
-    some = [
-        tried("umbilical", 4, 2380.0),
-        tried("static_offset", 1, 2200.0),
-        tried("wave_gauge_position", 1, 2170.0),
-        tried("sensor_lag", 1, 1400.0),
-        tried("hysteresis", 2, 2000.0),
-    ]
-    names = [one.candidate.effect for one in in_order_of_belief(some)]
-    assert names == ["wave_gauge_position", "static_offset", "umbilical", "hysteresis", "sensor_lag"]
-    assert [one.worth for one in in_order_of_belief(some[:1] + some[3:])] == [2380.0, 2000.0, 1400.0]
-    assert in_order_of_belief([]) == []
 
 
 def test_a_parameter_that_is_very_clear_counts_beside_one_that_is_not(monkeypatch) -> None:

@@ -18,7 +18,7 @@ from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery import checkpoint
 from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnose import diagnose
-from calibration.discovery.greedy_search import Search
+from calibration.discovery.search import Search
 from calibration.discovery.set_up import set_up_study
 from calibration.residuals.measured_seas import Options
 from calibration.results.write_diagnosis import write_diagnosis
