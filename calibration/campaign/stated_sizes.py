@@ -102,7 +102,7 @@ def stated_size_problems(stated: Mapping[str, str | float]) -> Iterator[Problem]
         effect, dot, rest = key.partition(".")
         if effect not in STATED_EFFECTS:
             near = nearest(effect, STATED_EFFECTS if dot else {*STATED_SIZES, *STATED_EFFECTS})
-            expected = f"a size ({', '.join(STATED_SIZES)}), or the label of an effect's parameter, such as umbilical.pull"
+            expected = f"a size ({', '.join([*STATED_SIZES][:10])}, ...), or an effect's parameter, such as umbilical.pull"
             yield Problem(where, expected, repr(key), f"Did you mean '{near}{dot}{rest}'?" if near else "")
         elif not dot and not isinstance(value, str):
             yield Problem(where, EXPECTED, shown(value))

@@ -60,8 +60,8 @@ ROBERTSON = "Robertson et al. 2020, Ocean Engineering 195, 106605"
 MASS = "IMO MSC.1/Circ.1195, 2.2.3: ballasted within 1 %; twice that, as published masses of one FOCAL hull differ by 1.2 %."
 INERTIA = "IMO MSC.1/Circ.1200, 4.3.3: radius of gyration or natural period within 2 %, so moment of inertia within 4 to 5 %."
 CENTRE = (
-    f"{JUDGEMENT}two published centres of one as-built FOCAL hull lie 0.37 m from their mean; {ROBERTSON} find responses most "
-    "sensitive to it and to mooring stiffness."
+    f"{JUDGEMENT}7 mm at 1:70, as two published centres of one as-built FOCAL hull differ by 0.73 m; {ROBERTSON} find "
+    "responses most sensitive to it and to mooring stiffness."
 )
 TRIM = "IMO MSC.1/Circ.1195, 2.2.3: trim within 0.2 degrees, which is 0.1 m where the metacentre is 29 m above the centre."
 HULL = JUDGEMENT + "what is tracked is fixed to the hull, between its lowest and its highest point."
@@ -98,7 +98,7 @@ PRESSURE = JUDGEMENT + "shading and diffraction change the Froude-Krylov force o
 RANGES: dict[str, Rule] = {
     "mass_properties.mass": _share(-0.02, 0.02, ref.body_mass, MASS),
     "mass_properties.inertia_*": _share(-0.05, 0.05, ref.body_inertia, INERTIA),
-    "mass_properties.centre_z": _froude(0.4, 1, CENTRE),
+    "mass_properties.centre_z": _froude(0.5, 1, CENTRE),
     "mass_properties.centre_x": _froude(0.1, 1, TRIM),
     "sensor_reference.x": _hull(0, HULL),
     "sensor_reference.z": _hull(2, HULL),
