@@ -9,7 +9,6 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
-from calibration.campaign.runs import runs
 from calibration.discovery.effects.candidates import Candidate, requested_table_labels, with_candidates, with_drag
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
@@ -22,7 +21,7 @@ from calibration.discovery.study import Study
 from calibration.fitting.decay_fit import labels_of, space_of
 from calibration.parameters.space import VAGUE_DEVIATION, FreeParameter, ParameterSpace
 from calibration.parameters.transforms import LogInterval, Scaled
-from calibration.residuals.measured_seas import Options, moving_channels, peak_period, sea_step, with_diffraction
+from calibration.residuals.measured_seas import Options, moving_channels, sea_step, with_diffraction
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import equilibrium, linearised
 from jaxhydro.environment import DOFS
@@ -184,8 +183,8 @@ def set_up_study(
         direction(name, parts, 0.0, deviation)
     kept = {"mass_properties"} if campaign.manifest.zero is not None else {"mass_properties", "static_offset"}
     candidates = [one for one in candidates if not set(one.amplitudes) <= set(nuisances) or one.effect in kept]
-    stated = campaign.manifest.plausible
-    plausible = plausible_sizes(declared, candidates, scales, highest_seas(campaign), stated, source)
+    stated, seas = campaign.manifest.plausible, Seas.of(campaign.records, options.low, options.cutoff)
+    plausible = plausible_sizes(declared, candidates, scales, seas, stated, source)
     reach = {label: (np.array([one.lower, one.upper]) - scaled[label].start) / units[label] for label, one in plausible.items()}
     for candidate in candidates:
         for label in candidate.amplitudes:
@@ -200,15 +199,6 @@ def set_up_study(
     study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
     return StudySetup(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions), plausible)
-
-
-def highest_seas(campaign: Campaign) -> Seas | None:
-    """Peak period of the test with the highest waves; None without tests in waves."""
-    if not any(one.kind in IN_WAVES and one.use != "ignore" for one in campaign.records):
-        return None
-    tests = [(run, one) for run in runs(campaign) for one in run.records]
-    run, record = max(tests, key=lambda each: 0.0 if each[1].wave is None else float(np.var(each[1].wave)))
-    return Seas(peak_period(run, record, campaign.manifest.scale))
 
 
 def prior_width_of(label: str, declared: Model, waves: bool) -> float:

@@ -148,7 +148,7 @@ def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
     else:
         said.append(f"The squared error of {validation_tests(saved)} grows by {percent(-gain)}.")
     if evidence.left_out is not None and evidence.left_out_better is not None:
-        better = f"{percent(evidence.left_out_better)} of them are predicted better with it"
+        better = f"{percent(evidence.left_out_better)} are predicted better with it"
         said.append(
             f"Of fitted tests left out in turn (linearised model), {better}; −2 ln L falls by {number(evidence.left_out, 3)}."
         )
@@ -186,7 +186,7 @@ def describe_alternatives(one: FoundEffect) -> str:
             if size.at_end
         ]
         said += (
-            f" The records ask for a size at the end of what is plausible: {'; '.join(ends)}. Something acts like it, and it is "
+            f" The records ask for a size at the end of what is plausible: {'; '.join(ends)}. Something acts like it, and is "
             "not, or not only, this."
         )
     elif one.in_doubt is not None:

@@ -80,7 +80,7 @@ class JointSearch(Search):
             one = self.candidates[name]
             self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
 
-    def move(self, state: FitState, subset: Subset, number: float) -> FitState:
+    def move(self, state: FitState, subset: Subset, number: int) -> FitState:
         """Fit the effects of a subset, from a state on, with the slopes of the last linear model.
 
         Args:
@@ -106,14 +106,14 @@ class JointSearch(Search):
             look = Linearisation(place, directions, residual, slopes, columns.look.own)
         names = listed([effect_in_words(one.name) for one in chosen]) or "no effect"
         return self.state(
-            chosen, self.fit(look, chosen, STEP_ITERATIONS, 0, f"round {int(number)}: fit with {names}", self.share(number))
+            chosen, self.fit(look, chosen, STEP_ITERATIONS, 0, f"round {number}: fit with {names}", self.share(number - 0.5))
         )
 
-    def settle(self, state: FitState, number: float) -> FitState:
+    def settle(self, state: FitState, number: int) -> FitState:
         """Fit a state to convergence with slopes of its own, the shapes of its effects free."""
-        name = f"round {int(number)}: fit of all parameters"
+        name = f"round {number}: fit of all parameters"
         return self.refit(
-            self.study.linearise(state.look.place, self.active(state.chosen)), state.chosen, name, self.share(number)
+            self.study.linearise(state.look.place, self.active(state.chosen)), state.chosen, name, self.share(number - 0.2)
         )
 
     def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
@@ -135,7 +135,7 @@ class JointSearch(Search):
             if names in visited or number == MAX_ROUNDS:
                 break
             visited.add(names)
-            state = self.settle(self.move(state, best, number - 0.5), number - 0.2)
+            state = self.settle(self.move(state, best, number), number)
             reach(state)
         return state
 
