@@ -28,7 +28,7 @@ class Parameter(NamedTuple):
         meaning: What the parameter is, in words.
         lower: Lower bound.
         upper: Upper bound.
-        null: Neutral value, at which the parameter has no effect.
+        neutral: Neutral value, at which the parameter has no effect.
         of_hull: Whether bounds that are lengths or times scale with the platform's size.
     """
 
@@ -36,7 +36,7 @@ class Parameter(NamedTuple):
     meaning: str
     lower: float = float("-inf")
     upper: float = float("inf")
-    null: float = 0.0
+    neutral: float = 0.0
     of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not where a wave gauge may have stood
 
     def check(self, label: str, value: Any) -> None:
@@ -70,7 +70,7 @@ class Parameter(NamedTuple):
             The same parameter; bounds in m, s, Hz or m/s are scaled where `of_hull` is set.
         """
         factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
-        lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
+        lower, upper = min(self.lower * factor, self.neutral), max(self.upper * factor, self.neutral)
         return self if factor == 1.0 or not self.of_hull else self._replace(lower=lower, upper=upper)
 
 
@@ -92,7 +92,7 @@ def parameter(
     meaning: str,
     lower: float = float("-inf"),
     upper: float = float("inf"),
-    null: float = 0.0,
+    neutral: float = 0.0,
     of_hull: bool = True,
     prefix: str = "{prefix}",
 ) -> Any:
@@ -103,13 +103,13 @@ def parameter(
         meaning: What the parameter is, in words.
         lower: Lower bound.
         upper: Upper bound.
-        null: Neutral value, at which the parameter has no effect.
+        neutral: Neutral value, at which the parameter has no effect.
         of_hull: Whether bounds that are lengths or times scale with the platform's size.
         prefix: First part of the label, where it is not the effect's.
     """
-    about = Parameter(unit, meaning, lower, upper, null, of_hull)
+    about = Parameter(unit, meaning, lower, upper, neutral, of_hull)
     metadata = {METADATA_KEY: ParameterField(lambda effect, key: about, prefix + ".{name}")}
-    return eqx.field(converter=_number, default=null, metadata=metadata)
+    return eqx.field(converter=_number, default=neutral, metadata=metadata)
 
 
 def parameters(about: Callable[[Any, Any], Parameter], label: str = "{prefix}.{key}.{name}") -> Any:

@@ -34,9 +34,9 @@ def drag_coefficients() -> Any:
     return by_group("-", MEANING, 0.0, 30.0, t=TRANSVERSE, z=VERTICAL_OR_AXIAL)
 
 
-def law_parameters(unit: str, meaning: str, lower: float, upper: float, null: float = 0.0) -> Any:
+def law_parameters(unit: str, meaning: str, lower: float, upper: float, neutral: float = 0.0) -> Any:
     """Field of a load with a parameter of a drag law for each drag coefficient; {way} and {group} are filled in."""
-    return by_group(unit, meaning, lower, upper, null, t=TRANSVERSE, z=VERTICAL_OR_AXIAL)
+    return by_group(unit, meaning, lower, upper, neutral, t=TRANSVERSE, z=VERTICAL_OR_AXIAL)
 
 
 def low_share() -> Any:

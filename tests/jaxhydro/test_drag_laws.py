@@ -1,4 +1,4 @@
-"""Drag laws beside Morison's: silent nulls, filters against scipy's, closed forms, whole simulations, the platform file."""
+"""Drag laws beside Morison's: neutral values, filters against scipy's, closed forms, whole simulations, platform files."""
 
 import math
 
@@ -23,7 +23,7 @@ from jaxhydro.platform.schema import Platform
 
 CD_T, CD_Z = COEFFICIENTS["Cd_t"], COEFFICIENTS["Cd_z"]
 ALL = (StripDrag, EndDrag, HighPassDrag, KeuleganCarpenterDrag, SuctionSideDrag)
-NULLS = {
+NEUTRAL = {
     "low_share": (HIGH_PASS | {"low_share": 1.0}, HIGH_PASS | {"low_share": 1.0, "suction": 0.0}),
     "exponent": (KEULEGAN_CARPENTER | {"exponent": 0.0}, KEULEGAN_CARPENTER | {"exponent": 0.0}),
     "suction": ({"law": "constant"}, {"law": "suction_side", "suction": 0.0}),
@@ -61,15 +61,15 @@ POSITION = jnp.array([3.0, -2.0, 1.0, 0.05, -0.1, 0.2])
 VELOCITY = jnp.array([1.1, -0.6, 0.7, 0.02, -0.03, 0.01])
 
 
-# nulls, and the contract with a memory
+# neutral values, and the contract with a memory
 
 
 @pytest.mark.parametrize("speed", ["vector", "component"])
-@pytest.mark.parametrize("null", NULLS)
-def test_a_null_is_plain_drag_exactly(null: str, speed: str) -> None:
+@pytest.mark.parametrize("name", NEUTRAL)
+def test_a_neutral_value_is_plain_drag_exactly(name: str, speed: str) -> None:
     """Bit for bit, in waves and whatever is remembered."""
-    t, z = NULLS[null]
-    changed = only(with_laws(t, z, ends=null != "suction", drag_speed=speed), *ALL)
+    t, z = NEUTRAL[name]
+    changed = only(with_laws(t, z, ends=name != "suction", drag_speed=speed), *ALL)
     plain = only(build(COLUMN, PONTOON, drag_speed=speed), *ALL)
     for sea in (jh.StillWater(), SEA):
         found, _ = acting(changed, POSITION, VELOCITY, lively(changed), sea)
@@ -78,7 +78,7 @@ def test_a_null_is_plain_drag_exactly(null: str, speed: str) -> None:
 
 
 def test_without_a_cutoff_there_is_no_filter() -> None:
-    """fc = 0 is the other null of the high-pass: what is remembered stays nothing."""
+    """fc = 0 is the other neutral value of the high-pass: what is remembered stays nothing."""
     changed = only(with_laws({**HIGH_PASS, "cutoff": 0.0}, {**HIGH_PASS, "cutoff": 0.0}), *ALL)
     plain = only(build(COLUMN, PONTOON), *ALL)
     found, rate = acting(changed, POSITION, VELOCITY, changed.rest().memory, SEA)
@@ -386,7 +386,7 @@ def test_what_is_worked_out_at_rest() -> None:
 
 
 def test_parameters_have_labels_and_can_be_freed() -> None:
-    """By group and direction, within bounds, each with a finite slope; a null is not freed by itself where it is 0."""
+    """By group and direction, within bounds, each with a finite slope; a neutral value is not freed by itself where it is 0."""
     model = with_laws({**KEULEGAN_CARPENTER, "exponent": 0.0}, {**HIGH_PASS, "suction": 0.5}, ends=False)
     new = sorted(label for label in model.values if ".drag_" in label)
     assert new == [

@@ -137,7 +137,7 @@ FOUND = {  # what no platform file declares: effects that were found to be missi
     "cubic_damping": {"coefficient": 3e4},
     "mass_properties": {"mass": 3e5, "centre_x": 0.2, "centre_z": -0.4, "inertia_roll": 2e8},
     "static_offset": {"force": 6e4},
-    # what changes the water that the others meet stays at its null: the sum of all is that of each alone
+    # what changes the water that the others meet stays at its neutral value: the sum of all is that of each alone
     "sensor_reference": {"x": 4.0, "z": -6.0},
     "sensor_lag": {"delay": 0.4},
     "wave_drift": {"envelope": 2e4, "quadrature": -7e3, "frequency_weighted": 9e3},
@@ -157,7 +157,7 @@ RADIATION += (1e3 * RADIATION[1].T,)
 
 
 def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad, ...]:
-    """The loads that no platform file declares, at their nulls."""
+    """The loads that no platform file declares, at their neutral value."""
     return (
         Umbilical(),
         NonlinearHydrostatics.neutral(),
@@ -169,7 +169,7 @@ def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad
 
 
 def in_water(model: jh.Model) -> jh.Model:
-    """The model with the effects of the water and the sensors at their nulls; three drag coefficients get laws of their own."""
+    """With the effects of the water and the sensors at their neutral value; three drag coefficients get other laws."""
     taken = {("column", "t"): PowerDrag.neutral, ("pontoon", "t"): SlowDrag, ("column", "z"): ChangingDrag.neutral}
     plain = [
         dataclasses.replace(load, Cd={k: v for k, v in load.Cd.items() if k not in taken})
@@ -264,13 +264,13 @@ def test_the_example_has_every_registered_load() -> None:
 
 @pytest.mark.parametrize("name", EFFECTS)
 def test_contract(name: str) -> None:
-    """Null is exactly silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
+    """The neutral value is silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
     model = only(everything(), EFFECTS[name])
     (load,) = model.effects
     positions, velocities = sample(1)
     for label, value in load.values.items():
         about = load.about(label)
-        assert about.unit and about.meaning and about.lower <= about.null <= about.upper
+        assert about.unit and about.meaning and about.lower <= about.neutral <= about.upper
         assert about.lower <= float(value) <= about.upper
 
     loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
@@ -283,8 +283,8 @@ def test_contract(name: str) -> None:
         assert_allclose(alone / scale, parts[0] / scale, atol=1e-13)
 
     if load.values:
-        null = model.with_values({label: load.about(label).null for label in load.values})
-        assert all(bool((part == 0).all()) for part in wrench(null, positions[0], velocities[0]))
+        neutral = model.with_values({label: load.about(label).neutral for label in load.values})
+        assert all(bool((part == 0).all()) for part in wrench(neutral, positions[0], velocities[0]))
 
 
 @pytest.mark.parametrize("name", WATER_EFFECTS)

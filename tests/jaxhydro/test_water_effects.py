@@ -101,7 +101,7 @@ def test_a_current_is_galilean() -> None:
 
 
 def test_what_a_point_off_the_reference_reads() -> None:
-    """p + R o - o with scipy's rotation, over any leading axes; at zero attitude, and at the null, p to the bit."""
+    """p + R o - o with scipy's rotation, over any leading axes; at zero attitude, and at the neutral value, p to the bit."""
     position = np.random.default_rng(0).uniform(-0.5, 0.5, (2, 3, 6))
     load = with_values(SensorReference(), x=4.0, z=-6.0)
     offset = np.array([4.0, 0.0, -6.0])
@@ -286,7 +286,7 @@ def replaced(law: type, model: jh.Model, **values: float) -> jh.Model:
 
 @pytest.mark.parametrize("speed", ["vector", "component"])
 @pytest.mark.parametrize("law", [PowerDrag, SlowDrag])
-def test_a_null_is_plain_drag_but_for_rounding(law: type, speed: str) -> None:
+def test_a_neutral_value_is_plain_drag_but_for_rounding(law: type, speed: str) -> None:
     """In waves, moving, and whatever a memory holds."""
     plain = only(build(COLUMN, PONTOON, drag_speed=speed), StripDrag, EndDrag)
     changed = replaced(law, plain)
@@ -353,7 +353,7 @@ def test_a_regular_wave_comes_back() -> None:
 
 
 def test_a_prepared_sea_comes_back() -> None:
-    """Between the steps of its clock, too, as the direct sum does; nothing before the delay, and nothing at the null."""
+    """Between the steps of its clock, too as the direct sum; nothing before the delay, and nothing at the neutral value."""
     sea = irregular(2, 0.3)
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
     load = with_values(WaveReflection(delay=8.1), coefficient=0.25)
@@ -444,7 +444,7 @@ def test_every_parameter_has_a_slope_at_its_null() -> None:
         total = changed.sum_of_loads(changed.instant(jnp.asarray(7.7), state, sea), memory).force
         return jnp.concatenate([total / 1e6, changed.seen(state.position), changed.clock_lag()[None]])
 
-    x = jnp.array([float(model.about(label).null) for label in labels])
+    x = jnp.array([float(model.about(label).neutral) for label in labels])
     assert bool((x == jnp.array([float(model.values[label]) for label in labels])).all())
     slope = np.asarray(jax.jacfwd(look)(x))
     assert np.isfinite(slope).all()
