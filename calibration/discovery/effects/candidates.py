@@ -11,7 +11,6 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
-    ChangingDrag,
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
@@ -19,22 +18,23 @@ from jaxhydro.loads import (
     CoveredEnds,
     CubicDamping,
     DriftTransfer,
-    EndDrag,
     HiddenOscillator,
     Hysteresis,
     MassError,
     MooringNonlinearity,
+    MorisonDrag,
     NonlinearHydrostatics,
     QuadraticDamping,
     RadiationMemory,
     StaticForce,
-    StripDrag,
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
     WaveExcitation,
 )
-from jaxhydro.parameters import AbstractEffect
+from jaxhydro.loads.drag import ConstantLaw, SlowMotionLaw, SpeedPowerLaw
+from jaxhydro.loads.sea_state_law import SeaStateLaw
+from jaxhydro.parameters import AbstractEffect, strongly_typed
 from jaxhydro.sensors import SensorLag, SensorReference
 from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
 
@@ -94,14 +94,16 @@ class Candidate:
 
 
 def with_drag(model: Model) -> Model:
-    """The model with `ChangingDrag` in place of plain drag; unchanged where it has none."""
-    plain = [load for load in model.loads if isinstance(load, StripDrag | EndDrag)]
-    if not plain or any(isinstance(load, ChangingDrag) for load in model.loads):
-        return model
-    coupled = all(load.coupled for load in plain if isinstance(load, StripDrag))
-    coefficients = {key: value for load in plain for key, value in load.Cd.items()}
-    kept = tuple(load for load in model.loads if not isinstance(load, StripDrag | EndDrag))
-    return replace(model, loads=(*kept, ChangingDrag.neutral(coefficients, coupled)))
+    """The model with drag coefficients by speed, and apart for slow motion, in place of plain drag."""
+
+    def changed(load: AbstractLoad) -> AbstractLoad:
+        if isinstance(load, SeaStateLaw):
+            return replace(load, load=changed(load.load))
+        if not isinstance(load, MorisonDrag) or not isinstance(load.law, ConstantLaw):
+            return load
+        return strongly_typed(replace(load, law=SlowMotionLaw(law=SpeedPowerLaw.neutral(load.Cd))))
+
+    return replace(model, loads=tuple(map(changed, model.loads)))
 
 
 def _dofs(labels: Iterable[str], effect: str) -> list[str]:
