@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -192,6 +192,16 @@ class AbstractEffect(eqx.Module):
             elif label in values:
                 new[place.field] = {**new.get(place.field, getattr(self, place.field)), place.key: values[label]}
         return replace(self, **new) if new else self
+
+    def restricted(self, keys: Collection[Any]) -> Self:
+        """This effect with the parameters of some keys only, such as degrees of freedom; single numbers stay."""
+        mappings = {field.name: getattr(self, field.name) for field in fields(self) if METADATA_KEY in field.metadata}
+        kept: dict[str, Any] = {
+            name: {key: value for key, value in mapping.items() if key in keys}
+            for name, mapping in mappings.items()
+            if isinstance(mapping, Mapping)
+        }
+        return replace(self, **kept)
 
     def _places(self) -> dict[str, _Place]:
         """Where the parameters of this effect's own fields are, by label."""
