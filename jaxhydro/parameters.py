@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -28,7 +28,7 @@ class Parameter(NamedTuple):
         meaning: What the parameter is, in words.
         lower: Lower bound.
         upper: Upper bound.
-        null: Neutral value, at which the parameter has no effect.
+        neutral: Neutral value, at which the parameter has no effect.
         of_hull: Whether bounds that are lengths or times scale with the platform's size.
     """
 
@@ -36,7 +36,7 @@ class Parameter(NamedTuple):
     meaning: str
     lower: float = float("-inf")
     upper: float = float("inf")
-    null: float = 0.0
+    neutral: float = 0.0
     of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not where a wave gauge may have stood
 
     def check(self, label: str, value: Any) -> None:
@@ -70,7 +70,7 @@ class Parameter(NamedTuple):
             The same parameter; bounds in m, s, Hz or m/s are scaled where `of_hull` is set.
         """
         factor = {"m": size, "s": pace, "Hz": 1 / pace, "m/s": size / pace}.get(self.unit, 1.0)
-        lower, upper = min(self.lower * factor, self.null), max(self.upper * factor, self.null)
+        lower, upper = min(self.lower * factor, self.neutral), max(self.upper * factor, self.neutral)
         return self if factor == 1.0 or not self.of_hull else self._replace(lower=lower, upper=upper)
 
 
@@ -92,7 +92,7 @@ def parameter(
     meaning: str,
     lower: float = float("-inf"),
     upper: float = float("inf"),
-    null: float = 0.0,
+    neutral: float = 0.0,
     of_hull: bool = True,
     prefix: str = "{prefix}",
 ) -> Any:
@@ -103,13 +103,13 @@ def parameter(
         meaning: What the parameter is, in words.
         lower: Lower bound.
         upper: Upper bound.
-        null: Neutral value, at which the parameter has no effect.
+        neutral: Neutral value, at which the parameter has no effect.
         of_hull: Whether bounds that are lengths or times scale with the platform's size.
         prefix: First part of the label, where it is not the effect's.
     """
-    about = Parameter(unit, meaning, lower, upper, null, of_hull)
+    about = Parameter(unit, meaning, lower, upper, neutral, of_hull)
     metadata = {METADATA_KEY: ParameterField(lambda effect, key: about, prefix + ".{name}")}
-    return eqx.field(converter=_number, default=null, metadata=metadata)
+    return eqx.field(converter=_number, default=neutral, metadata=metadata)
 
 
 def parameters(about: Callable[[Any, Any], Parameter], label: str = "{prefix}.{key}.{name}") -> Any:
@@ -192,6 +192,16 @@ class AbstractEffect(eqx.Module):
             elif label in values:
                 new[place.field] = {**new.get(place.field, getattr(self, place.field)), place.key: values[label]}
         return replace(self, **new) if new else self
+
+    def restricted(self, keys: Collection[Any]) -> Self:
+        """This effect with the parameters of some keys only, such as degrees of freedom; single numbers stay."""
+        mappings = {field.name: getattr(self, field.name) for field in fields(self) if METADATA_KEY in field.metadata}
+        kept: dict[str, Any] = {
+            name: {key: value for key, value in mapping.items() if key in keys}
+            for name, mapping in mappings.items()
+            if isinstance(mapping, Mapping)
+        }
+        return replace(self, **kept)
 
     def _places(self) -> dict[str, _Place]:
         """Where the parameters of this effect's own fields are, by label."""

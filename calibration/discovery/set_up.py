@@ -123,8 +123,8 @@ def set_up_study(
                 f"{', '.join(sorted(unknown))}"
             )
         for label, size in own.sizes.items():
-            null = float(own.load.values[label])
-            scaled[label], units[label] = FreeParameter(label, null, Scaled(null, 1.0), 0.0, math.inf), float(size)
+            neutral = float(own.load.values[label])
+            scaled[label], units[label] = FreeParameter(label, neutral, Scaled(neutral, 1.0), 0.0, math.inf), float(size)
     candidates = [*candidates, *extra]
     # what the platform file has is fitted, not looked for
     taken = set(declared.values) - (requested_table_labels(declared) - set(labels))

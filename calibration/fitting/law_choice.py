@@ -17,7 +17,7 @@ from calibration.residuals.run_segments import sea_state
 from calibration.result import Calibration, error_of_energies
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interrupts import stopping
-from jaxhydro.loads.keulegan_carpenter_drag import log_ratio
+from jaxhydro.loads.drag.keulegan_carpenter_law import log_ratio
 from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference_of
 from jaxhydro.platform.body import KeuleganCarpenter
 from jaxhydro.platform.drag_laws import drag_laws_of, parameter_label, surface_number

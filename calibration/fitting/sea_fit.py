@@ -127,7 +127,7 @@ def calibrate_in_waves(
     # what a law adds that is not asked for is left out
     begin = {label: value for label, value in (start or {}).items() if label in declared.values or not is_law_parameter(label)}
     declared = declared.with_values(begin)
-    exponents = {label: (0.0, EXPONENT_DEVIATION) for label in added if declared.about(label).null == 0}
+    exponents = {label: (0.0, EXPONENT_DEVIATION) for label in added if declared.about(label).neutral == 0}
     space = space_of(campaign, [*labels, *added], declared, exponents)
 
     def report(stage: str, iteration: int, value: float, fraction: float) -> None:

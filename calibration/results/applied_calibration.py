@@ -116,7 +116,7 @@ def unknown_values_error(
 
 def with_calibrated_loads(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
     """The model with what calibrated values need beyond what is declared: laws of drag and over the sea state, and the effects
-    that a diagnosis found, at their null."""
+    that a diagnosis found, at their neutral values."""
     model = _with_laws(saved, _with_drag(saved, model, path), path)
     added = [label for label in saved.values() if label not in model.values]
     if saved.augmented is None or not added:
@@ -155,7 +155,7 @@ def _with_drag(saved: CalibrationFile, model: Model, path: str | PathLike[str]) 
 
 
 def _is_neutral(law: DragLaw) -> bool:
-    """Whether a law is at its null, plain drag."""
+    """Whether a law is at its neutral value, plain drag."""
     if isinstance(law, HighPass):
         return (law.low_share == 1 or law.cutoff == 0) and not getattr(law, "suction", None)
     return not (law.exponent if isinstance(law, KeuleganCarpenter) else getattr(law, "suction", 0))

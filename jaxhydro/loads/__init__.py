@@ -1,42 +1,35 @@
 """All loads, and the registry `LOADS` by name.
 
-A new effect is one file in this folder and one line in `LOADS`.
+A new effect is one file in this folder and one line in `LOADS`. Drag laws are in `drag`, with a registry of their own.
 """
 
 from jaxhydro.loads.added_mass import AddedMass
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.changing_drag import ChangingDrag
 from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
 from jaxhydro.loads.coulomb_friction import CoulombFriction
 from jaxhydro.loads.coupled_damping import CoupledDamping
 from jaxhydro.loads.covered_ends import CoveredEnds
 from jaxhydro.loads.cubic_damping import CubicDamping
+from jaxhydro.loads.drag.morison_drag import MorisonDrag
 from jaxhydro.loads.drift_transfer import DriftTransfer
-from jaxhydro.loads.end_drag import EndDrag
 from jaxhydro.loads.end_inertia import EndInertia
 from jaxhydro.loads.guided_masses import GuidedMasses
 from jaxhydro.loads.hidden_oscillator import HiddenOscillator
-from jaxhydro.loads.high_pass_drag import HighPassDrag
 from jaxhydro.loads.hydrostatic_coupling import HydrostaticCoupling
 from jaxhydro.loads.hydrostatics import Buoyancy
 from jaxhydro.loads.hysteresis import Hysteresis
 from jaxhydro.loads.instant import Instant
-from jaxhydro.loads.keulegan_carpenter_drag import KeuleganCarpenterDrag
 from jaxhydro.loads.linear_damping import LinearDamping
 from jaxhydro.loads.mass_error import MassError
 from jaxhydro.loads.mooring_lines import MooringLines
 from jaxhydro.loads.mooring_nonlinearity import MooringNonlinearity
 from jaxhydro.loads.nonlinear_hydrostatics import NonlinearHydrostatics
-from jaxhydro.loads.power_drag import PowerDrag
 from jaxhydro.loads.quadratic_damping import QuadraticDamping
 from jaxhydro.loads.radiation_memory import RadiationMemory
-from jaxhydro.loads.slow_drag import SlowDrag
 from jaxhydro.loads.static_force import StaticForce
 from jaxhydro.loads.stiffness import Stiffness
-from jaxhydro.loads.strip_drag import StripDrag
 from jaxhydro.loads.strip_inertia import StripInertia
-from jaxhydro.loads.suction_side_drag import SuctionSideDrag
 from jaxhydro.loads.umbilical import Umbilical
 from jaxhydro.loads.wave_drift import WaveDrift
 from jaxhydro.loads.wave_drift_damping import WaveDriftDamping
@@ -55,12 +48,8 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "added_mass": AddedMass,
     "guided_masses": GuidedMasses,
     "strip_inertia": StripInertia,
-    "strip_drag": StripDrag,
     "end_inertia": EndInertia,
-    "end_drag": EndDrag,
-    "high_pass_drag": HighPassDrag,
-    "keulegan_carpenter_drag": KeuleganCarpenterDrag,
-    "suction_side_drag": SuctionSideDrag,
+    "morison_drag": MorisonDrag,
     "umbilical": Umbilical,
     "coulomb_friction": CoulombFriction,
     "hysteresis": Hysteresis,
@@ -76,9 +65,6 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "wave_drift": WaveDrift,
     "drift_transfer": DriftTransfer,
     "wave_drift_damping": WaveDriftDamping,
-    "power_drag": PowerDrag,
-    "slow_drag": SlowDrag,
-    "changing_drag": ChangingDrag,
     "coupled_damping": CoupledDamping,
     "covered_ends": CoveredEnds,
     "wave_excitation": WaveExcitation,

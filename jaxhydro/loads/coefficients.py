@@ -19,7 +19,7 @@ def by_group(
     meaning: str,
     lower: float = float("-inf"),
     upper: float = float("inf"),
-    null: float = 0.0,
+    neutral: float = 0.0,
     *,
     t: Mapping[str, str] | None = None,
     z: Mapping[str, str] | None = None,
@@ -32,7 +32,7 @@ def by_group(
         meaning: What the parameter is; {group}, and the words of `t` or `z`, are filled in.
         lower: Lower bound.
         upper: Upper bound.
-        null: Neutral value.
+        neutral: Neutral value.
         t: Words for parameters across members.
         z: Words for vertical or axial parameters.
         label: Template of the labels; `key` is group and kind.
@@ -40,7 +40,7 @@ def by_group(
 
     def about(load: Any, key: tuple[str, str]) -> Parameter:
         words = (t if key[1] == "t" else z) or {}
-        return Parameter(unit, meaning.format(group=key[0], **words), lower, upper, null)
+        return Parameter(unit, meaning.format(group=key[0], **words), lower, upper, neutral)
 
     return parameters(about, label)
 

@@ -25,7 +25,7 @@ def by_dof(
     meaning: str = "",
     lower: float = float("-inf"),
     upper: float = float("inf"),
-    null: float = 0.0,
+    neutral: float = 0.0,
 ) -> Any:
     """Field of a load with one parameter, `prefix.dof.name`, in each degree of freedom.
 
@@ -35,10 +35,10 @@ def by_dof(
         meaning: What the parameter is; {dof} is filled in.
         lower: Lower bound.
         upper: Upper bound.
-        null: Neutral value.
+        neutral: Neutral value.
     """
     both = [
-        one if isinstance(one, Parameter) else Parameter(one, meaning, lower, upper, null) for one in (translation, rotation)
+        one if isinstance(one, Parameter) else Parameter(one, meaning, lower, upper, neutral) for one in (translation, rotation)
     ]
 
     def about(load: Any, dof: str) -> Parameter:
@@ -71,7 +71,7 @@ class AbstractLoadPerDof(AbstractLoad):
         empty, found = cls(), {}
         for field, about in empty._per_dof().items():
             given = values.get(field)
-            found[field] = {dof: about(empty, dof).null if given is None else given for dof in dofs}
+            found[field] = {dof: about(empty, dof).neutral if given is None else given for dof in dofs}
         return cls(**found)
 
     @classmethod

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 
 from jaxhydro.loads.base import AbstractLoad, Action
-from jaxhydro.loads.drag import MIN_SQUARED_SPEED
+from jaxhydro.loads.drag.drag_flow import MIN_SQUARED_SPEED
 from jaxhydro.loads.instant import Instant
 from jaxhydro.loads.matrix import Entries, assemble, by_entry
 

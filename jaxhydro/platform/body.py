@@ -8,7 +8,7 @@ from jaxtyping import Float
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from jaxhydro.errors import Consistent, Count, Faults, Flag, NonNegative, Number, Positive, Problem, Schema, Text, Vector, shown
-from jaxhydro.loads.high_pass_drag import MAX_CUTOFF, MAX_SLOW_SHARE
+from jaxhydro.loads.drag.velocity_filters import MAX_CUTOFF, MAX_SLOW_SHARE
 
 STEP_LENGTH = 1e-6  # of a member's length, over which a step in its size is made
 Matrix3 = Float[np.ndarray, "3 3"]
@@ -190,13 +190,13 @@ Coefficient = Annotated[
 
 
 class ConstantDrag(Schema):
-    """Drag with the same coefficient for all motion (`jaxhydro.loads.StripDrag`, `EndDrag`)."""
+    """Drag with the same coefficient for all motion (`jaxhydro.loads.drag.ConstantLaw`)."""
 
     law: Literal["constant"] = "constant"
 
 
 class HighPass(Schema):
-    """Drag with `low_share` times the coefficient for slow motion (`jaxhydro.loads.HighPassDrag`).
+    """Drag with `low_share` times the coefficient for slow motion (`jaxhydro.loads.drag.HighPassLaw`).
 
     The cut-off frequency is in Hz; 0: none.
     """
@@ -213,7 +213,7 @@ class HighPassAtEnds(HighPass):
 
 
 class KeuleganCarpenter(Schema):
-    """Drag by a power of the Keulegan-Carpenter number (`jaxhydro.loads.KeuleganCarpenterDrag`).
+    """Drag by a power of the Keulegan-Carpenter number (`jaxhydro.loads.drag.KeuleganCarpenterLaw`).
 
     The coefficient is as declared at the number `reference`. `window` (s) is the time over which the amplitude is taken.
     """
@@ -225,7 +225,7 @@ class KeuleganCarpenter(Schema):
 
 
 class SuctionSide(Schema):
-    """Drag at columns' ends where the flow leaves them (`jaxhydro.loads.SuctionSideDrag`)."""
+    """Drag at columns' ends where the flow leaves them (`jaxhydro.loads.drag.SuctionSideLaw`)."""
 
     law: Literal["suction_side"]
     suction: Share = 1.0

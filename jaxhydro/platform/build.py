@@ -24,14 +24,13 @@ from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
-    EndDrag,
     EndInertia,
     GuidedMasses,
     LinearDamping,
     MooringLines,
+    MorisonDrag,
     QuadraticDamping,
     Stiffness,
-    StripDrag,
     StripInertia,
     Weight,
 )
@@ -112,9 +111,8 @@ def build(platform: schema.Platform) -> Model:
         coupled = platform.drag_speed == "vector"
         loads += [
             StripInertia(_coefficients(platform, "Ca", hull.elements)),
-            StripDrag(_coefficients(platform, "Cd", hull.elements), coupled),
             EndInertia(_coefficients(platform, "Ca", hull.ends)),
-            EndDrag(_coefficients(platform, "Cd", hull.ends)),
+            MorisonDrag(_coefficients(platform, "Cd", hull.elements, hull.ends), coupled=coupled),
         ]
     conventions = Conventions(
         platform.wetting, platform.diffraction, platform.directions, platform.waves_at, platform.centripetal
@@ -227,10 +225,10 @@ def members_of(platform: schema.Platform) -> list[Member]:
     return members
 
 
-def _coefficients(platform: schema.Platform, symbol: str, parts: Elements | Ends) -> dict[tuple[str, str], float]:
-    """Coefficients of elements or ends by group and kind, in the order of the platform file."""
+def _coefficients(platform: schema.Platform, symbol: str, *parts: Elements | Ends) -> dict[tuple[str, str], float]:
+    """Coefficients of elements and ends by group and kind, in the order of the platform file."""
     numbers = {group: row.numbers() for group, row in platform.coefficients.items()}
-    keys, used = [(group, kind) for group in numbers for kind in "tz"], set(parts.owners(symbol))
+    keys, used = [(group, kind) for group in numbers for kind in "tz"], {key for part in parts for key in part.owners(symbol)}
     return {(group, kind): numbers[group][f"{symbol}_{kind}"] for group, kind in keys if (group, kind) in used}
 
 

@@ -9,13 +9,23 @@ import numpy as np
 
 from jaxhydro.dynamics.model import Model
 from jaxhydro.hull.hull import Hull
-from jaxhydro.loads import AbstractLoad, EndDrag, HighPassDrag, KeuleganCarpenterDrag, StripDrag, SuctionSideDrag
-from jaxhydro.loads.drag import lines_of
+from jaxhydro.loads import AbstractLoad
+from jaxhydro.loads.drag import (
+    AbstractDragLaw,
+    ConstantLaw,
+    HighPassLaw,
+    KeuleganCarpenterLaw,
+    MorisonDrag,
+    SuctionSideLaw,
+)
+from jaxhydro.loads.drag.drag_flow import lines_of
 from jaxhydro.loads.sea_state_law import SeaStateLaw
 from jaxhydro.parameters import strongly_typed
 from jaxhydro.platform.body import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 
 DragLaw: TypeAlias = ConstantDrag | HighPass | HighPassAtEnds | KeuleganCarpenter | SuctionSide
+Key: TypeAlias = tuple[str, str]
+"""Group of members, and kind of its drag coefficient: t or z."""
 
 
 def parameter_label(label: str, name: str) -> str:
@@ -30,31 +40,48 @@ def coefficient_label(label: str) -> str | None:
     return f"{group}.Cd_{parts[-1]}" if group and parts[0] == "drag" and parts[-1] in ("t", "z") else None
 
 
+def drag_of(load: AbstractLoad) -> MorisonDrag | None:
+    """Drag that a load is, or whose coefficients it lets depend on the sea state; None for other loads."""
+    inner = load.load if isinstance(load, SeaStateLaw) else load
+    return inner if isinstance(inner, MorisonDrag) else None
+
+
 def drag_laws_of(model: Model) -> dict[str, DragLaw]:
     """Drag laws of a model by coefficient label, plain drag left out; values are not checked."""
     found: dict[str, DragLaw] = {}
     for load in model.loads:
-        inner = load.load if isinstance(load, SeaStateLaw) else load
-        for key in getattr(inner, "Cd", ()):
-            label = f"{key[0]}.Cd_{key[1]}"
-            if isinstance(inner, HighPassDrag):
-                suction = float(inner.drag_suction[key]) if key in inner.drag_suction else None
-                cutoff, low_share = float(inner.drag_cutoff[key]), float(inner.drag_low_share[key])
-                numbers: dict[str, Any] = {"cutoff": cutoff, "low_share": low_share, "suction": suction}
-                found[label] = HighPassAtEnds.model_construct(law="high_pass", **numbers)
-            elif isinstance(inner, KeuleganCarpenterDrag):
-                line = inner.lines.index(lines_of(model.hull, [key])[0])
-                numbers = {"reference": float(inner.reference[line]), "window": float(inner.window[line])}
-                exponent = float(inner.drag_exponent[key])
-                found[label] = KeuleganCarpenter.model_construct(law="keulegan_carpenter", exponent=exponent, **numbers)
-            elif isinstance(inner, SuctionSideDrag):
-                found[label] = SuctionSide.model_construct(law="suction_side", suction=float(inner.drag_suction[key]))
+        if (drag := drag_of(load)) is not None:
+            laws = {label: _declared(drag.law, key, model.hull) for label, key in _coefficients(drag).items()}
+            found |= {label: law for label, law in laws.items() if law is not None}
     return found
+
+
+def _declared(law: AbstractDragLaw, key: Key, hull: Hull) -> DragLaw | None:
+    """A coefficient's law as a platform file declares it; None for plain drag."""
+    if isinstance(law, HighPassLaw):
+        suction = law.law.suction.get(key) if isinstance(law.law, SuctionSideLaw) else None
+        return HighPassAtEnds.model_construct(
+            law="high_pass",
+            cutoff=float(law.cutoff[key]),
+            low_share=float(law.low_share[key]),
+            suction=None if suction is None else float(suction),
+        )
+    if isinstance(law, KeuleganCarpenterLaw):
+        line = law.lines.index(lines_of(hull, [key])[0])
+        return KeuleganCarpenter.model_construct(
+            law="keulegan_carpenter",
+            exponent=float(law.exponent[key]),
+            reference=float(law.reference[line]),
+            window=float(law.window[line]),
+        )
+    if isinstance(law, SuctionSideLaw):
+        return SuctionSide.model_construct(law="suction_side", suction=float(law.suction[key]))
+    return None
 
 
 def plain_drag(model: Model) -> list[str]:
     """Labels of the coefficients of plain Morison drag, which may be given another law."""
-    return [label for load in model.loads if type(load) in (StripDrag, EndDrag) for label in load.values]
+    return [label for load in model.loads for label in _plain(load)]
 
 
 def with_drag_laws(model: Model, laws: Mapping[str, DragLaw]) -> Model:
@@ -69,25 +96,22 @@ def with_drag_laws(model: Model, laws: Mapping[str, DragLaw]) -> Model:
     known = plain_drag(model)
     if lost := [label for label in laws if label not in known]:
         raise ValueError(f"{lost[0]}: expected a coefficient of plain Morison drag ({', '.join(known) or 'there is none'})")
-    keys = {label: key for load in model.loads for label, key in load.keys.items()}
-    taken = {keys[label]: law for label, law in laws.items()}
-    plain: dict[type, set] = {
-        # of a strip's direction no side is that of suction
-        StripDrag: {key for key, law in taken.items() if not isinstance(law, SuctionSide)},
-        EndDrag: set(taken),
-    }
     loads: list[AbstractLoad] = []
-    coefficients: dict[Any, Any] = {}
     for load in model.loads:
-        if isinstance(load, StripDrag | EndDrag):
-            coefficients |= {key: value for key, value in load.Cd.items() if key in taken}
-            left = {key: value for key, value in load.Cd.items() if key not in plain[type(load)]}
-            if not left:  # without a coefficient there is no drag
-                continue
-            load = replace(load, Cd=left)
-        loads.append(load)
-    coupled = next((load.coupled for load in model.loads if isinstance(load, StripDrag)), True)
-    return replace(model, loads=tuple(map(strongly_typed, (*loads, *_loads(taken, coefficients, model.hull, coupled)))))
+        taken = {key: laws[label] for label, key in _plain(load).items() if label in laws}
+        if not taken:
+            loads.append(load)
+            continue
+        drag = drag_of(load)
+        assert drag is not None
+        if left := {key: value for key, value in drag.Cd.items() if key not in taken}:
+            rest = replace(drag, Cd=left)
+            loads.append(replace(load, load=rest) if isinstance(load, SeaStateLaw) else rest)
+        for kind in (HighPass, KeuleganCarpenter, SuctionSide):
+            if mine := {key: law for key, law in taken.items() if isinstance(law, kind)}:
+                law = _law_of(mine, model.hull, drag.coupled)
+                loads.append(MorisonDrag({key: drag.Cd[key] for key in mine}, law, drag.coupled))
+    return replace(model, loads=tuple(map(strongly_typed, loads)))
 
 
 def surface_number(hull: Hull, label: str, height: float) -> float:
@@ -101,25 +125,28 @@ def surface_number(hull: Hull, label: str, height: float) -> float:
     return math.pi * height / float(extent[list(lines_of(hull, [key]))].mean())
 
 
-def _loads(laws: Mapping[Any, DragLaw], coefficients: Mapping, hull: Hull, coupled: bool) -> list[AbstractLoad]:
-    """A load for every kind of law, on the lines of all coefficients that it is given for."""
+def _coefficients(drag: MorisonDrag) -> dict[str, Key]:
+    """Keys of drag coefficients by label."""
+    return {f"{group}.Cd_{kind}": (group, kind) for group, kind in drag.Cd}
 
-    def of(kind: type) -> tuple[dict, dict[str, dict]]:
-        """Drag coefficients with a kind of law, and the numbers of the law by name."""
-        some = {key: law for key, law in laws.items() if isinstance(law, kind)}
-        numbers: dict[str, dict] = {}
-        for key, law in some.items():
-            for name, value in law.model_dump(exclude={"law"}, exclude_none=True).items():
-                numbers.setdefault(name, {})[key] = value
-        return {key: coefficients[key] for key in some}, numbers
 
-    loads: list[AbstractLoad] = []
-    (high, by_name), (powers, constants), (sides, shares) = map(of, (HighPass, KeuleganCarpenter, SuctionSide))
-    if high:
-        loads.append(HighPassDrag.of(hull, high, coupled=coupled, **{f"drag_{name}": x for name, x in by_name.items()}))
-    if powers:
-        exponent = constants.pop("exponent")
-        loads.append(KeuleganCarpenterDrag.of(hull, powers, drag_exponent=exponent, coupled=coupled, **constants))
-    if sides:
-        loads.append(SuctionSideDrag(sides, shares["suction"]))
-    return loads
+def _plain(load: AbstractLoad) -> dict[str, Key]:
+    """Keys, by label, of a load's coefficients of plain drag that do not depend on the sea state."""
+    drag = drag_of(load)
+    if drag is None or not isinstance(drag.law, ConstantLaw):
+        return {}
+    changing = {label for label, _ in load.exponents} if isinstance(load, SeaStateLaw) else set[str]()
+    return {label: key for label, key in _coefficients(drag).items() if label not in changing}
+
+
+def _law_of(laws: Mapping[Key, DragLaw], hull: Hull, coupled: bool) -> AbstractDragLaw:
+    """The law of some drag coefficients, from one kind of declared law for each of them."""
+    numbers: dict[str, dict[Key, Any]] = {}
+    for key, law in laws.items():
+        for name, value in law.model_dump(exclude={"law"}, exclude_none=True).items():
+            numbers.setdefault(name, {})[key] = value
+    suction = numbers.pop("suction", None)
+    inner = ConstantLaw() if suction is None else SuctionSideLaw(suction)
+    if "low_share" in numbers:
+        return HighPassLaw.of(hull, law=inner, **numbers)
+    return KeuleganCarpenterLaw.of(hull, coupled=coupled, **numbers) if "exponent" in numbers else inner

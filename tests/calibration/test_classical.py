@@ -268,7 +268,7 @@ def test_decay_of_a_model_has_its_coefficients(dof: str, released: float) -> Non
 class Friction(AbstractLoad):
     """F = -F0 tanh(v/0.1) in heave: neither linear nor quadratic."""
 
-    size: jax.Array = parameter("N", "friction", null=1e6)
+    size: jax.Array = parameter("N", "friction", neutral=1e6)
 
     def act(self, now, memory) -> Action:
         return Action(body_force=-self.size * jnp.tanh(now.velocity / 0.1) * jnp.eye(6)[2])

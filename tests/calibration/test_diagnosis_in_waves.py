@@ -179,7 +179,7 @@ def test_waves_that_come_back_are_found(tmp_path: Path) -> None:
     ],
 )
 def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float, near: float) -> None:
-    """By one look where it is null: within a step of what is looked at; nothing where slopes tell of it."""
+    """By one look where it is neutral: within a step of what is looked at; nothing where slopes tell of it."""
     found = []
     for shift in (far, near):
         (folder := tmp_path / f"{shift}").mkdir()

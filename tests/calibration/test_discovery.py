@@ -223,7 +223,7 @@ def test_a_law_of_ones_own_takes_part(tmp_path):
 
 
 class Runaway(AbstractLoad):
-    """A torque in roll from a memory that grows without end: silent at its null, and nothing can be said of its slopes."""
+    """Roll torque from a memory that grows without end: silent at its neutral value, and nothing can be said of its slopes."""
 
     strength: jax.Array = parameter("N m s/rad", "strength of a torque that runs away")
 
@@ -237,7 +237,7 @@ class Runaway(AbstractLoad):
 
 @pytest.mark.slow
 def test_a_law_whose_slopes_overflow_is_passed_over(tmp_path):
-    """The others are scored as ever, whatever one of them does off its null."""
+    """The others are scored as ever, whatever one of them does off its neutral value."""
     own = Candidate(
         "runaway",
         "roll",

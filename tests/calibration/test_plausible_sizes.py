@@ -97,10 +97,10 @@ def test_every_amplitude_has_a_range_about_its_neutral_value(name):
     for one in candidates:
         for label in one.amplitudes:
             size, about = found[label], with_effects(model, [label]).about(label)
-            assert size.lower <= about.null <= size.upper and about.null in size, label
+            assert size.lower <= about.neutral <= size.upper and about.neutral in size, label
             assert size.lower < size.upper and np.isfinite([size.lower, size.upper]).all(), label
             assert about.lower <= size.lower and size.upper <= about.upper, label
-            assert label not in one.positive or size.lower == about.null, label
+            assert label not in one.positive or size.lower == about.neutral, label
             assert size.source.endswith(".") and not size.stated
             assert size.source.startswith(
                 ("engineering judgement: ", "IMO", "Graham", "Maruo", "Aranha", "OpenFAST", "Barrass")

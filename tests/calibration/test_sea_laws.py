@@ -321,7 +321,7 @@ ALL_DRAG = ("column.Cd_t", "column.Cd_z", "pontoon.Cd_t", "pontoon.Cd_z")
 
 @pytest.fixture(scope="module", params=["keulegan_carpenter", "high_pass"])
 def drag(request, campaign, made):
-    """The model with a law of drag at its null, what is to be fitted, and the law's name."""
+    """The model with a law of drag at its neutral value, what is to be fitted, and the law's name."""
     model = with_diffraction(build(campaign.platform), OPTIONS)
     return *with_drag_law(model, ALL_DRAG, request.param, reference_sea_state(made, OPTIONS), OPTIONS.low), request.param
 
@@ -367,7 +367,7 @@ def test_a_law_of_drag_is_written_and_used_again(campaign, fitted, drag, tmp_pat
     plain = {key: value for key, value in data["baseline"].items() if key != "drag_laws"}
     plain["parameters"] = {"column.Cd_t": data["baseline"]["parameters"]["column.Cd_t"]}
     (tmp_path / "calibration.json").write_text(json.dumps(data | {"baseline": plain}))
-    apply_calibration(tmp_path, changed, campaign.platform.name)  # a law at its null is plain drag
+    apply_calibration(tmp_path, changed, campaign.platform.name)  # a law at its neutral value is plain drag
     with pytest.raises(InputError, match=r"drag_laws\.column\.Cd_t: expected the law that .* found plain drag"):
         apply_calibration(tmp_path, model, campaign.platform.name)
     (tmp_path / "calibration.json").write_text(json.dumps(data))

@@ -1,5 +1,6 @@
-"""Drag laws beside Morison's: silent nulls, filters against scipy's, closed forms, whole simulations, the platform file."""
+"""Drag laws beside Morison's: neutral values, filters against scipy's, closed forms, whole simulations, platform files."""
 
+import dataclasses
 import math
 
 import equinox as eqx
@@ -10,24 +11,43 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
-from test_loads import BODY, COEFFICIENTS, COLUMN, HIGH_PASS, KEULEGAN_CARPENTER, PONTOON, RHO, SEA, G, build, force, only
+from test_loads import (
+    BODY,
+    COEFFICIENTS,
+    COLUMN,
+    HIGH_PASS,
+    KEULEGAN_CARPENTER,
+    PONTOON,
+    RHO,
+    SEA,
+    G,
+    build,
+    force,
+    model_of,
+    only,
+)
 
 import jaxhydro as jh
 from calibration.decay_analysis.model_damping import model_damping
 from calibration.parameters.space import default_free, parameter_space
 from jaxhydro.dynamics import integrate
 from jaxhydro.errors import InputError, validate
-from jaxhydro.loads import EndDrag, HighPassDrag, KeuleganCarpenterDrag, StripDrag, SuctionSideDrag
+from jaxhydro.loads import MorisonDrag
+from jaxhydro.loads.drag import (
+    DRAG_LAWS,
+    AbstractDragLaw,
+    ConstantLaw,
+    HighPassLaw,
+    KeuleganCarpenterLaw,
+    SlowMotionLaw,
+    SpeedPowerLaw,
+    SuctionSideLaw,
+)
 from jaxhydro.platform.drag_laws import drag_laws_of, plain_drag, surface_number, with_drag_laws
 from jaxhydro.platform.schema import Platform
+from jaxhydro.water import Current
 
 CD_T, CD_Z = COEFFICIENTS["Cd_t"], COEFFICIENTS["Cd_z"]
-ALL = (StripDrag, EndDrag, HighPassDrag, KeuleganCarpenterDrag, SuctionSideDrag)
-NULLS = {
-    "low_share": (HIGH_PASS | {"low_share": 1.0}, HIGH_PASS | {"low_share": 1.0, "suction": 0.0}),
-    "exponent": (KEULEGAN_CARPENTER | {"exponent": 0.0}, KEULEGAN_CARPENTER | {"exponent": 0.0}),
-    "suction": ({"law": "constant"}, {"law": "suction_side", "suction": 0.0}),
-}
 
 
 def with_laws(t: dict | None = None, z: dict | None = None, *, members=(COLUMN, PONTOON), ends=True, **changes) -> jh.Model:
@@ -61,26 +81,80 @@ POSITION = jnp.array([3.0, -2.0, 1.0, 0.05, -0.1, 0.2])
 VELOCITY = jnp.array([1.1, -0.6, 0.7, 0.02, -0.03, 0.01])
 
 
-# nulls, and the contract with a memory
+# the contract of all laws
+
+
+def law_of(name: str, model: jh.Model) -> AbstractDragLaw:
+    """A law of each kind, not at its neutral value, on all coefficients of a model."""
+    keys, hull, coupled = keys_of(model), model.hull, only(model, MorisonDrag).loads[0].coupled
+    ends = dict.fromkeys(keys, 0.6)
+    high_pass = {"cutoff": dict.fromkeys(keys, 0.03), "low_share": dict.fromkeys(keys, 0.4)}
+    constants = {"reference": dict.fromkeys(keys, 5.0), "window": dict.fromkeys(keys, 40.0)}
+    return {
+        "constant": lambda: ConstantLaw(),
+        "high_pass": lambda: HighPassLaw.of(hull, **high_pass, law=SuctionSideLaw(ends)),
+        "keulegan_carpenter": lambda: KeuleganCarpenterLaw.of(hull, dict.fromkeys(keys, -0.3), **constants, coupled=coupled),
+        "suction_side": lambda: SuctionSideLaw(ends),
+        "speed_power": lambda: SpeedPowerLaw({group: -0.3 for group, _ in keys}),
+        "slow_motion": lambda: SlowMotionLaw(low_share=1.4, cutoff=0.04, law=SpeedPowerLaw({"column": -0.3})),
+    }[name]()
+
+
+def at_neutral(law: AbstractDragLaw) -> AbstractDragLaw:
+    return law.at_values({label: law.about(label).neutral for label in law.values})
 
 
 @pytest.mark.parametrize("speed", ["vector", "component"])
-@pytest.mark.parametrize("null", NULLS)
-def test_a_null_is_plain_drag_exactly(null: str, speed: str) -> None:
-    """Bit for bit, in waves and whatever is remembered."""
-    t, z = NULLS[null]
-    changed = only(with_laws(t, z, ends=null != "suction", drag_speed=speed), *ALL)
-    plain = only(build(COLUMN, PONTOON, drag_speed=speed), *ALL)
+@pytest.mark.parametrize("name", DRAG_LAWS)
+def test_a_neutral_value_is_constant_coefficients(name: str, speed: str) -> None:
+    """In waves, moving, and whatever is remembered: to the bit, but for the velocity that a filter takes apart."""
+    plain = only(build(COLUMN, PONTOON, drag_speed=speed), MorisonDrag)
+    changed = with_law(plain, at_neutral(law_of(name, plain)))
     for sea in (jh.StillWater(), SEA):
         found, _ = acting(changed, POSITION, VELOCITY, lively(changed), sea)
         expected, _ = acting(plain, POSITION, VELOCITY, lively(plain), sea)
-        assert bool((found == expected).all())
+        assert_allclose(found, expected, atol=1e-15 * np.abs(expected).max(), rtol=1e-14)
+        moved, _ = acting(with_law(plain, law_of(name, plain)), POSITION, VELOCITY, lively(changed), sea)
+        assert name == "constant" or not np.allclose(moved, expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", DRAG_LAWS)
+def test_labels_and_values_come_back(name: str) -> None:
+    """Each label once, its value and its meaning; what is changed by label is what is read; a wrapped law's are there, too."""
+    model = with_law(build(COLUMN, PONTOON), law_of(name, build(COLUMN, PONTOON)))
+    (drag,) = model.loads
+    assert set(drag.values) >= {"column.Cd_t", "column.Cd_z", "pontoon.Cd_t", "pontoon.Cd_z"} | set(drag.law.values)
+    assert (name == "constant") == (drag.law.values == {}) and DRAG_LAWS[name] is type(drag.law) and drag.law.source
+    new = {label: float(value) * 0.5 for label, value in model.values.items()}
+    assert {label: float(value) for label, value in model.with_values(new).values.items()} == new
+    assert all(model.about(label).meaning and "{" not in model.about(label).meaning for label in new)
+    assert jax.tree.structure(model.with_values(new)) == jax.tree.structure(model)
+
+
+@pytest.mark.parametrize("name", DRAG_LAWS)
+def test_gradients_are_finite_at_rest(name: str) -> None:
+    """By state, memory and every parameter, on the motionless platform and on one that moves; jit = eager, vmap = loop."""
+    model = with_law(build(COLUMN, PONTOON), law_of(name, build(COLUMN, PONTOON)))
+    for velocity, memory in ((jnp.zeros(6), model.rest().memory), (VELOCITY, lively(model))):
+        y = (velocity, memory, model.values)
+        slopes = jax.jacrev(lambda y: acting(model.at_values(y[2]), jnp.zeros(6), *y[:2], jh.StillWater()))(y)
+        assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(slopes))
+    memories = [lively(model, seed) for seed in range(3)]
+    loop = [acting(model, POSITION, VELOCITY, memory, SEA) for memory in memories]
+    stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *memories)
+    one = lambda memory, velocity: acting.__wrapped__(model, POSITION, velocity, memory, SEA)  # noqa: E731
+    batch = eqx.filter_jit(jax.vmap(one))(stacked, jnp.stack(3 * [VELOCITY]))
+    for whole, alone, *parts in zip(*map(jax.tree.leaves, (batch, one(memories[0], VELOCITY), *loop)), strict=True):
+        assert whole.dtype == jnp.float64 and bool(jnp.isfinite(whole).all())
+        scale = float(jnp.abs(whole).max()) + 1e-300
+        assert_allclose(whole / scale, np.stack(parts) / scale, atol=1e-13)
+        assert_allclose(alone / scale, parts[0] / scale, atol=1e-13)
 
 
 def test_without_a_cutoff_there_is_no_filter() -> None:
-    """fc = 0 is the other null of the high-pass: what is remembered stays nothing."""
-    changed = only(with_laws({**HIGH_PASS, "cutoff": 0.0}, {**HIGH_PASS, "cutoff": 0.0}), *ALL)
-    plain = only(build(COLUMN, PONTOON), *ALL)
+    """fc = 0 is the other neutral value of the high-pass: what is remembered stays nothing."""
+    changed = only(with_laws({**HIGH_PASS, "cutoff": 0.0}, {**HIGH_PASS, "cutoff": 0.0}), MorisonDrag)
+    plain = only(build(COLUMN, PONTOON), MorisonDrag)
     found, rate = acting(changed, POSITION, VELOCITY, changed.rest().memory, SEA)
     expected = acting(plain, POSITION, VELOCITY, plain.rest().memory, SEA)[0]
     assert_allclose(found, expected, rtol=1e-13)
@@ -93,25 +167,6 @@ def test_unchosen_laws_leave_no_trace() -> None:
     plain = build(COLUMN, PONTOON)
     assert [type(load) for load in constant.loads] == [type(load) for load in plain.loads]
     assert jax.tree.leaves(plain.rest().memory) == [] and sorted(constant.values) == sorted(plain.values)
-
-
-@pytest.mark.parametrize("law", [HIGH_PASS, KEULEGAN_CARPENTER], ids=lambda law: law["law"])
-def test_contract_with_a_memory(law: dict) -> None:
-    """jit = eager, vmap = loop, float64, finite; slopes by state and memory finite at rest and not."""
-    model = only(with_laws(law, law), HighPassDrag, KeuleganCarpenterDrag)
-    memories = [lively(model, seed) for seed in range(3)]
-    loop = [acting(model, POSITION, VELOCITY, memory, SEA) for memory in memories]
-    stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *memories)
-    batch = eqx.filter_jit(jax.vmap(lambda memory: acting.__wrapped__(model, POSITION, VELOCITY, memory, SEA)))(stacked)
-    eager = acting.__wrapped__(model, POSITION, VELOCITY, memories[0], SEA)
-    for whole, alone, *parts in zip(*map(jax.tree.leaves, (batch, eager, *loop)), strict=True):
-        assert whole.dtype == jnp.float64 and bool(jnp.isfinite(whole).all())
-        scale = float(jnp.abs(whole).max()) + 1e-300
-        assert_allclose(whole / scale, np.stack(parts) / scale, atol=1e-13)
-        assert_allclose(alone / scale, parts[0] / scale, atol=1e-13)
-    for velocity, memory in ((jnp.zeros(6), model.rest().memory), (VELOCITY, memories[0])):
-        slopes = jax.jacrev(lambda v, m: acting(model, jnp.zeros(6), v, m, jh.StillWater()), argnums=(0, 1))(velocity, memory)
-        assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(slopes))
 
 
 # a column that is driven
@@ -142,7 +197,7 @@ def _moved(memory, rate, step):
 
 
 def column(**law) -> jh.Model:
-    return only(with_laws(law, members=(COLUMN,)), StripDrag, HighPassDrag, KeuleganCarpenterDrag)
+    return only(with_laws(law, members=(COLUMN,)), ConstantLaw, HighPassLaw, KeuleganCarpenterLaw)
 
 
 UNIT = 0.5 * RHO * CD_T * 10 * 20  # N per (m/s)2 across the column
@@ -300,13 +355,64 @@ def test_heave_decay_of_a_buoy(law: dict) -> None:
 
 def test_suction_acts_where_the_flow_leaves() -> None:
     """AxFDMod = 1: a column that rises has twice the drag on its bottom, one that sinks has none; half-way at a half."""
-    plain = only(build(COLUMN), EndDrag)
+    plain = only(build(COLUMN), ConstantLaw)
     for suction in (1.0, 0.5):
-        model = only(with_laws(z={"law": "suction_side", "suction": suction}, members=(COLUMN,)), SuctionSideDrag)
+        model = only(with_laws(z={"law": "suction_side", "suction": suction}, members=(COLUMN,)), SuctionSideLaw)
         for heave, factor in ((0.9, 1 + suction), (-0.9, 1 - suction)):
             velocity = [0, 0, heave, 0, 0, 0]
             expected = factor * force(plain, velocity)
             assert_allclose(force(model, velocity), expected, rtol=1e-11, atol=1e-6)
+
+
+# powers of the speed, and slow motion of the platform
+
+
+def with_law(model: jh.Model, law: AbstractDragLaw) -> jh.Model:
+    """Drag by another law, and nothing else."""
+    (drag,) = only(model, MorisonDrag).loads
+    return model_of(model, dataclasses.replace(drag, law=law))
+
+
+def keys_of(model: jh.Model) -> list[tuple[str, str]]:
+    return [key for load in only(model, MorisonDrag).loads for key in load.Cd]
+
+
+def test_another_power_of_the_speed() -> None:
+    """1/2 rho Cd D T |u|^(2+n) / U0^n on a column, and on its end; the coefficient is Cd at U0 = 0.5 m/s."""
+    plain = only(build(COLUMN), MorisonDrag)
+    model = with_law(plain, SpeedPowerLaw({"column": -1 / 3}))
+    factor = ((0.8**2 + 4e-4) / (0.25 + 4e-4)) ** (-1 / 6)
+    assert_allclose(force(model, [0.48, -0.64, 0, 0, 0, 0]), factor * force(plain, [0.48, -0.64, 0, 0, 0, 0]), atol=1e-4)
+    assert_allclose(force(model, [0, 0, 0.8, 0, 0, 0]), factor * force(plain, [0, 0, 0.8, 0, 0, 0]), rtol=1e-9, atol=1e-4)
+    assert_allclose(force(model, [0.5, 0, 0, 0, 0, 0]), force(plain, [0.5, 0, 0, 0, 0, 0]), rtol=1e-12, atol=1e-4)
+
+
+SLOW = np.array([-0.4, 0.9, -0.2, 0.01, 0.015, -0.02])
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 2.0])
+@pytest.mark.parametrize("powers", [{}, {"column": -0.4, "pontoon": 0.2}])
+def test_slow_motion_has_a_coefficient_of_its_own(share: float, powers: dict[str, float]) -> None:
+    """r = 0 is drag at the velocity less the slow one, in any motion of strips and ends; r between is the mixture; the
+    memory is a first-order low-pass. So it is with a power of the speed for the square."""
+    law = SpeedPowerLaw(powers)
+    plain = with_law(build(COLUMN, PONTOON), law)
+    whole, fast = force(plain, VELOCITY, POSITION), force(plain, VELOCITY - SLOW, POSITION)
+    model = with_law(plain, SlowMotionLaw(low_share=share, cutoff=0.05, law=law))
+    memory = jax.tree.map(lambda leaf: jnp.asarray(SLOW), model.rest().memory)
+    found, rate = acting(model, POSITION, VELOCITY, memory, jh.StillWater())
+    expected = share * whole + (1 - share) * fast
+    assert_allclose(found, expected, rtol=1e-10, atol=1e-10 * np.abs(whole).max())
+    assert_allclose(jax.tree.leaves(rate)[0], 2 * math.pi * 0.05 * (VELOCITY - SLOW), rtol=1e-13)
+
+
+def test_slow_motion_in_a_current() -> None:
+    """A platform that drifts slowly in it feels r of the whole, and of the current the rest: that is no slow motion."""
+    model = with_law(build(COLUMN), SlowMotionLaw(low_share=0.3)).with_effect(Current(x=1.0))
+    slow = jnp.array([0.4, 0, 0, 0, 0, 0])
+    memory = jax.tree.map(lambda leaf: slow, model.rest().memory)
+    found, _ = acting(model, jnp.zeros(6), slow, memory, jh.StillWater())
+    assert float(found[0]) == pytest.approx(UNIT * (0.3 * 0.6**2 + 0.7 * 1.0**2), rel=1e-9)
 
 
 # simulations, their gradients, and what is worked out at rest
@@ -386,7 +492,7 @@ def test_what_is_worked_out_at_rest() -> None:
 
 
 def test_parameters_have_labels_and_can_be_freed() -> None:
-    """By group and direction, within bounds, each with a finite slope; a null is not freed by itself where it is 0."""
+    """By group and direction, within bounds, each with a finite slope; a neutral value is not freed by itself where it is 0."""
     model = with_laws({**KEULEGAN_CARPENTER, "exponent": 0.0}, {**HIGH_PASS, "suction": 0.5}, ends=False)
     new = sorted(label for label in model.values if ".drag_" in label)
     assert new == [
@@ -407,10 +513,10 @@ def test_parameters_have_labels_and_can_be_freed() -> None:
 
 def test_each_coefficient_is_in_one_load_of_the_strips_or_ends() -> None:
     """A pontoon with a law in one direction only: the other keeps plain drag, and |u| is still that of both."""
-    model = only(with_laws(None, {**HIGH_PASS, "low_share": 1.0}), *ALL)
+    model = only(with_laws(None, {**HIGH_PASS, "low_share": 1.0}), MorisonDrag)
     labels = [label for load in model.loads for label in load.values if ".Cd_" in label]
     assert sorted(labels) == ["column.Cd_t", "column.Cd_z", "pontoon.Cd_t", "pontoon.Cd_z"]
-    assert_allclose(force(model, VELOCITY), force(only(build(COLUMN, PONTOON), *ALL), VELOCITY), rtol=1e-14)
+    assert_allclose(force(model, VELOCITY), force(only(build(COLUMN, PONTOON), MorisonDrag), VELOCITY), rtol=1e-14)
 
 
 def test_laws_of_a_model_given_to_another() -> None:

@@ -166,7 +166,7 @@ def test_broken_files_are_told(tmp_path: Path) -> None:
 
 
 def test_a_platform_file_names_one(tmp_path: Path) -> None:
-    """A load of all of it, found beside the platform file, by a sweep's copy too; as a candidate at its null, and scored."""
+    """All of it, found beside the platform file, by a sweep's copy too; as a candidate at its neutral value, and scored."""
     written(tmp_path, rows_of(table()), "hull.12d")
     text = (Path(jh.__path__[0]) / "platforms" / "volturnus-s-focal.yaml").read_text(encoding="utf-8")
     path = tmp_path / "a.yaml"

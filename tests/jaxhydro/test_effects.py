@@ -42,7 +42,7 @@ KINDS = (CoulombFriction, CubicDamping, StaticForce, MooringNonlinearity, Hyster
 
 @cache
 def rig() -> jh.Model:
-    """A mass on springs with all effects at their nulls: one program for all that follows."""
+    """A mass on springs with all effects at their neutral value: one program for all that follows."""
     springs = dict.fromkeys(("C11", "C22"), C) | {"C33": LIFT, "C44": TILT, "C55": TILT, "C66": TILT}
     effects = (*(kind.neutral(("surge",)) for kind in KINDS), NonlinearHydrostatics.neutral())
     body = BODY | {"centre_of_mass": [0, 0, 0]}
@@ -126,10 +126,10 @@ def test_a_free_decay_with_one_effect(name: str) -> None:
 
 
 def test_nulls_are_silent_and_their_derivatives_are_not() -> None:
-    """At null the rig is its spring alone, and the motion moves with every strength; slopes are those of differences."""
+    """At neutral values the rig is its spring alone, and the motion moves with every strength; slopes are differences."""
     assert_allclose(motion({}, surge=5.0)[:, 0], 5 * np.cos(np.sqrt(C / M) * TIMES), atol=2e-6)
     effects = [label for label in rig().values if not label.startswith("stiffness")]
-    null = {label: jnp.zeros(()) for label in effects if rig().about(label).null == 0.0}
+    neutral = {label: jnp.zeros(()) for label in effects if rig().about(label).neutral == 0.0}
     released = {"surge": 5.0, "heave": 2.0, "roll": 0.1, "pitch": 0.2}
     start = jnp.array([released.get(dof, 0.0) for dof in DOFS])
     times = TIMES[:121]  # a cycle of surge
@@ -137,7 +137,7 @@ def test_nulls_are_silent_and_their_derivatives_are_not() -> None:
     def run(strengths: dict) -> jax.Array:  # unchecked: no friction is negative, but its derivative at zero has two sides
         return jh.simulate(rig().at_values(strengths), times, position=start, step=0.25).position
 
-    slopes = jax.jacfwd(run)(null)
+    slopes = jax.jacfwd(run)(neutral)
     assert len(slopes) == 17
     for label, slope in slopes.items():
         size = {"surge": 1e3, "heave": 1e3}.get(label.split(".")[1], 1e8)
@@ -429,7 +429,7 @@ def test_forces_along_earth_axes_and_body_axes() -> None:
 
 
 def test_what_is_refused_and_what_labels_mean() -> None:
-    """Wrong names are told with the right ones; units by degree of freedom; shapes of nulls as given."""
+    """Wrong names are told with the right ones; units by degree of freedom; neutral shapes as given."""
     with pytest.raises(ValueError, match="no degree of freedom 'surgee'; there are: surge"):
         CoulombFriction.neutral(["surgee"])
     with pytest.raises(ValueError, match="no degree of freedom 'surge'; there are: heave, roll, pitch"):

@@ -21,7 +21,6 @@ from jaxhydro.loads import (
     AbstractLoad,
     AddedMass,
     Buoyancy,
-    ChangingDrag,
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
@@ -29,32 +28,35 @@ from jaxhydro.loads import (
     CoveredEnds,
     CubicDamping,
     DriftTransfer,
-    EndDrag,
     EndInertia,
     HiddenOscillator,
-    HighPassDrag,
     HydrostaticCoupling,
     Hysteresis,
-    KeuleganCarpenterDrag,
     LinearDamping,
     MassError,
     MooringLines,
     MooringNonlinearity,
+    MorisonDrag,
     NonlinearHydrostatics,
-    PowerDrag,
     QuadraticDamping,
     RadiationMemory,
-    SlowDrag,
     StaticForce,
     Stiffness,
-    StripDrag,
     StripInertia,
-    SuctionSideDrag,
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
     WaveExcitation,
     Weight,
+)
+from jaxhydro.loads.drag import (
+    DRAG_LAWS,
+    ConstantLaw,
+    HighPassLaw,
+    KeuleganCarpenterLaw,
+    SlowMotionLaw,
+    SpeedPowerLaw,
+    SuctionSideLaw,
 )
 from jaxhydro.parameters import AbstractEffect
 from jaxhydro.sensors import SENSOR_EFFECTS, SensorLag, SensorReference
@@ -137,7 +139,7 @@ FOUND = {  # what no platform file declares: effects that were found to be missi
     "cubic_damping": {"coefficient": 3e4},
     "mass_properties": {"mass": 3e5, "centre_x": 0.2, "centre_z": -0.4, "inertia_roll": 2e8},
     "static_offset": {"force": 6e4},
-    # what changes the water that the others meet stays at its null: the sum of all is that of each alone
+    # what changes the water that the others meet stays at its neutral value: the sum of all is that of each alone
     "sensor_reference": {"x": 4.0, "z": -6.0},
     "sensor_lag": {"delay": 0.4},
     "wave_drift": {"envelope": 2e4, "quadrature": -7e3, "frequency_weighted": 9e3},
@@ -157,7 +159,7 @@ RADIATION += (1e3 * RADIATION[1].T,)
 
 
 def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad, ...]:
-    """The loads that no platform file declares, at their nulls."""
+    """The loads that no platform file declares, at their neutral value."""
     return (
         Umbilical(),
         NonlinearHydrostatics.neutral(),
@@ -169,15 +171,17 @@ def effects(model: jh.Model, dofs: tuple[str, ...] = DOFS) -> tuple[AbstractLoad
 
 
 def in_water(model: jh.Model) -> jh.Model:
-    """The model with the effects of the water and the sensors at their nulls; three drag coefficients get laws of their own."""
-    taken = {("column", "t"): PowerDrag.neutral, ("pontoon", "t"): SlowDrag, ("column", "z"): ChangingDrag.neutral}
+    """With the effects of the water and the sensors at their neutral value; three drag coefficients get other laws."""
+    column, others = ("column", "t"), (("pontoon", "t"), ("column", "z"))
+    laws = {(column,): SpeedPowerLaw.neutral([column]), others: SlowMotionLaw(law=SpeedPowerLaw.neutral(others))}
+    taken = {key for keys in laws for key in keys}
     plain = [
         dataclasses.replace(load, Cd={k: v for k, v in load.Cd.items() if k not in taken})
-        if isinstance(load, StripDrag)
+        if isinstance(load, MorisonDrag) and isinstance(load.law, ConstantLaw)
         else load
         for load in model.loads
     ]
-    drag = [law({key: COEFFICIENTS[f"Cd_{key[1]}"]}) for key, law in taken.items()]
+    drag = [MorisonDrag({key: COEFFICIENTS[f"Cd_{key[1]}"] for key in keys}, law) for keys, law in laws.items()]
     others = (CoveredEnds, Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
     computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION))
     drift = (
@@ -207,8 +211,13 @@ def everything() -> jh.Model:
 
 
 def only(model: jh.Model, *kinds: type) -> jh.Model:
-    """The model with some of its effects."""
-    return model_of(model, *(effect for effect in model.effects if isinstance(effect, kinds)))
+    """The model with some of its effects, by their type or that of their drag law."""
+    return model_of(model, *(effect for effect in model.effects if types(effect) & set(kinds)))
+
+
+def types(effect: AbstractEffect) -> set[type]:
+    """The type of an effect, and of a drag's law."""
+    return {type(effect), type(effect.law)} if isinstance(effect, MorisonDrag) else {type(effect)}
 
 
 def model_of(model: jh.Model, *effects: AbstractEffect) -> jh.Model:
@@ -252,25 +261,25 @@ def sample(seed: int, n: int = 3) -> tuple[jax.Array, jax.Array]:
 
 # the contract
 
-EFFECTS = LOADS | WATER_EFFECTS | SENSOR_EFFECTS
+EFFECTS = {name: kind for name, kind in LOADS.items() if kind is not MorisonDrag} | DRAG_LAWS | WATER_EFFECTS | SENSOR_EFFECTS
 
 SEA = jh.regular_wave(3.0, 9.0, jh.Environment(RHO, 200.0, G), heading=0.4, phase=0.3)
 
 
 def test_the_example_has_every_registered_load() -> None:
     """Nothing escapes the contract below."""
-    assert {type(effect) for effect in everything().effects} == set(EFFECTS.values())
+    assert {kind for effect in everything().effects for kind in types(effect)} == {MorisonDrag, *EFFECTS.values()}
 
 
 @pytest.mark.parametrize("name", EFFECTS)
 def test_contract(name: str) -> None:
-    """Null is exactly silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
+    """The neutral value is silent in still water, jit = eager, vmap = loop, float64 is kept, parameters within bounds."""
     model = only(everything(), EFFECTS[name])
     (load,) = model.effects
     positions, velocities = sample(1)
     for label, value in load.values.items():
         about = load.about(label)
-        assert about.unit and about.meaning and about.lower <= about.null <= about.upper
+        assert about.unit and about.meaning and about.lower <= about.neutral <= about.upper
         assert about.lower <= float(value) <= about.upper
 
     loop = [wrench(model, q, v, SEA) for q, v in zip(positions, velocities, strict=True)]
@@ -283,8 +292,8 @@ def test_contract(name: str) -> None:
         assert_allclose(alone / scale, parts[0] / scale, atol=1e-13)
 
     if load.values:
-        null = model.with_values({label: load.about(label).null for label in load.values})
-        assert all(bool((part == 0).all()) for part in wrench(null, positions[0], velocities[0]))
+        neutral = model.with_values({label: load.about(label).neutral for label in load.values})
+        assert all(bool((part == 0).all()) for part in wrench(neutral, positions[0], velocities[0]))
 
 
 @pytest.mark.parametrize("name", WATER_EFFECTS)
@@ -349,8 +358,8 @@ def test_gradients_at_rest_are_finite() -> None:
     assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves((forward, by_model)))
 
 
-DISSIPATIVE = [StripDrag, EndDrag, HighPassDrag, KeuleganCarpenterDrag, SuctionSideDrag, LinearDamping, QuadraticDamping]
-DISSIPATIVE += [CoulombFriction, CubicDamping, PowerDrag]
+DISSIPATIVE = [ConstantLaw, HighPassLaw, KeuleganCarpenterLaw, SuctionSideLaw, SpeedPowerLaw]
+DISSIPATIVE += [LinearDamping, QuadraticDamping, CoulombFriction, CubicDamping]
 
 
 @pytest.mark.parametrize("kind", DISSIPATIVE)
@@ -377,7 +386,7 @@ def test_all_loads_together_are_their_sum() -> None:
 
 def test_drag_of_a_column_in_surge() -> None:
     """1/2 rho Cd D T |u| u at mid-draught, by hand: D = 10 m, T = 20 m, u = 1.3 m/s."""
-    found = force(only(build(COLUMN), StripDrag), [1.3, 0, 0, 0, 0, 0])
+    found = force(only(build(COLUMN), MorisonDrag), [1.3, 0, 0, 0, 0, 0])
     expected = -0.5 * RHO * 1.1 * 10 * 20 * 1.3**2
     assert_allclose(found, [expected, 0, 0, 0, -10 * expected, 0], rtol=1e-11, atol=1e-4)
 
@@ -385,7 +394,7 @@ def test_drag_of_a_column_in_surge() -> None:
 def test_drag_of_a_column_in_pitch() -> None:
     """Integral of 1/2 rho Cd D |q z| q z and of z times it, by quad."""
     q = 0.03
-    found = force(only(build(COLUMN), StripDrag), [0, 0, 0, 0, q, 0])
+    found = force(only(build(COLUMN), MorisonDrag), [0, 0, 0, 0, q, 0])
     per_length = lambda z: -0.5 * RHO * 1.1 * 10 * abs(q * z) * q * z  # noqa: E731
     assert_allclose(found[0], quad(per_length, -20, 0)[0], rtol=1e-10)
     assert_allclose(found[4], quad(lambda z: z * per_length(z), -20, 0)[0], rtol=1e-10)
@@ -393,14 +402,14 @@ def test_drag_of_a_column_in_pitch() -> None:
 
 def test_drag_of_an_oblique_flow_on_a_column() -> None:
     """A circle sees the flow's vector: the force is against it, with the square of its whole speed."""
-    found = force(only(build(COLUMN), StripDrag), [0.6, -0.8, 0, 0, 0, 0])
+    found = force(only(build(COLUMN), MorisonDrag), [0.6, -0.8, 0, 0, 0, 0])
     assert_allclose(found[:2], -0.5 * RHO * 1.1 * 200 * np.array([0.6, -0.8]), rtol=1e-11)
 
 
 def test_drag_of_a_pontoon_in_pitch() -> None:
     """Vertical drag on the plan width, integral of 1/2 rho Cd B |q x| q x and its moment, by quad; w = -q x."""
     q = -0.02
-    found = force(only(build(PONTOON), StripDrag), [0, 0, 0, 0, q, 0])
+    found = force(only(build(PONTOON), MorisonDrag), [0, 0, 0, 0, q, 0])
     per_length = lambda x: 0.5 * RHO * 2.3 * 12.5 * abs(q * x) * q * x  # noqa: E731
     assert_allclose(found[2], quad(per_length, 5, 45)[0], rtol=1e-10)
     assert_allclose(found[4], quad(lambda x: -x * per_length(x), 5, 45)[0], rtol=1e-10)
@@ -410,7 +419,7 @@ def test_drag_of_a_pontoon_in_pitch() -> None:
 def test_drag_of_a_rectangle_by_vector_or_component(speed: str) -> None:
     """Side area 7 x 40 with Cd_t, plan 12.5 x 40 with Cd_z; |.| of the vector (OpenFAST) or of the component."""
     v, w = 0.7, -0.4
-    found = force(only(build(PONTOON, drag_speed=speed), StripDrag), [0, v, w, 0, 0, 0])
+    found = force(only(build(PONTOON, drag_speed=speed), MorisonDrag), [0, v, w, 0, 0, 0])
     of = (math.hypot(v, w),) * 2 if speed == "vector" else (abs(v), abs(w))
     expected = [0, -0.5 * RHO * 1.1 * 7 * 40 * of[0] * v, -0.5 * RHO * 2.3 * 12.5 * 40 * of[1] * w]
     assert_allclose(found[:3], expected, rtol=1e-11, atol=1e-4)
@@ -418,13 +427,14 @@ def test_drag_of_a_rectangle_by_vector_or_component(speed: str) -> None:
 
 def test_no_strip_drag_along_a_member() -> None:
     """A column that heaves and a pontoon that runs along itself have end drag at most."""
-    assert_allclose(force(only(build(COLUMN), StripDrag), [0, 0, 2.0, 0, 0, 0]), 0.0, atol=1e-3)
-    assert_allclose(force(only(build(PONTOON), StripDrag, EndDrag), [2.0, 0, 0, 0, 0, 0]), 0.0, atol=1e-3)
+    column = only(build(COLUMN), MorisonDrag).with_values({"column.Cd_z": 0.0})
+    assert_allclose(force(column, [0, 0, 2.0, 0, 0, 0]), 0.0, atol=1e-3)
+    assert_allclose(force(only(build(PONTOON), MorisonDrag), [2.0, 0, 0, 0, 0, 0]), 0.0, atol=1e-3)
 
 
 def test_drag_turns_with_the_body() -> None:
     """Pitched by 20 degrees, a surge along earth's x meets a submerged column with its transverse part only."""
-    model = only(build({**COLUMN, "rA": [0, 0, -60], "rB": [0, 0, -30]}), StripDrag)
+    model = only(build({**COLUMN, "rA": [0, 0, -60], "rB": [0, 0, -30]}), MorisonDrag).with_values({"column.Cd_z": 0.0})
     matrix = Rotation.from_euler("y", 20, degrees=True).as_matrix()
     body = matrix.T @ [1.0, 0, 0]
     found = force(model, [*body, 0, 0, 0], [0, 0, 0, 0, math.radians(20), 0])
@@ -434,12 +444,12 @@ def test_drag_turns_with_the_body() -> None:
 
 def test_end_drag() -> None:
     """1/2 rho Cd pi/4 D^2 |w| w on the bottom that is in the water; the dry top adds nothing; its lever in pitch."""
-    model = only(build({**COLUMN, "rA": [30, 0, -20], "rB": [30, 0, 15]}), EndDrag)
+    model = only(build({**COLUMN, "rA": [30, 0, -20], "rB": [30, 0, 15]}), MorisonDrag)
     area = math.pi * 25
     found = force(model, [0, 0, -0.9, 0, 0, 0])
     assert_allclose(found[[2, 4]], np.array([1, -30]) * 0.5 * RHO * 2.3 * area * 0.81, rtol=1e-11)
     assert_allclose(force(model, [0, 0, 0, 0, 0.02, 0])[2], 0.5 * RHO * 2.3 * area * 0.36, rtol=1e-11)
-    sunk = only(build({**COLUMN, "rA": [30, 0, -60], "rB": [30, 0, -30]}), EndDrag)
+    sunk = only(build({**COLUMN, "rA": [30, 0, -60], "rB": [30, 0, -30]}), MorisonDrag)
     assert_allclose(force(sunk, [0, 0, -0.9, 0, 0, 0])[2], 2 * found[2], rtol=1e-11)
 
 
@@ -496,10 +506,10 @@ def test_added_mass_of_a_tapered_column() -> None:
 def test_strips_follow_the_surface() -> None:
     """A column lifted by 3 m has 17 m in the water and is loaded there: instantaneous wetting; not so with mean."""
     for wetting, depth in (("instantaneous", 17.0), ("mean", 20.0)):
-        model = only(build(COLUMN, wetting=wetting), StripDrag)
+        model = only(build(COLUMN, wetting=wetting), MorisonDrag)
         found = force(model, [1.0, 0, 0, 0, 0, 0], [0, 0, 3.0, 0, 0, 0])[0]
         assert_allclose(found, -0.5 * RHO * 1.1 * 10 * depth, rtol=1e-11)
-    leaning = only(build(COLUMN), StripDrag)
+    leaning = only(build(COLUMN), MorisonDrag)
     found = force(leaning, [0, 1.0, 0, 0, 0, 0], [0, 0, 0, 0, math.radians(15), 0])[1]
     assert_allclose(found, -0.5 * RHO * 1.1 * 10 * 20, rtol=1e-11)  # along its axis, from -20 m to the surface
 
@@ -631,7 +641,7 @@ def test_a_body_turned_upside_down_in_the_file_is_the_same() -> None:
     """rA above rB is the same column."""
     position = jnp.array([0, 0, 1.0, 0.1, 0.2, 0.0])
     one, other = (
-        only(build({**COLUMN, "rA": a, "rB": b}), Buoyancy, StripDrag, EndDrag, StripInertia, EndInertia)
+        only(build({**COLUMN, "rA": a, "rB": b}), Buoyancy, MorisonDrag, StripInertia, EndInertia)
         for a, b in (([9, 0, -20], [9, 0, 15]), ([9, 0, 15], [9, 0, -20]))
     )
     velocity = jnp.array([1.0, 0.5, -0.4, 0.02, -0.03, 0.01])

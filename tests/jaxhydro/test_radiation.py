@@ -358,7 +358,7 @@ def folder(path: Path, **keys: Any) -> Path:
 
 
 def test_a_platform_file_names_its_coefficients(tmp_path: Path) -> None:
-    """Beside the platform file, wherever it is loaded from; both formats give one force; a candidate is at its null."""
+    """Beside the file, wherever it is loaded from; both formats give one force; a candidate is at its neutral value."""
     models = [
         jh.load_model(folder(tmp_path, **keys))
         for keys in ({}, {"file": "hull.nc", "length": None}, {"use": "candidate", "order": 6, "tolerance": 0.2})

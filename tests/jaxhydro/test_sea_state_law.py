@@ -47,13 +47,13 @@ def test_a_power_of_height_and_period(models) -> None:
 
 @pytest.mark.slow
 def test_exponents_are_parameters_like_others(models) -> None:
-    """Named, bounded, silent at their null; the force's slope to one is the coefficient's share times the logarithm."""
+    """Named, bounded, silent at their neutral value; the slope to one is the coefficient's share times the logarithm."""
     _, laws = models
     label = exponent_label("column.Cd_t", "significant_height")
     assert label == "column.Cd_t.Hs_exponent" and is_exponent(label) and split(label) == ("column.Cd_t", "Hs")
     assert float(laws.values[label]) == -0.5
     about = laws.about(label)
-    assert about.null == 0 and about.lower < 0 < about.upper and "Hs/4 m" in about.meaning
+    assert about.neutral == 0 and about.lower < 0 < about.upper and "Hs/4 m" in about.meaning
     in_sea = laws.in_sea(SeaState(8.0, 10.0))
 
     def surge(values):

@@ -137,7 +137,7 @@ def test_an_exponent_of_what_columns_and_pontoons_share() -> None:
     laws = {"reference": {"significant_height": 4.0, "peak_period": 10.0}, "exponents": {"pontoon.Cd_z": {"peak_period": 1.0}}}
     rows = {"column": OWN | {"Cd_z": "pontoon"}, "pontoon": FLAT}
     model = build(COLUMN, PONTOON, coefficients=rows, sea_state_laws=laws)
-    assert sum(isinstance(load, SeaStateLaw) for load in model.loads) == 2
+    assert sum(isinstance(load, SeaStateLaw) for load in model.loads) == 1
     plain = build(COLUMN, PONTOON, coefficients=rows)
     same(plain.with_values({"pontoon.Cd_z": 2 * FLAT["Cd_z"]}), model.in_sea(SeaState(4.0, 20.0)))
 

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 import jaxhydro as jh
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, validate
-from jaxhydro.loads import Buoyancy, EndDrag, EndInertia
+from jaxhydro.loads import Buoyancy, EndInertia, MorisonDrag
 from jaxhydro.platform.build import build as built
 from jaxhydro.platform.schema import Platform
 from jaxhydro.waves.components import PlaneWaves, components
@@ -193,7 +193,7 @@ def axial(model: Model) -> tuple[jnp.ndarray, jnp.ndarray]:
     state = model.rest()
     moving = type(state)(state.position, jnp.array([0, 0, 1.0, 0, 0, 0]), state.memory)
     now = model.instant(jnp.asarray(0.0), moving, jh.StillWater())
-    inertia, drag = (next(load for load in model.loads if isinstance(load, kind)) for kind in (EndInertia, EndDrag))
+    inertia, drag = (next(load for load in model.loads if isinstance(load, kind)) for kind in (EndInertia, MorisonDrag))
     return inertia.act(now, None).end_mass, drag.act(now, None).end_force
 
 

@@ -19,14 +19,12 @@ import jaxhydro as jh
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
-    EndDrag,
-    PowerDrag,
-    SlowDrag,
-    StripDrag,
+    MorisonDrag,
     WaveDrift,
     WaveDriftDamping,
     WaveExcitation,
 )
+from jaxhydro.loads.drag import SlowMotionLaw, SpeedPowerLaw
 from jaxhydro.parameters import AbstractEffect
 from jaxhydro.sensors import SensorLag, SensorReference
 from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
@@ -79,7 +77,7 @@ def water(sea: jh.AbstractSea, time, points, load: AbstractLoad | None = None) -
 
 def test_drag_in_a_current() -> None:
     """1/2 rho Cd D T |U| U on a column that is held, oblique; as much on one that is moved the other way in still water."""
-    plain = only(build(COLUMN), StripDrag)
+    plain = only(build(COLUMN), MorisonDrag)
     flowing = plain.with_effect(with_values(Current(), x=0.9, y=-1.2))
     expected = 0.5 * RHO * CD_T * AREA * 1.5 * np.array([0.9, -1.2])
     assert_allclose(force(flowing)[:2], expected, rtol=1e-11)
@@ -88,7 +86,7 @@ def test_drag_in_a_current() -> None:
 
 def test_a_current_is_galilean() -> None:
     """Whoever goes with the stream feels none; any motion in it is that of the difference, in an attitude, too."""
-    plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
+    plain = only(build(COLUMN, PONTOON), MorisonDrag)
     stream = np.array([0.9, -1.2, 0.0])
     flowing = plain.with_effect(with_values(Current(), x=0.9, y=-1.2))
     in_body = np.concatenate([Rotation.from_euler("ZYX", POSITION[:2:-1]).as_matrix().T @ stream, np.zeros(3)])
@@ -101,7 +99,7 @@ def test_a_current_is_galilean() -> None:
 
 
 def test_what_a_point_off_the_reference_reads() -> None:
-    """p + R o - o with scipy's rotation, over any leading axes; at zero attitude, and at the null, p to the bit."""
+    """p + R o - o with scipy's rotation, over any leading axes; at zero attitude, and at the neutral value, p to the bit."""
     position = np.random.default_rng(0).uniform(-0.5, 0.5, (2, 3, 6))
     load = with_values(SensorReference(), x=4.0, z=-6.0)
     offset = np.array([4.0, 0.0, -6.0])
@@ -258,7 +256,7 @@ def test_wave_drift_damping_of_a_sea_state_and_of_groups(steady: float) -> None:
 def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
     """As many operations as without an envelope, and the same numbers."""
     sea = irregular().prepared(HULL, None, Clock(10.0, 0.25, 100, (0.0,)))
-    plain = only(build(COLUMN), StripDrag)
+    plain = only(build(COLUMN), MorisonDrag)
 
     def cost(model: jh.Model, sea: jh.AbstractSea) -> tuple[float, np.ndarray]:
         leaves, shape = jax.tree.flatten(sea)
@@ -268,67 +266,6 @@ def test_a_prepared_sea_costs_nothing_more_where_nobody_drifts() -> None:
     bare, whole = (cost(plain, one) for one in (dataclasses.replace(sea, envelope=None), sea))
     assert bare[0] == whole[0] and (bare[1] == whole[1]).all()
     assert cost(plain.with_effect(WaveDrift.neutral(("surge", "heave", "pitch"))), sea)[0] > whole[0]
-
-
-# drag
-
-
-NEUTRAL = {PowerDrag: PowerDrag.neutral, SlowDrag: SlowDrag}
-
-
-def replaced(law: type, model: jh.Model, **values: float) -> jh.Model:
-    """Plain drag of strips and ends replaced by another law, of the same coefficients."""
-    drag = [load for load in model.loads if isinstance(load, (StripDrag, EndDrag))]
-    taken = {key: value for load in drag for key, value in load.Cd.items()}
-    rest = [load for load in model.loads if load not in drag]
-    return model_of(model, *rest, with_values(NEUTRAL[law](taken, coupled=drag[0].coupled), **values))
-
-
-@pytest.mark.parametrize("speed", ["vector", "component"])
-@pytest.mark.parametrize("law", [PowerDrag, SlowDrag])
-def test_a_null_is_plain_drag_but_for_rounding(law: type, speed: str) -> None:
-    """In waves, moving, and whatever a memory holds."""
-    plain = only(build(COLUMN, PONTOON, drag_speed=speed), StripDrag, EndDrag)
-    changed = replaced(law, plain)
-    memory = tuple(None if m is None else jnp.asarray(VELOCITY[::-1].copy()) for m in changed.rest().memory)
-    for sea in (jh.StillWater(), SEA):
-        found, _ = acts(changed, POSITION, VELOCITY, memory, sea)
-        expected, _ = acts(plain, POSITION, VELOCITY, (None, None), sea)
-        assert_allclose(found, expected, atol=1e-15 * np.abs(expected).max(), rtol=1e-14)
-
-
-def test_another_power_of_the_speed() -> None:
-    """1/2 rho Cd D T |u|^(2+n) / U0^n on a column, and on its end; the coefficient is Cd at U0 = 0.5 m/s."""
-    plain = only(build(COLUMN), StripDrag, EndDrag)
-    model = replaced(PowerDrag, plain, exponent=-1 / 3)
-    factor = ((0.8**2 + 4e-4) / (0.25 + 4e-4)) ** (-1 / 6)
-    assert_allclose(force(model, [0.48, -0.64, 0, 0, 0, 0]), factor * force(plain, [0.48, -0.64, 0, 0, 0, 0]), atol=1e-4)
-    assert_allclose(force(model, [0, 0, 0.8, 0, 0, 0]), factor * force(plain, [0, 0, 0.8, 0, 0, 0]), rtol=1e-9, atol=1e-4)
-    assert_allclose(force(model, [0.5, 0, 0, 0, 0, 0]), force(plain, [0.5, 0, 0, 0, 0, 0]), rtol=1e-12, atol=1e-4)
-
-
-def test_slow_motion_has_a_coefficient_of_its_own() -> None:
-    """r = 0 is plain drag at the velocity less the slow one, in any motion of strips and ends; r between is the mixture; the
-    memory is a first-order low-pass."""
-    plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
-    slow = np.array([-0.4, 0.9, -0.2, 0.01, 0.015, -0.02])
-    whole, fast = force(plain, VELOCITY, POSITION), force(plain, VELOCITY - slow, POSITION)
-    for share in (0.0, 0.3, 2.0):
-        model = replaced(SlowDrag, plain, low_share=share, cutoff=0.05)
-        found, (rate,) = acts(model, POSITION, VELOCITY, (jnp.asarray(slow),), jh.StillWater())
-        expected = share * whole + (1 - share) * fast
-        assert_allclose(found, expected, rtol=1e-10, atol=1e-10 * np.abs(whole).max())
-        assert_allclose(rate, 2 * math.pi * 0.05 * (VELOCITY - slow), rtol=1e-13)
-
-
-def test_slow_motion_in_a_current() -> None:
-    """A platform that drifts slowly in it feels r of the whole, and of the current the rest: that is no slow motion."""
-    plain = only(build(COLUMN), StripDrag)
-    load = SlowDrag(plain.loads[0].Cd, low_share=jnp.asarray(0.3))
-    flowing = model_of(plain, load, with_values(Current(), x=1.0))
-    slow = jnp.array([0.4, 0, 0, 0, 0, 0])
-    found, _ = acts(flowing, np.zeros(6), slow, (slow,), jh.StillWater())
-    assert float(found[0]) == pytest.approx(0.5 * RHO * CD_T * AREA * (0.3 * 0.6**2 + 0.7 * 1.0**2), rel=1e-9)
 
 
 # reflection
@@ -353,7 +290,7 @@ def test_a_regular_wave_comes_back() -> None:
 
 
 def test_a_prepared_sea_comes_back() -> None:
-    """Between the steps of its clock, too, as the direct sum does; nothing before the delay, and nothing at the null."""
+    """Between the steps of its clock, too as the direct sum; nothing before the delay, and nothing at the neutral value."""
     sea = irregular(2, 0.3)
     prepared = sea.prepared(HULL, None, Clock(10.0, 0.25, 200, (0.0,), 3))
     load = with_values(WaveReflection(delay=8.1), coefficient=0.25)
@@ -429,13 +366,14 @@ def test_every_parameter_has_a_slope_at_its_null() -> None:
     first, second = (jh.regular_wave(2.0, period, WATER, phase=0.3).waves for period in (9.0, 11.0))
     sea = WaveSea(first + second, WATER)
     assert isinstance(sea.waves, PlaneWaves)
-    plain = only(build(COLUMN, PONTOON), StripDrag, EndDrag)
-    taken = {key: value for load in plain.loads for key, value in load.Cd.items()}
+    plain = only(build(COLUMN, PONTOON), MorisonDrag)
+    (drag,) = plain.loads
     kinds = (Current, SensorReference, SensorLag, WaveGaugePosition, WaveReflection)
-    laws = [PowerDrag.neutral(taken), SlowDrag(taken), WaveDrift.neutral(DOFS), WaveDriftDamping.neutral(DOFS)]
+    laws = [dataclasses.replace(drag, law=law) for law in (SpeedPowerLaw.neutral(drag.Cd), SlowMotionLaw())]
+    laws += [WaveDrift.neutral(DOFS), WaveDriftDamping.neutral(DOFS)]
     model = model_of(plain, *plain.loads, *laws, *(kind() for kind in kinds))
     labels = [label for label in model.values if ".Cd_" not in label]
-    memory = tuple(None if m is None else jnp.asarray(VELOCITY[::-1].copy()) for m in model.rest().memory)
+    memory = jax.tree.map(lambda leaf: jnp.asarray(VELOCITY[::-1].copy()), model.rest().memory)
     state = jh.State(jnp.asarray(POSITION), jnp.asarray(VELOCITY), memory)
 
     @jax.jit
@@ -444,7 +382,7 @@ def test_every_parameter_has_a_slope_at_its_null() -> None:
         total = changed.sum_of_loads(changed.instant(jnp.asarray(7.7), state, sea), memory).force
         return jnp.concatenate([total / 1e6, changed.seen(state.position), changed.clock_lag()[None]])
 
-    x = jnp.array([float(model.about(label).null) for label in labels])
+    x = jnp.array([float(model.about(label).neutral) for label in labels])
     assert bool((x == jnp.array([float(model.values[label]) for label in labels])).all())
     slope = np.asarray(jax.jacfwd(look)(x))
     assert np.isfinite(slope).all()

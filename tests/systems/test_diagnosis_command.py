@@ -235,5 +235,5 @@ def test_effects_are_added_for_what_the_model_has_not(written: Path, tmp_path: P
 def test_effects_of_another_version_are_told(written: Path, tmp_path: Path) -> None:
     path = saved_with(written, tmp_path, {"ghosts.surge": 1.0}, "VolturnUS-S")
     model = jh.load_model(str(DEMO / "platform.yaml"))
-    with pytest.raises(InputError, match="effects that this version knows, found no effect 'ghosts'"):
+    with pytest.raises(InputError, match=r"this version knows, found no effect with the parameter 'ghosts\.surge'"):
         apply_calibration(path, model, "VolturnUS-S")

@@ -159,7 +159,7 @@ def test_bounds_of_lengths_and_times_follow_the_hull() -> None:
         model.with_effect(Hysteresis.neutral(["surge", "pitch"])).about("hysteresis.surge.yield_displacement")
         for model in (barge(1.0), barge(SMALL))
     )
-    assert small.upper == pytest.approx(max(large.upper * SMALL, small.null))
+    assert small.upper == pytest.approx(max(large.upper * SMALL, small.neutral))
     assert small.lower == pytest.approx(large.lower * SMALL)
 
 

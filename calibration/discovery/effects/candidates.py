@@ -11,7 +11,6 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.loads import (
     AbstractLoad,
-    ChangingDrag,
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
@@ -19,22 +18,23 @@ from jaxhydro.loads import (
     CoveredEnds,
     CubicDamping,
     DriftTransfer,
-    EndDrag,
     HiddenOscillator,
     Hysteresis,
     MassError,
     MooringNonlinearity,
+    MorisonDrag,
     NonlinearHydrostatics,
     QuadraticDamping,
     RadiationMemory,
     StaticForce,
-    StripDrag,
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
     WaveExcitation,
 )
-from jaxhydro.parameters import AbstractEffect
+from jaxhydro.loads.drag import ConstantLaw, SlowMotionLaw, SpeedPowerLaw
+from jaxhydro.loads.sea_state_law import SeaStateLaw
+from jaxhydro.parameters import AbstractEffect, strongly_typed
 from jaxhydro.sensors import SensorLag, SensorReference
 from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
 
@@ -94,43 +94,51 @@ class Candidate:
 
 
 def with_drag(model: Model) -> Model:
-    """The model with `ChangingDrag` in place of plain drag; unchanged where it has none."""
-    plain = [load for load in model.loads if isinstance(load, StripDrag | EndDrag)]
-    if not plain or any(isinstance(load, ChangingDrag) for load in model.loads):
-        return model
-    coupled = all(load.coupled for load in plain if isinstance(load, StripDrag))
-    coefficients = {key: value for load in plain for key, value in load.Cd.items()}
-    kept = tuple(load for load in model.loads if not isinstance(load, StripDrag | EndDrag))
-    return replace(model, loads=(*kept, ChangingDrag.neutral(coefficients, coupled)))
+    """The model with drag coefficients by speed, and apart for slow motion, in place of plain drag."""
+
+    def changed(load: AbstractLoad) -> AbstractLoad:
+        if isinstance(load, SeaStateLaw):
+            return replace(load, load=changed(load.load))
+        if not isinstance(load, MorisonDrag) or not isinstance(load.law, ConstantLaw):
+            return load
+        return strongly_typed(replace(load, law=SlowMotionLaw(law=SpeedPowerLaw.neutral(load.Cd))))
+
+    return replace(model, loads=tuple(map(changed, model.loads)))
 
 
-def _dofs(labels: Iterable[str], effect: str) -> list[str]:
-    found = {label.split(".")[1] for label in labels if label.startswith(f"{effect}.")}
-    return [dof for dof in DOFS if dof in found]
+def _coupled_damping(model: Model) -> AbstractEffect:
+    return CoupledDamping({f"B{i}{j}": 0.0 for i in range(1, 7) for j in range(i + 1, 7)})
 
 
-PER_MOTION_LOADS: dict[str, Callable[[Sequence[str]], AbstractLoad]] = {
-    "coulomb_friction": CoulombFriction.neutral,
-    "hysteresis": Hysteresis.neutral,
-    "mooring_nonlinearity": MooringNonlinearity.neutral,
-    "nonlinear_hydrostatics": NonlinearHydrostatics.neutral,
-    "cubic_damping": CubicDamping.neutral,
-    "radiation_memory": RadiationMemory.neutral,
-    "hidden_oscillator": HiddenOscillator.neutral,
-    "static_offset": StaticForce.neutral,
-    "wave_drift": WaveDrift.neutral,
-    "wave_drift_damping": WaveDriftDamping.neutral,
-}
-WHOLE_PLATFORM_LOADS: dict[str, Callable[[], AbstractEffect]] = {
-    "umbilical": Umbilical,
-    "current": Current,
-    "sensor_reference": SensorReference,
-    "sensor_lag": SensorLag,
-    "wave_gauge_position": WaveGaugePosition,
-    "wave_reflection": WaveReflection,
-    "covered_ends": CoveredEnds,
-}
-DRAG_EFFECTS = ("amplitude_dependent_drag", "sea_state_dependent_drag")
+def _wave_excitation(model: Model) -> AbstractEffect:
+    keys = (*model.hull.elements.owners("Cp"), *model.hull.ends.owners("Cp"))
+    return WaveExcitation(dict.fromkeys(keys, 1.0))
+
+
+OPTIONAL_EFFECTS: tuple[Callable[[Model], AbstractEffect], ...] = (
+    lambda model: CoulombFriction.neutral(DOFS),
+    lambda model: Hysteresis.neutral(DOFS),
+    lambda model: MooringNonlinearity.neutral(DOFS),
+    lambda model: NonlinearHydrostatics.neutral(),
+    lambda model: CubicDamping.neutral(DOFS),
+    lambda model: RadiationMemory.neutral(DOFS),
+    lambda model: HiddenOscillator.neutral(DOFS),
+    lambda model: StaticForce.neutral(DOFS),
+    lambda model: WaveDrift.neutral(DOFS),
+    lambda model: WaveDriftDamping.neutral(DOFS),
+    lambda model: QuadraticDamping({f"B{i}{i}": 0.0 for i in range(1, 7)}),
+    lambda model: MassError(model.body.mass, model.body.centre),
+    lambda model: Umbilical(),
+    lambda model: Current(),
+    lambda model: SensorReference(),
+    lambda model: SensorLag(),
+    lambda model: WaveGaugePosition(),
+    lambda model: WaveReflection(),
+    lambda model: CoveredEnds(),
+    _coupled_damping,
+    _wave_excitation,
+)
+"""Effects that a model may lack, at neutral values, with every parameter that they can have."""
 
 
 class TableEffect(NamedTuple):
@@ -170,29 +178,18 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
     Raises:
         KeyError: If no effect has such a label.
     """
-    labels = [label for label in labels if label not in model.values]
-    effects = dict.fromkeys(label.split(".")[0] for label in labels)
-    for effect in effects:
-        mine = [label for label in labels if label.startswith(f"{effect}.")]
-        keys = [label.removeprefix(f"{effect}.") for label in mine]
-        if effect in PER_MOTION_LOADS:
-            model = model.with_effect(PER_MOTION_LOADS[effect](_dofs(mine, effect)))
-        elif effect in WHOLE_PLATFORM_LOADS:
-            model = model.with_effect(WHOLE_PLATFORM_LOADS[effect]())
-        elif effect == "mass_properties":
-            model = model.with_effect(MassError(model.body.mass, model.body.centre))
-        elif effect == "coupled_damping":
-            model = model.with_effect(CoupledDamping(dict.fromkeys(keys, 0.0)))
-        elif effect == "quadratic_damping":
-            model = model.with_effect(QuadraticDamping(dict.fromkeys(keys, 0.0)))
-        elif effect == "wave_excitation":
-            model = model.with_effect(
-                WaveExcitation({(group, kind): 1.0 for group, kind in (key.rsplit(".Cp_", 1) for key in keys)})
-            )
-        elif effect in DRAG_EFFECTS:
+    left = [label for label in labels if label not in model.values]
+    effects, drag = [make(model) for make in OPTIONAL_EFFECTS], with_drag(model).values if left else {}
+    while left:
+        effect = next((one for one in effects if left[0] in one.values), None)
+        if effect is not None:
+            keys = {key for label, key in effect.keys.items() if label in left}
+            model = model.with_effect(effect.restricted(keys))
+        elif left[0] in drag:
             model = with_drag(model)
         else:
-            raise KeyError(f"no effect {effect!r}")
+            raise KeyError(f"no effect with the parameter {left[0]!r}")
+        left = [label for label in left if label not in model.values]
     return model
 
 

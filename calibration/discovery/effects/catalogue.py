@@ -14,14 +14,13 @@ from calibration.parameters.space import FreeParameter
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS, STANDARD_GRAVITY
 from jaxhydro.loads import (
-    ChangingDrag,
     CoupledDamping,
-    EndDrag,
     MassError,
-    StripDrag,
     Umbilical,
     WaveExcitation,
 )
+from jaxhydro.loads.drag import ConstantLaw, SlowMotionLaw
+from jaxhydro.platform.drag_laws import drag_of
 from jaxhydro.sensors import SensorLag, SensorReference
 from jaxhydro.water import Current, WaveGaugePosition, WaveReflection
 from jaxhydro.water.wave_reflection import COEFFICIENT, DEFAULT_DELAY, DELAY, MAX_DELAY, SEEN
@@ -138,8 +137,8 @@ def _of_mass(builder: CatalogueBuilder, model: Model, scales: Mapping[str, Notic
 
 def _of_strips(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
     """Add other laws of drag and of wave excitation."""
-    groups = sorted({label.rsplit(".", 1)[0] for label in model.values if ".Cd_" in label})
-    if groups and any(type(load) in (StripDrag, EndDrag, ChangingDrag) for load in model.loads):
+    drags = [drag for load in model.loads if (drag := drag_of(load)) is not None]
+    if groups := sorted({key[0] for one in drags if isinstance(one.law, ConstantLaw | SlowMotionLaw) for key in one.Cd}):
         builder.add(
             "amplitude_dependent_drag",
             None,

@@ -79,9 +79,9 @@ class CatalogueBuilder:
         """Times, and velocities, over those of a platform of 20 000 t."""
         return math.sqrt(self.length)
 
-    def add_linear(self, label: str, scale: float, null: float = 0.0) -> str:
+    def add_linear(self, label: str, scale: float, neutral: float = 0.0) -> str:
         """Add a parameter on a linear scale, with its noticeable size; returns the label."""
-        self.free[label] = FreeParameter(label, null, Scaled(null, 1.0), 0.0, math.inf)
+        self.free[label] = FreeParameter(label, neutral, Scaled(neutral, 1.0), 0.0, math.inf)
         self.noticeable[label] = float(scale)
         return label
 

@@ -72,10 +72,10 @@ def plausible_sizes(
         for label in candidate.amplitudes:
             parameters[label] = about.about(label)
             if candidate.load is not None:  # one's own effect may begin anywhere
-                parameters[label] = parameters[label]._replace(null=float(candidate.load.values[label]))
+                parameters[label] = parameters[label]._replace(neutral=float(candidate.load.values[label]))
             reaches[label] = _reach(case, candidate, label, parameters[label])
     sizes = {
-        label: PlausibleSize(parameters[label].null + reach.below, parameters[label].null + reach.above, reach.source)
+        label: PlausibleSize(parameters[label].neutral + reach.below, parameters[label].neutral + reach.above, reach.source)
         for label, reach in reaches.items()
     }
     problems: list[Problem] = []
@@ -91,7 +91,7 @@ def plausible_sizes(
 def _reach(case: Case, candidate: Candidate, label: str, parameter: Parameter) -> Reach:
     if candidate.load is not None:
         size = OWN_EFFECT_WIDTH * candidate.sizes[label]
-        lowest = 0.0 if label in candidate.positive else min(parameter.lower - parameter.null, 0.0)
+        lowest = 0.0 if label in candidate.positive else min(parameter.lower - parameter.neutral, 0.0)
         return Reach(max(-size, lowest), size, None, OWN_EFFECT)
     if (reach := reach_of(case, label)) is None:
         raise KeyError(f"no plausible size of {label}: add a rule to size_ranges.RANGES")
@@ -120,8 +120,8 @@ def _stated(
         return Problem(where, f"a quantity in {' or '.join([*units, *shares])}", shown(value))
     return {
         label: PlausibleSize(
-            parameters[label].null - (half if reaches[label].below < 0 else 0.0),
-            parameters[label].null + (half if reaches[label].above > 0 else 0.0),
+            parameters[label].neutral - (half if reaches[label].below < 0 else 0.0),
+            parameters[label].neutral + (half if reaches[label].above > 0 else 0.0),
             STATED.format(key),
             True,
         )
