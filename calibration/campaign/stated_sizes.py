@@ -26,6 +26,8 @@ STATED_SIZES: dict[str, tuple[str, tuple[str, ...]]] = {
     "umbilical": ("umbilical.*", ("N/m", "N", "kg", SHARE)),
     "linear_damping": ("linear_damping.*", ("N s/m", "N s", "N m s/rad", SHARE)),
     "coupled_damping": ("coupled_damping.*", ("N s/m", "N s", "N m s/rad", SHARE)),
+    "coupled_stiffness": ("coupled_stiffness.*", ("N/m", "N", "N m/rad", SHARE)),
+    "coupled_added_mass": ("coupled_added_mass.*", ("kg", "kg m", "kg m2", SHARE)),
     "quadratic_damping": ("quadratic_damping.*", ("N s2/m2", "N m s2/rad2", SHARE)),
     "cubic_damping": ("cubic_damping.*", ("N s3/m3", "N m s3/rad3", SHARE)),
     "radiation_memory": ("radiation_memory.*", ("N s/m", "N m s/rad", SHARE)),

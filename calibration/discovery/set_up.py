@@ -29,6 +29,7 @@ from jaxhydro.errors import InputError, Problem
 
 DIRECTIONS_AT_ONCE = 32  # directions differentiated at a time
 PLAUSIBLE_DEVIATIONS = 2.0  # prior standard deviations from a neutral value to the further end of its plausible range
+TERMS = ("linear_damping.", "quadratic_damping.", "stiffness.", "added_mass.")  # that are candidates where they are zero
 MASS_PRIOR_WIDTH = 1.0  # of mass properties, in the deviations of `nearly_known`
 TRIM_PRIOR_WIDTH = 3.0  # of draught and trim, in noticeable sizes
 COVERED_ENDS_PRIOR_WIDTH = 0.7  # of the share of covered ends
@@ -127,7 +128,7 @@ def set_up_study(
             scaled[label], units[label] = FreeParameter(label, neutral, Scaled(neutral, 1.0), 0.0, math.inf), float(size)
     candidates = [*candidates, *extra]
     # what the platform file has is fitted, not looked for
-    taken = set(declared.values) - (requested_table_labels(declared) - set(labels))
+    taken = set(declared.values) - (requested_table_labels(declared) - set(labels)) - zero_terms(declared, labels)
     candidates = [one for one in candidates if not set(one.amplitudes) & taken]
     scaled = {label: one for label, one in scaled.items() if label not in taken}
     base_space = space_of(campaign, labels, declared)
@@ -199,6 +200,12 @@ def set_up_study(
     study = replace(study_of(model, space, names, np.array(rows), campaign, options, width), size_limits=limits)
     prior = Prior(np.array(prior_mean), np.array(prior_width))
     return StudySetup(study, tuple(candidates), declared, tuple(labels), tuple(nuisances), prior, tuple(motions), plausible)
+
+
+def zero_terms(declared: Model, labels: Sequence[str]) -> set[str]:
+    """Labels of terms of the equation of motion that are declared zero and not fitted."""
+    values = {label: float(value) for label, value in declared.values.items() if label.startswith(TERMS)}
+    return {label for label, value in values.items() if value == 0} - set(labels)
 
 
 def prior_width_of(label: str, declared: Model, waves: bool) -> float:

@@ -8,7 +8,7 @@ from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
 from jaxhydro.loads.coulomb_friction import CoulombFriction
-from jaxhydro.loads.coupled_damping import CoupledDamping
+from jaxhydro.loads.coupled_terms import CoupledAddedMass, CoupledDamping, CoupledStiffness
 from jaxhydro.loads.covered_ends import CoveredEnds
 from jaxhydro.loads.cubic_damping import CubicDamping
 from jaxhydro.loads.drag.morison_drag import MorisonDrag
@@ -65,7 +65,9 @@ LOADS: dict[str, type[AbstractLoad]] = {
     "wave_drift": WaveDrift,
     "drift_transfer": DriftTransfer,
     "wave_drift_damping": WaveDriftDamping,
+    "coupled_added_mass": CoupledAddedMass,
     "coupled_damping": CoupledDamping,
+    "coupled_stiffness": CoupledStiffness,
     "covered_ends": CoveredEnds,
     "wave_excitation": WaveExcitation,
 }

@@ -14,12 +14,15 @@ from jaxhydro.loads import (
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
+    CoupledAddedMass,
     CoupledDamping,
+    CoupledStiffness,
     CoveredEnds,
     CubicDamping,
     DriftTransfer,
     HiddenOscillator,
     Hysteresis,
+    LinearDamping,
     MassError,
     MooringNonlinearity,
     MorisonDrag,
@@ -27,6 +30,7 @@ from jaxhydro.loads import (
     QuadraticDamping,
     RadiationMemory,
     StaticForce,
+    Stiffness,
     Umbilical,
     WaveDrift,
     WaveDriftDamping,
@@ -106,8 +110,12 @@ def with_drag(model: Model) -> Model:
     return replace(model, loads=tuple(map(changed, model.loads)))
 
 
-def _coupled_damping(model: Model) -> AbstractEffect:
-    return CoupledDamping({f"B{i}{j}": 0.0 for i in range(1, 7) for j in range(i + 1, 7)})
+def _diagonal(symbol: str) -> dict[str, float]:
+    return {f"{symbol}{i}{i}": 0.0 for i in range(1, 7)}
+
+
+def _pairs(symbol: str) -> dict[str, float]:
+    return {f"{symbol}{i}{j}": 0.0 for i in range(1, 7) for j in range(i + 1, 7)}
 
 
 def _wave_excitation(model: Model) -> AbstractEffect:
@@ -126,7 +134,12 @@ OPTIONAL_EFFECTS: tuple[Callable[[Model], AbstractEffect], ...] = (
     lambda model: StaticForce.neutral(DOFS),
     lambda model: WaveDrift.neutral(DOFS),
     lambda model: WaveDriftDamping.neutral(DOFS),
-    lambda model: QuadraticDamping({f"B{i}{i}": 0.0 for i in range(1, 7)}),
+    lambda model: LinearDamping(_diagonal("B")),
+    lambda model: QuadraticDamping(_diagonal("B")),
+    lambda model: Stiffness(_diagonal("C")),
+    lambda model: CoupledDamping(_pairs("B")),
+    lambda model: CoupledStiffness(_pairs("C")),
+    lambda model: CoupledAddedMass(_pairs("A")),
     lambda model: MassError(model.body.mass, model.body.centre),
     lambda model: Umbilical(),
     lambda model: Current(),
@@ -135,7 +148,6 @@ OPTIONAL_EFFECTS: tuple[Callable[[Model], AbstractEffect], ...] = (
     lambda model: WaveGaugePosition(),
     lambda model: WaveReflection(),
     lambda model: CoveredEnds(),
-    _coupled_damping,
     _wave_excitation,
 )
 """Effects that a model may lack, at neutral values, with every parameter that they can have."""

@@ -14,7 +14,9 @@ from calibration.parameters.space import FreeParameter
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS, STANDARD_GRAVITY
 from jaxhydro.loads import (
+    CoupledAddedMass,
     CoupledDamping,
+    CoupledStiffness,
     MassError,
     Umbilical,
     WaveExcitation,
@@ -102,14 +104,9 @@ def _of_the_whole(builder: CatalogueBuilder, scales: Mapping[str, NoticeableScal
             telling="decays from both sides, and a look at the basin's circulation",
             source=Current.source,
         )
-        if "pitch" in scales:
-            builder.add(
-                "coupled_damping",
-                None,
-                [builder.add_linear("coupled_damping.B15", s.force / scales["pitch"].rate)],
-                telling="forced pitch, with the surge force measured",
-                source=CoupledDamping.source,
-            )
+    for pair, along, turning in (("15", "surge", "pitch"), ("24", "sway", "roll")):
+        if {along, turning} <= set(scales):
+            _of_a_pair(builder, pair, scales[along], turning, scales[turning])
     if {"surge", "pitch"} <= set(scales) or {"sway", "roll"} <= set(scales):
         builder.add(
             "sensor_reference",
@@ -118,6 +115,18 @@ def _of_the_whole(builder: CatalogueBuilder, scales: Mapping[str, NoticeableScal
             telling="an inclining test, the tracked point's place measured on the model",
             source=SensorReference.source,
         )
+
+
+def _of_a_pair(builder: CatalogueBuilder, pair: str, s: NoticeableScales, turning: str, turned: NoticeableScales) -> None:
+    """Add terms of the equation of motion that couple a translation and a rotation."""
+    acceleration = turned.rate**2 / turned.amplitude
+    for effect, label, size, source in (
+        ("coupled_damping", f"B{pair}", s.force / turned.rate, CoupledDamping.source),
+        ("coupled_stiffness", f"C{pair}", s.force / turned.amplitude, CoupledStiffness.source),
+        ("coupled_added_mass", f"A{pair}", s.force / acceleration, CoupledAddedMass.source),
+    ):
+        label, telling = f"{effect}.{label}", f"forced {turning}, with the horizontal force measured"
+        builder.add(effect, None, [builder.add_linear(label, size)], telling=telling, source=source)
 
 
 def _of_mass(builder: CatalogueBuilder, model: Model, scales: Mapping[str, NoticeableScales]) -> None:

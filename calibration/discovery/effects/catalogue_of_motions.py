@@ -13,11 +13,13 @@ from jaxhydro.loads import (
     CubicDamping,
     HiddenOscillator,
     Hysteresis,
+    LinearDamping,
     MooringNonlinearity,
     NonlinearHydrostatics,
     QuadraticDamping,
     RadiationMemory,
     StaticForce,
+    Stiffness,
     WaveDrift,
     WaveDriftDamping,
 )
@@ -56,6 +58,21 @@ def add_motion_effects(
         passive=True,
         telling=f"a slow static pull-out and return in {dof}: friction leaves the platform off zero",
         source=CoulombFriction.source,
+    )
+    builder.add(
+        "linear_damping",
+        dof,
+        [builder.add_linear(f"linear_damping.B{i}{i}", s.force / s.rate)],
+        passive=True,
+        telling=f"decays in {dof} from half the amplitude",
+        source=LinearDamping.source,
+    )
+    builder.add(
+        "stiffness",
+        dof,
+        [builder.add_linear(f"stiffness.C{i}{i}", s.force / s.amplitude)],
+        telling=f"static offsets in {dof} to both sides, with the force measured",
+        source=Stiffness.source,
     )
     builder.add(
         "quadratic_damping",

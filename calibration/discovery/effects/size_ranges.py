@@ -69,6 +69,7 @@ DAMPING = (
     JUDGEMENT + "hulls with bilge keels or heave plates stay below a fifth of critical damping, counted at the largest speed."
 )
 SMALL_DAMPING = JUDGEMENT + "linear damping of moored floaters is a few per cent of critical, a tenth at most."
+COUPLING = JUDGEMENT + "a tenth of the geometric mean of both motions, as for a motion alone."
 FRICTION = JUDGEMENT + "more than a tenth of the largest restoring force would leave the model visibly off its rest position."
 HYSTERESIS = JUDGEMENT + "lines and cables lose less than a sixth of the largest restoring force to their loop."
 OFFSET = JUDGEMENT + "half the largest excursion, 1 % of the length or 1 degree would have been seen when records were zeroed."
@@ -123,6 +124,8 @@ RANGES: dict[str, Rule] = {
     "static_offset.*": _share(-0.5, 0.5, ref.offset_force, OFFSET),
     "linear_damping.*": _entry(0.1, ref.entry_damping, SMALL_DAMPING),
     "coupled_damping.*": _entry(0.1, ref.entry_damping, SMALL_DAMPING),
+    "coupled_stiffness.*": _entry(0.1, ref.entry_stiffness, COUPLING),
+    "coupled_added_mass.*": _entry(0.1, ref.entry_mass, COUPLING),
     "quadratic_damping.*": _entry(0.2, ref.quadratic_damping, DAMPING),
     "cubic_damping.*": _share(0.0, 0.2, ref.cubic_damping, DAMPING),
     "radiation_memory.roll.*": _share(0.0, 0.2, ref.radiation_damping, ROLL_RADIATION),

@@ -68,12 +68,19 @@ def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
         variants.append(Variant(one.name, tuple(mine), odds))
         values.append(at)
 
-    for one in state.chosen:
-        add(one, [look.active.index(i) for i in study.index(one.labels) if i not in fits.base], {})
     names = {one.name for one in state.chosen}
-    others = [
-        one for one in fits.setup.candidates if one.name not in names and not set(study.index(one.amplitudes)) <= set(fits.base)
-    ]
+    others = []
+    for one in (*state.chosen, *(one for one in fits.setup.candidates if one.name not in names)):
+        mine = study.index(one.amplitudes)
+        if set(mine) <= set(fits.base):  # nearly known, and let go further by a second column with the same slopes
+            at = [look.active.index(i) for i in mine]
+            add(one, range(len(directions), len(directions) + len(at)), {})
+            columns.append(look.slopes[:, at])
+            directions += mine
+        elif one.name in names:
+            add(one, [look.active.index(i) for i in study.index(one.labels)], {})
+        else:
+            others.append(one)
     grids = {one.name: one.grid or ({},) for one in others}
     for g in count():
         if not (todo := [one for one in others if g < len(grids[one.name])]):
@@ -122,21 +129,22 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
         directions: Their directions (k,).
     """
     study, prior = fits.study, fits.setup.prior
-    directions = list(directions)
+    directions, names = list(directions), np.array(study.names)[list(directions)]
     now = study.steps(look.place.x)[directions]
     low, high = (study.limits[directions] - now[:, None]).T
-    base = np.isin(directions, fits.base)
-    width = prior.width[directions]
+    base = np.arange(len(directions)) < len(fits.base)
+    further = ~base & np.isin(directions, fits.base)  # of nearly known properties, beside the base's column
+    width = np.array([fits.setup.size_width(n) if more else w for n, more, w in zip(names, further, prior.width[directions])])
     step = np.where(study.logarithmic[directions], MAX_COEFFICIENT_STEP, np.inf)
     low, high = np.maximum(low, -step), np.minimum(high, step)
     nuisance = base & np.isin(directions, study.index(fits.setup.nuisances))
     low = np.where(nuisance, np.minimum(np.maximum(low, -MAX_NUISANCE * width - now), 0.0), low)
     high = np.where(nuisance, np.maximum(np.minimum(high, MAX_NUISANCE * width - now), 0.0), high)
     positive = {label for one in fits.setup.candidates for label in one.positive}
-    signed = ~base & np.isin(np.array(study.names)[directions], sorted(positive))
+    signed = ~base & np.isin(names, sorted(positive))
     low = np.where(signed, np.maximum(low, -now), low)
     amplitudes = {label for one in fits.setup.candidates for label in one.amplitudes}
-    sized = ~base & np.isin(np.array(study.names)[directions], sorted(amplitudes))
+    sized = ~base & ~further & np.isin(names, sorted(amplitudes))
     used = study.used[study.row_series]
     return LinearModel(
         slopes,
@@ -145,7 +153,7 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
         study.pool,
         study.share * used,
         (study.pooled * study.used[:, None]).ravel(),
-        np.where(sized, -now, prior.mean[directions] - now),
+        np.where(further, 0.0, np.where(sized, -now, prior.mean[directions] - now)),
         width,
         low,
         high,

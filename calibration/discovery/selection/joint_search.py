@@ -97,12 +97,13 @@ class JointSearch(Search):
             if one.name not in present:
                 place = self.with_values(place, columns.values[i])
                 anew |= any(label in one.amplitudes for label in columns.values[i])
-        directions = tuple(columns.directions[i] for i in subset.fit.columns)
+        mine = [i for i in subset.fit.columns if i in columns.base or columns.directions[i] not in self.base]
+        directions = tuple(columns.directions[i] for i in mine)
         if anew:  # far from where slopes were taken
             look = self.study.linearise(place, directions)
         else:
             residual = self.study.residual(place) if gone else columns.look.residual
-            slopes = columns.model.slopes[:, list(subset.fit.columns)]
+            slopes = columns.model.slopes[:, mine]
             look = Linearisation(place, directions, residual, slopes, columns.look.own)
         names = listed([effect_in_words(one.name) for one in chosen]) or "no effect"
         return self.state(
