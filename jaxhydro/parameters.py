@@ -30,6 +30,7 @@ class Parameter(NamedTuple):
         upper: Upper bound.
         neutral: Neutral value, at which the parameter has no effect.
         of_hull: Whether bounds that are lengths or times scale with the platform's size.
+        coefficient: Group and name, such as Cd_t, of the member coefficient that it is or belongs to; None for others.
     """
 
     unit: str
@@ -38,6 +39,7 @@ class Parameter(NamedTuple):
     upper: float = float("inf")
     neutral: float = 0.0
     of_hull: bool = True  # bounds that are lengths or times follow the platform's size; not where a wave gauge may have stood
+    coefficient: tuple[str, str] | None = None
 
     def check(self, label: str, value: Any) -> None:
         """Raise ValueError for a value that is not finite, or is negative where it cannot be.
@@ -132,11 +134,12 @@ def _numbers(values: Mapping[Any, Any]) -> dict[Any, Float[Array, ""]]:
 
 
 class _Place(NamedTuple):
-    """Field and key of a parameter, and what is known of it."""
+    """Field and key of a parameter, what is known of it, and the template of its label."""
 
     field: str
     key: Any
     about: Callable[[Any, Any], Parameter]
+    template: str
 
 
 class AbstractEffect(eqx.Module):
@@ -193,6 +196,14 @@ class AbstractEffect(eqx.Module):
                 new[place.field] = {**new.get(place.field, getattr(self, place.field)), place.key: values[label]}
         return replace(self, **new) if new else self
 
+    def label_for(self, label: str, key: Any) -> str:
+        """Label that a parameter of a mapping would have with another key."""
+        for inner in self._inner().values():
+            if label in inner.values:
+                return inner.label_for(label, key)
+        place = self._places()[label]
+        return place.template.format(prefix=self.prefix, name=place.field, key=key)
+
     def restricted(self, keys: Collection[Any]) -> Self:
         """This effect with the parameters of some keys only, such as degrees of freedom; single numbers stay."""
         mappings = {field.name: getattr(self, field.name) for field in fields(self) if METADATA_KEY in field.metadata}
@@ -211,7 +222,9 @@ class AbstractEffect(eqx.Module):
                 continue
             value = getattr(self, field.name)
             for key in value if isinstance(value, Mapping) else (None,):
-                found[of.label.format(prefix=self.prefix, name=field.name, key=key)] = _Place(field.name, key, of.about)
+                found[of.label.format(prefix=self.prefix, name=field.name, key=key)] = _Place(
+                    field.name, key, of.about, of.label
+                )
         return found
 
     def _inner(self) -> dict[str, "AbstractEffect"]:

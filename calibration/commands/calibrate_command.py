@@ -13,7 +13,7 @@ from calibration.campaign.wave_band import band_sentence
 from calibration.fitting.decay_fit import calibrate
 from calibration.fitting.joint_fit import calibrate_jointly
 from calibration.fitting.law_choice import SeaLaws, choose_law
-from calibration.fitting.law_parameters import LAWS, is_law_parameter
+from calibration.fitting.law_parameters import LAWS
 from calibration.fitting.progress import Interrupted
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.fitting.weighted_residuals import Loss
@@ -35,6 +35,7 @@ from calibration.results.write_laws import write_laws
 from jaxhydro.cli.console import complain, progress, say, table
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.platform.drag_laws import law_labels
 
 SEARCH_SECONDS = 60.0  # CPU time of a search
 SEARCH_ENDINGS = {
@@ -117,7 +118,7 @@ def run(
         declared = campaign.model
         used = apply_calibration(start, declared, campaign.platform.name)
         # what a law adds is begun from in waves only; effects found are not declared
-        known = [k for k in used.values if k in declared.values or (tests == "waves" and is_law_parameter(k))]
+        known = [k for k in used.values if k in declared.values or (tests == "waves" and k in law_labels(declared))]
         begin = {"start": {k: used.values[k] for k in known}}
         _calibrated_values(used._replace(values=begin["start"]), start, campaign)
         if used.strips is not None:

@@ -24,6 +24,7 @@ from calibration.result import Calibration, Estimate, TestFit
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.response import decay_cycles
 from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.platform.drag_laws import law_labels
 
 NOT_FOLLOWED_ERROR = 0.5  # RMSE over standard deviation beyond which a model does not follow its record
 
@@ -151,7 +152,9 @@ def remarks(
     left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
     if left:
         said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
-    if campaign.used("fit") and not any(parameter_family(label) == "damping" for label in parameters):
+    if campaign.used("fit") and not any(
+        parameter_family(label, law_labels(campaign.model)) == "damping" for label in parameters
+    ):
         said.append("no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out")
     band = band_sentence(campaign.manifest, campaign.model, campaign.records) if set(IN_WAVES) & set(kinds) else None
     said += [] if band is None else [band]

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.fitting.law_parameters import LAWS, Law, base_label, is_law_parameter
+from calibration.fitting.law_parameters import LAWS, Law
 from calibration.fitting.progress import Progress
 from calibration.fitting.sea_fit import calibrate_in_waves
 from calibration.identifiability.directions import Identifiability
@@ -20,7 +20,7 @@ from jaxhydro.interrupts import stopping
 from jaxhydro.loads.drag.keulegan_carpenter_law import log_ratio
 from jaxhydro.loads.sea_state_law import coefficients, exponent_label, reference_of
 from jaxhydro.platform.body import KeuleganCarpenter
-from jaxhydro.platform.drag_laws import drag_laws_of, parameter_label, surface_number
+from jaxhydro.platform.drag_laws import drag_law_labels, drag_laws_of, law_labels, surface_number
 from jaxhydro.waves.sea_state import SeaState
 
 HELD_OUT_TOLERANCE = 0.02  # of the held-out error, by which a later law has to be better to be chosen
@@ -44,7 +44,8 @@ class LawFit:
 
     def added(self) -> dict[str, float]:
         """Label -> value of what the law adds to coefficients."""
-        return {label: one.value for label, one in self.calibration.parameters.items() if is_law_parameter(label)}
+        laws = law_labels(self.calibration.model)
+        return {label: one.value for label, one in self.calibration.parameters.items() if label in laws}
 
     def coefficient(self, label: str, state: SeaState) -> tuple[float, float]:
         """A coefficient in a sea state, and the standard deviation of its logarithm.
@@ -65,7 +66,7 @@ class LawFit:
         if isinstance(law, KeuleganCarpenter):
             ratio = float(log_ratio(surface_number(model.hull, label, state.significant_height) ** 2, law.reference))
             value *= math.exp(law.exponent * ratio)
-            logs[parameter_label(label, "exponent")] = ratio
+            logs[drag_law_labels(model, "exponent")[label]] = ratio
         return value, _deviation(known, label, logs)
 
 
@@ -124,7 +125,7 @@ class SeaLaws:
 
     def labels(self) -> list[str]:
         """The coefficients that any of the laws lets depend on the sea state or the motion."""
-        return list(dict.fromkeys(base_label(label) for law in self.laws for label in law.added()))
+        return list(dict.fromkeys(law_labels(law.calibration.model)[label] for law in self.laws for label in law.added()))
 
 
 def choose_law(
@@ -196,7 +197,8 @@ def choose_law(
             else:
                 judged = [energy_error(one(f"{name} without {id}", {id: "holdout"}, begin, name), [id]) for id in fitted]
             found.append(LawFit(name, whole, energy_error(whole, fitted), float(np.sqrt(np.mean(np.square(judged))))))
-        values = {k: p.value for k, p in found[0].calibration.parameters.items() if not is_law_parameter(k)}
+        added = found[0].added()
+        values = {k: p.value for k, p in found[0].calibration.parameters.items() if k not in added}
         for id in [*fitted, *held]:
             alone = {other: "fit" if other == id else "ignore" for other in [*fitted, *held]}
             record, run = next((r, run) for run, _ in made for r in run.records if r.id == id)

@@ -11,9 +11,9 @@ from calibration.residuals.measured_seas import Options, Seas
 from calibration.residuals.run_segments import sea_state
 from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.statics import natural_modes
-from jaxhydro.loads.sea_state_law import exponent_label, is_exponent, split, with_exponents
+from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
 from jaxhydro.platform.body import HighPass, KeuleganCarpenter
-from jaxhydro.platform.drag_laws import DragLaw, coefficient_label, parameter_label, plain_drag, surface_number, with_drag_laws
+from jaxhydro.platform.drag_laws import DragLaw, drag_law_labels, plain_drag, surface_number, with_drag_laws
 from jaxhydro.waves.sea_state import SeaState
 
 Over = Literal["significant_height", "peak_period"]
@@ -24,16 +24,6 @@ EXPONENT_DEVIATION = 1.0  # standard deviation of the prior of an exponent about
 DEFAULT_WINDOW = 60.0  # s, of a Keulegan-Carpenter number, where no motion has a natural period
 
 
-def is_law_parameter(label: str) -> bool:
-    """Whether a parameter is one that a law adds to a coefficient."""
-    return is_exponent(label) or coefficient_label(label) is not None
-
-
-def base_label(label: str) -> str:
-    """The coefficient whose law a parameter belongs to."""
-    return split(label)[0] if is_exponent(label) else coefficient_label(label) or label
-
-
 def reference_sea_state(made: Seas, options: Options) -> SeaState:
     """The geometric mean of the sea states of the tests that are fitted, to two digits."""
     states = [sea_state(run, r, options.low, options.cutoff) for run, _ in made for r in run.records if r.use == "fit"]
@@ -42,8 +32,8 @@ def reference_sea_state(made: Seas, options: Options) -> SeaState:
 
 def with_sea_state_laws(model: Model, labels: Sequence[str], over: Sequence[Over], reference: SeaState) -> Model:
     """The model with powers of the sea state, of exponent 0, for some of its coefficients, where it has none of its own."""
-    exponents = {label: 0.0 for one in labels for kind in over if (label := exponent_label(one, kind)) not in model.values}
-    return replace(model, loads=with_exponents(model.loads, exponents, reference))
+    added = [(one, kind) for one in labels for kind in over if exponent_label(one, kind) not in model.values]
+    return replace(model, loads=with_exponents(model.loads, dict.fromkeys(added, 0.0), reference))
 
 
 def with_drag_law(model: Model, labels: Sequence[str], kind: Drag, state: SeaState, cutoff: float) -> tuple[Model, list[str]]:
@@ -63,9 +53,9 @@ def with_drag_law(model: Model, labels: Sequence[str], kind: Drag, state: SeaSta
             laws[label] = KeuleganCarpenter(
                 law=kind, exponent=0.0, reference=number, window=max(finite, default=DEFAULT_WINDOW)
             )
-        return with_drag_laws(model, laws), [parameter_label(label, "exponent") for label in plain]
+        return with_drag_laws(model, laws), [drag_law_labels(model, "exponent")[label] for label in plain]
     laws = {label: HighPass(law=kind, cutoff=cutoff, low_share=1.0) for label in plain}
-    return with_drag_laws(model, laws), [parameter_label(label, "low_share") for label in plain]
+    return with_drag_laws(model, laws), [drag_law_labels(model, "low_share")[label] for label in plain]
 
 
 LAWS: dict[str, tuple[tuple[Over, ...], Drag | None]] = {

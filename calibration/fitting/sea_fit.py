@@ -16,7 +16,6 @@ from calibration.fitting.law_parameters import (
     EXPONENT_DEVIATION,
     Drag,
     Over,
-    is_law_parameter,
     reference_sea_state,
     with_drag_law,
     with_sea_state_laws,
@@ -44,8 +43,9 @@ from jaxhydro.choices import check
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem
-from jaxhydro.loads.sea_state_law import is_exponent
+from jaxhydro.loads.sea_state_law import exponents_of
 from jaxhydro.loads.sea_state_law import reference_of as law_reference
+from jaxhydro.platform.drag_laws import law_labels
 
 MAX_ROUNDS = 4  # times that the model's error is estimated anew
 TOLERANCE = 1e-3  # relative decrease of the sum of squares that ends a round
@@ -111,13 +111,14 @@ def calibrate_in_waves(
     declared = with_diffraction(campaign.model, options)
     made = seas_of(campaign, declared.environment, options) if made is None else made
     moved = sorted({dof for r in records for dof in moving_channels({k: r.values[k] for k in DOFS if k in r.values})})
-    labels = list(labels_of(campaign, declared, moved, free))
+    labels, laws = list(labels_of(campaign, declared, moved, free)), law_labels(declared)
     if over:
-        damping = [label for label in labels if parameter_family(label) == "damping"]
+        damping = [label for label in labels if parameter_family(label, laws) == "damping"]
         declared = with_sea_state_laws(
             declared, damping, over, law_reference(declared.loads) or reference_sea_state(made, options)
         )
-    added = [label for label in declared.values if is_exponent(label) and label not in labels]
+    exponent_labels = exponents_of(declared.loads) - set(labels)
+    added = [label for label in declared.values if label in exponent_labels]
     if drag is not None:
         state = reference_sea_state(made, options)
         declared, of_drag = with_drag_law(declared, labels, drag, state, options.low)
@@ -125,7 +126,7 @@ def calibrate_in_waves(
             raise InputError(source, [Problem("calibrate.free", "a coefficient of plain drag", ", ".join(labels))])
         added += of_drag
     # what a law adds that is not asked for is left out
-    begin = {label: value for label, value in (start or {}).items() if label in declared.values or not is_law_parameter(label)}
+    begin = {label: value for label, value in (start or {}).items() if label in declared.values or label not in laws}
     declared = declared.with_values(begin)
     exponents = {label: (0.0, EXPONENT_DEVIATION) for label in added if declared.about(label).neutral == 0}
     space = space_of(campaign, [*labels, *added], declared, exponents)

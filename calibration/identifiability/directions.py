@@ -30,6 +30,7 @@ from calibration.identifiability.statements import Collinear, Combination, Direc
 from calibration.parameters.families import parameter_family
 from calibration.parameters.space import VAGUE_DEVIATION, ParameterSpace, slopes
 from jaxhydro.dynamics.model import Model
+from jaxhydro.platform.drag_laws import law_labels
 
 COLLINEAR = 10.0  # collinearity index from which a group is poorly identifiable: 10 to 15 (Brun et al. 2001)
 ZERO_VARIANCE = 1e-20  # variance of a coordinate that is rounding: fixed before, or collinear with what is
@@ -127,7 +128,7 @@ def identifiability(
         Collinear(tuple(labels[i] for i in g), collinearity(information[np.ix_(g, g)]))
         for size in (2, 3)
         for g in combinations(active, size)
-        if len({parameter_family(labels[i]) for i in g}) == 1
+        if len({parameters.family[i] for i in g}) == 1
     ]
     weak = weak_directions(parameters, information, active)
     # what no record responds to is as wide as its prior whatever is fixed, and no measure of anything
@@ -196,7 +197,9 @@ def identifiability_at(
     values = np.array([float(p.transform.forward(jnp.asarray(c))) for p, c in zip(space.free, x, strict=True)])
     units = tuple(model.about(label).unit for label in space.labels)
     bound = [p.label for p, c in zip(space.free, x, strict=True) if p.transform.at_bound(float(c))]
-    parameters = Parameters(space.labels, values, slopes(space, x), units)
+    laws = law_labels(model)
+    families = tuple(parameter_family(label, laws) for label in space.labels)
+    parameters = Parameters(space.labels, values, slopes(space, x), units, families)
     posterior = found.covariance[: len(x), : len(x)]
     return found, identifiability(parameters, shared_information(*parts, len(x)), posterior, source, bound)
 
@@ -222,7 +225,7 @@ def _combination(parameters: Parameters, core: np.ndarray, active: Sequence[int]
     at = [active[i] for i in mine]
     labels, units = [parameters.labels[i] for i in at], {parameters.unit[i] for i in at}
     value, slope, share = parameters.value[at], parameters.slope[at], axes[:, 0]
-    alike = len(units) == 1 and len({parameter_family(label) for label in labels}) == 1
+    alike = len(units) == 1 and len({parameters.family[i] for i in at}) == 1
     product = not alike and bool((value > 0).all())
     raw = share / parameters.relative()[at] if product else share / slope
     leading = int(np.abs(raw if alike or product else share).argmax())

@@ -11,12 +11,13 @@ MIN_SHOWN_WEIGHT = 0.005  # weight of a combination, the largest 1, that is not 
 
 
 class Parameters(NamedTuple):
-    """The free parameters where the fit ended; `slope` is d value / d coordinate."""
+    """The free parameters where the fit ended; `slope` is d value / d coordinate, `family` that of `parameter_family`."""
 
     labels: tuple[str, ...]
     value: np.ndarray
     slope: np.ndarray
     unit: tuple[str, ...]
+    family: tuple[str, ...]
 
     def relative(self) -> np.ndarray:
         """d ln(value) / d coordinate; 1 for a value of zero."""

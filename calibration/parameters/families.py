@@ -1,12 +1,16 @@
 """Families of parameters: inertia, damping, restoring, exponents."""
 
-from jaxhydro.loads.sea_state_law import is_exponent
-from jaxhydro.platform.drag_laws import coefficient_label
+from collections.abc import Collection
 
 
-def parameter_family(label: str) -> str:
-    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on sea or motion."""
-    if is_exponent(label) or coefficient_label(label) is not None:
+def parameter_family(label: str, laws: Collection[str]) -> str:
+    """What a parameter does to the platform: inertia, damping, restoring, or how one of them depends on sea or motion.
+
+    Args:
+        label: Label of the parameter.
+        laws: Labels of what laws add to coefficients (`law_labels`).
+    """
+    if label in laws:
         return "exponent"
     head, _, name = label.rpartition(".")
     if head == "added_mass" or head.startswith("guided_masses.") or name.startswith("Ca"):

@@ -14,8 +14,7 @@ from calibration.parameters.transforms import AbstractTransform, Interval, LogIn
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, Problem, suggest
-from jaxhydro.hull.coefficient_labels import shared_hint
-from jaxhydro.loads.sea_state_law import is_exponent
+from jaxhydro.platform.drag_laws import law_labels
 
 VAGUE_DEVIATION = 1.5  # standard deviation of a coordinate that no record touches: a factor of 4.5 either way
 DEFAULT_RANGE_FACTOR = 1000.0  # a positive parameter may move by this factor from where it starts, within what its load allows
@@ -76,10 +75,10 @@ def default_free(model: Model, released: Iterable[str]) -> tuple[str, ...]:
     mass of those degrees of freedom. What is declared as zero is not there, and stays so; still water has no sea state, and
     how drag depends on the motion (`drag_`) is free where it is asked for."""
     digits = {str(DOFS.index(dof) + 1) for dof in released}
-    labels = []
+    labels, laws = [], law_labels(model)
     for label, value in model.values.items():
         lumped = label.split(".")[0] in ("linear_damping", "quadratic_damping", "added_mass")
-        if label.startswith(NOT_FREE_BY_DEFAULT) or is_exponent(label) or ".drag_" in label or float(value) == 0:
+        if label.startswith(NOT_FREE_BY_DEFAULT) or label in laws or float(value) == 0:
             continue
         if lumped and not digits >= set(label[-2:]):
             continue
@@ -180,7 +179,7 @@ def parameter_space(
 
 
 def _hint(label: str, known: Sequence[str], model: Model) -> str:
-    return shared_hint(label, model.hull.elements.shares) or suggest(label, known)
+    return model.shared_hint(label) or suggest(label, known)
 
 
 def slopes(space: ParameterSpace, x: np.ndarray) -> np.ndarray:

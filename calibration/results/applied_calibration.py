@@ -11,8 +11,7 @@ from calibration.results.calibration_file import CalibrationFile, file_error, re
 from calibration.results.strip_conventions import StripConventions
 from jaxhydro.dynamics.model import Model
 from jaxhydro.errors import InputError, shown, suggest
-from jaxhydro.hull.coefficient_labels import shared_hint
-from jaxhydro.loads.sea_state_law import is_exponent, split, with_exponents
+from jaxhydro.loads.sea_state_law import EXPONENT_BASES, exponent_label, exponents_of, with_exponents
 from jaxhydro.platform.body import HighPass, KeuleganCarpenter
 from jaxhydro.platform.drag_laws import DragLaw, drag_laws_of, plain_drag, with_drag_laws
 from jaxhydro.waves.sea_state import SeaState
@@ -98,7 +97,7 @@ def apply_calibration(path: str | PathLike[str], model: Model, platform: str, ev
             raise file_error(Path(path), expected, f"{value:g}", f"{saved.key}.parameters.{label}.value")
     undetermined = tuple(label for label in values if not saved.best.parameters[label].identifiable)
     not_used = tuple(label for label in saved.values() if label not in values)
-    reference = _reference(saved) if any(map(is_exponent, values)) else None
+    reference = _reference(saved) if exponents_of(model.loads) & values.keys() else None
     model = model.at_values(values)
     of_file = (saved.campaign, saved.platform, saved.best.converged, strips)
     seas = None if saved.seas is None else saved.seas.options()
@@ -110,7 +109,7 @@ def unknown_values_error(
 ) -> InputError:
     """The error of calibrated values that a model has no place for."""
     expected = f"parameters of {platform} ({', '.join(sorted(model.values)) or 'it has none'})"
-    found, hint = ", ".join(map(shown, unknown)), shared_hint(unknown[0], model.hull.elements.shares)
+    found, hint = ", ".join(map(shown, unknown)), model.shared_hint(unknown[0])
     return file_error(Path(path), expected, found, f"{saved.key}.parameters", hint or suggest(unknown[0], model.values))
 
 
@@ -142,7 +141,7 @@ def _with_drag(saved: CalibrationFile, model: Model, path: str | PathLike[str]) 
         if label not in plain and label not in there:
             known = [*plain, *there]
             expected = f"drag coefficients ({', '.join(known) or 'there are none'})"
-            hint = shared_hint(label, model.hull.elements.shares) or suggest(label, known)
+            hint = model.shared_hint(label) or suggest(label, known)
             raise file_error(Path(path), expected, repr(label), where, hint)
         if label in there and not _same_law(there[label], law):
             expected = f"the law that the platform declares ({_law_in_words(there[label])})"
@@ -181,7 +180,8 @@ def _reference(saved: CalibrationFile) -> SeaState | None:
 
 def _with_laws(saved: CalibrationFile, model: Model, path: str | PathLike[str]) -> Model:
     """The model with the laws over the sea state that the calibrated values have exponents of."""
-    labels = [label for label in saved.values() if is_exponent(label) and split(label)[0] in model.values]
+    known = {exponent_label(label, over): (label, over) for label in model.values for over in EXPONENT_BASES}
+    labels = [label for label in saved.values() if label in known]
     if not labels:
         return model
     reference = _reference(saved)
@@ -189,7 +189,7 @@ def _with_laws(saved: CalibrationFile, model: Model, path: str | PathLike[str]) 
         where, found = f"{saved.key}.sea_state_reference", "nothing"
         raise file_error(Path(path), f"the sea state that {labels[0]} counts from", found, where)
     try:
-        loads = with_exponents(model.loads, dict.fromkeys(labels, 0.0), reference)
+        loads = with_exponents(model.loads, {known[label]: 0.0 for label in labels}, reference)
         return replace(model, loads=loads)
     except ValueError as error:
         where = f"{saved.key}.sea_state_reference"

@@ -26,7 +26,6 @@ from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 from jaxhydro.errors import InputError, suggest
 from jaxhydro.errors import Problem as Wrong
-from jaxhydro.hull.coefficient_labels import shared_hint
 
 DEFAULT_LEVEL = 0.95
 WHITE_NOISE = NoiseColour(1.0, 0.0, 0.0, 1.0)
@@ -79,7 +78,7 @@ class Likelihood:
         """Index of a parameter among the free parameters. Raises InputError, which lists them."""
         if label not in self.labels:
             known = f"a free parameter of this fit ({', '.join(self.labels)})"
-            hint = shared_hint(label, self.fit.decays.problem.model.hull.elements.shares) or suggest(label, self.labels)
+            hint = self.fit.decays.problem.model.shared_hint(label) or suggest(label, self.labels)
             raise InputError("uncertainty", [Wrong("parameter", known, repr(label), hint)])
         return self.labels.index(label)
 

@@ -16,7 +16,6 @@ from jaxhydro.dynamics.newton_euler import LoadSum, at_most_one, body_accelerati
 from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.dynamics.state import State, body_velocity, position_rate
 from jaxhydro.environment import Environment
-from jaxhydro.hull.coefficient_labels import shared_hint, sharing
 from jaxhydro.hull.hull import Hull
 from jaxhydro.loads.base import AbstractLoad
 from jaxhydro.loads.instant import Instant
@@ -98,12 +97,24 @@ class Model(eqx.Module):
         for effect in self.effects:
             if label in effect.values:
                 found = effect.about(label).sized(float(self.size), float(self.pace))
-                others = sharing(label, self.hull.elements.shares)
+                shares = self.hull.elements.shares
+                others = [share.group for share in shares if (share.owner, share.name) == found.coefficient]
                 return found._replace(meaning=f"{found.meaning}; shared by {', '.join(others)}") if others else found
         raise self._unknown(label)
 
     def _unknown(self, label: str) -> UnknownName:
-        return unknown("parameter", label, sorted(self.values), shared_hint(label, self.hull.elements.shares))
+        return unknown("parameter", label, sorted(self.values), self.shared_hint(label))
+
+    def shared_hint(self, label: str) -> str:
+        """Hint for what would be the label of a coefficient that its group shares: the label it has; empty for others."""
+        for effect in self.effects if self.hull.elements.shares else ():
+            for own, key in effect.keys.items():
+                coefficient = effect.about(own).coefficient
+                for share in self.hull.elements.shares:
+                    shared = (share.owner, share.name) == coefficient
+                    if shared and effect.label_for(own, (share.group, key[1])) == label:
+                        return f"It is shared: {own}."
+        return ""
 
     def with_values(self, values: Mapping[str, Float[Array, ""] | float]) -> "Model":
         """This model with some parameters changed.

@@ -31,18 +31,3 @@ def owners(rows: Iterable[tuple[str, str]], symbol: str, shares: Shares) -> list
     """Groups that own a parameter `symbol` (Ca, Cd, Cp, drag_exponent), with its kind, for each group and kind (t, z)."""
     owner = {(one.group, one.name): one.owner for one in shares}
     return [(owner.get((group, coefficient_of(symbol, kind)), group), kind) for group, kind in rows]
-
-
-def sharing(label: str, shares: Shares) -> tuple[str, ...]:
-    """Groups that share the coefficient of a label with its owner."""
-    owner, _, parameter = label.removeprefix("wave_excitation.").rpartition(".")
-    symbol, _, kind = parameter.rpartition("_")
-    return tuple(one.group for one in shares if (one.owner, one.name) == (owner, coefficient_of(symbol, kind)))
-
-
-def shared_hint(label: str, shares: Shares) -> str:
-    """Hint for the label of a shared coefficient: which group has it; empty for others."""
-    group, _, parameter = label.rpartition(".")
-    symbol, _, kind = parameter.rpartition("_")
-    owners = [one.owner for one in shares if (one.group, one.name) == (group, coefficient_of(symbol, kind))]
-    return f"It is shared: {owners[0]}.{parameter}." if owners else ""

@@ -6,6 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from jaxhydro.hull.coefficient_labels import coefficient_of
 from jaxhydro.hull.ends import Ends
 from jaxhydro.hull.strips import Elements
 from jaxhydro.parameters import Parameter, parameters
@@ -24,6 +25,7 @@ def by_group(
     t: Mapping[str, str] | None = None,
     z: Mapping[str, str] | None = None,
     label: str = "{key[0]}.{name}_{key[1]}",
+    symbol: str,
 ) -> Any:
     """Field of a load with one parameter, `column.Cd_t`, for each group of members and kind.
 
@@ -36,11 +38,19 @@ def by_group(
         t: Words for parameters across members.
         z: Words for vertical or axial parameters.
         label: Template of the labels; `key` is group and kind.
+        symbol: Symbol of the member coefficient that the parameter is or belongs to: Ca, Cd or Cp.
     """
 
     def about(load: Any, key: tuple[str, str]) -> Parameter:
         words = (t if key[1] == "t" else z) or {}
-        return Parameter(unit, meaning.format(group=key[0], **words), lower, upper, neutral)
+        return Parameter(
+            unit,
+            meaning.format(group=key[0], **words),
+            lower,
+            upper,
+            neutral,
+            coefficient=(key[0], coefficient_of(symbol, key[1])),
+        )
 
     return parameters(about, label)
 

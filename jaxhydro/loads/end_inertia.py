@@ -20,7 +20,7 @@ class EndInertia(AbstractLoad):
     cuts what leans, the waves' pressure on the waterplane is part of it: `waterplane.Leaning`.
     """
 
-    Ca: PerGroup = by_group("-", MEANING, 0.0, 10.0)
+    Ca: PerGroup = by_group("-", MEANING, 0.0, 10.0, symbol="Ca")
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, loads on member ends"
 
     def act(self, now: Instant, memory: Any) -> Action:

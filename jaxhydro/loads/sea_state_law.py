@@ -77,18 +77,12 @@ class SeaStateLaw(AbstractLoad):
 def exponent_label(label: str, over: str) -> str:
     """Label of a coefficient's exponent over "significant_height" or "peak_period"."""
     check(over=(over, EXPONENT_BASES))
-    return f"{label}.{EXPONENT_BASES[over]}_exponent"
+    return LABEL.format(key=(label, EXPONENT_BASES[over]))
 
 
-def split(label: str) -> tuple[str, str]:
-    """Coefficient, and Hs or Tp, of an exponent's label."""
-    base, _, last = label.rpartition(".")
-    return base, last.removesuffix("_exponent")
-
-
-def is_exponent(label: str) -> bool:
-    """Whether a label is that of an exponent."""
-    return label.endswith(tuple(f".{symbol}_exponent" for symbol in EXPONENT_BASES.values()))
+def exponents_of(loads: tuple[AbstractLoad, ...]) -> set[str]:
+    """Labels of the exponents of all laws among loads."""
+    return {LABEL.format(key=key) for load in loads if isinstance(load, SeaStateLaw) for key in load.exponents}
 
 
 def coefficients(loads: tuple[AbstractLoad, ...]) -> dict[str, Float[Array, ""]]:
@@ -102,7 +96,7 @@ def reference_of(loads: tuple[AbstractLoad, ...]) -> SeaState | None:
 
 
 def with_exponents(
-    loads: tuple[AbstractLoad, ...], exponents: Mapping[str, Any], reference: SeaState
+    loads: tuple[AbstractLoad, ...], exponents: Mapping[tuple[str, str], Any], reference: SeaState
 ) -> tuple[AbstractLoad, ...]:
     """Loads with sea-state laws for the coefficients that have exponents.
 
@@ -110,7 +104,7 @@ def with_exponents(
 
     Args:
         loads: Loads of a model.
-        exponents: Exponents by label (`exponent_label`).
+        exponents: Exponents by the label of a coefficient, and "significant_height" or "peak_period".
         reference: Sea state in which coefficients are as declared.
 
     Raises:
@@ -121,9 +115,9 @@ def with_exponents(
     if not all(math.isfinite(x) and x > 0 for x in reference):
         raise ValueError(f"reference: expected a significant height and a peak period above 0, found {reference}")
     for load in loads:
-        of = {label: split(label) for label in exponents if split(label)[0] in load.values}
-        left -= of.keys()
-        mine = {of[label]: exponents[label] for label in of}
+        own = [key for key in exponents if key[0] in load.values]
+        left -= set(own)
+        mine = {(label, EXPONENT_BASES[over]): exponents[label, over] for label, over in own}
         if not mine:
             found.append(load)
         elif not isinstance(load, SeaStateLaw):
@@ -133,6 +127,6 @@ def with_exponents(
         else:
             found.append(SeaStateLaw.of(load.load, {**load.exponents, **mine}, reference))
     if left:
-        lost = next(label for label in exponents if label in left)
-        raise unknown("coefficient", split(lost)[0], [label for load in loads for label in load.values])
+        lost = next(label for label, over in exponents if (label, over) in left)
+        raise unknown("coefficient", lost, [label for load in loads for label in load.values])
     return tuple(found)

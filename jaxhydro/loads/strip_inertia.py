@@ -27,7 +27,7 @@ class StripInertia(AbstractLoad):
     `waterplane`.
     """
 
-    Ca: PerGroup = by_group("-", MEANING, 0.0, 10.0, t={"way": "transverse"}, z={"way": "vertical"})
+    Ca: PerGroup = by_group("-", MEANING, 0.0, 10.0, t={"way": "transverse"}, z={"way": "vertical"}, symbol="Ca")
     source: ClassVar[str] = "Morison et al. 1950, Petroleum Transactions 189; Chakrabarti 1987, chapter 6"
 
     def act(self, now: Instant, memory: Any) -> Action:

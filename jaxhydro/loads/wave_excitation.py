@@ -26,7 +26,9 @@ class WaveExcitation(AbstractLoad):
     Labels are `wave_excitation.GROUP.Cp_t` across the members of a group, `.Cp_z` upwards on pontoons and on columns' ends.
     """
 
-    Cp: PerGroup = by_group("-", MEANING, -1.0, 4.0, 1.0, t={"way": "across"}, z={"way": "upwards on"}, label=LABEL)
+    Cp: PerGroup = by_group(
+        "-", MEANING, -1.0, 4.0, 1.0, t={"way": "across"}, z={"way": "upwards on"}, label=LABEL, symbol="Cp"
+    )
     source: ClassVar[str] = "OpenFAST HydroDyn, Morison module, pressure coefficients Cp and AxCp of members and joints"
 
     def act(self, now: Instant, memory: Any) -> Action:

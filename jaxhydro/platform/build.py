@@ -15,7 +15,6 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.dynamics.rigid_body import RigidBody
 from jaxhydro.environment import Environment
 from jaxhydro.errors import InputError, Problem, suggest
-from jaxhydro.hull.coefficient_labels import shared_hint, shares_of
 from jaxhydro.hull.ends import Ends
 from jaxhydro.hull.hull import Hull
 from jaxhydro.hull.strips import COLUMN_SLOPE, Elements, Member
@@ -35,7 +34,7 @@ from jaxhydro.loads import (
     Weight,
 )
 from jaxhydro.loads.hydrostatics import buoyancy
-from jaxhydro.loads.sea_state_law import exponent_label, with_exponents
+from jaxhydro.loads.sea_state_law import with_exponents
 from jaxhydro.parameters import strongly_typed
 from jaxhydro.platform import schema as schema
 from jaxhydro.platform.computed_hydrostatics import with_hydrostatics
@@ -120,7 +119,7 @@ def build(platform: schema.Platform) -> Model:
     all_remarks = (*_of_mooring(platform), *remarks, *said)
     model = Model(environment, body, hull, tuple(loads), conventions=conventions, remarks=all_remarks)
     model = with_drag_laws(model, _chosen_drag(platform, model))
-    return strongly_typed(replace(model, loads=_in_seas(model.loads, platform)))
+    return strongly_typed(replace(model, loads=_in_seas(model, platform)))
 
 
 def model_of(platform: schema.Platform, diffraction: str | None = None, elements: int | None = None) -> Model:
@@ -163,24 +162,22 @@ def _none_partly_wet(members: list[Member], platform: schema.Platform) -> None:
         raise InputError(platform.name, list(dict.fromkeys(problems)))
 
 
-def _in_seas(loads: tuple[AbstractLoad, ...], platform: schema.Platform) -> tuple[AbstractLoad, ...]:
-    """Loads with the sea-state laws of the platform file for their coefficients."""
-    declared = platform.sea_state_laws
+def _in_seas(model: Model, platform: schema.Platform) -> tuple[AbstractLoad, ...]:
+    """Loads of a model with the sea-state laws of the platform file for their coefficients."""
+    declared, known = platform.sea_state_laws, list(model.values)
     if declared is None:
-        return loads
-    known = [label for load in loads for label in load.values]
+        return model.loads
     if unknown := [label for label in declared.exponents if label not in known]:
         where = f"sea_state_laws.exponents.{unknown[0]}"
         known = [label for label in known if not label.startswith(("mooring.", "stiffness."))]
-        shares = shares_of((group, row.shared()) for group, row in platform.coefficients.items())
-        expected, hint = f"a coefficient ({', '.join(known)})", shared_hint(unknown[0], shares) or suggest(unknown[0], known)
+        expected, hint = f"a coefficient ({', '.join(known)})", model.shared_hint(unknown[0]) or suggest(unknown[0], known)
         raise InputError(platform.name, [Problem(where, expected, repr(unknown[0]), hint)])
     exponents = {
-        exponent_label(label, over): value
+        (label, over): value
         for label, row in declared.exponents.items()
         for over, value in row.model_dump(exclude_none=True).items()
     }
-    return with_exponents(loads, exponents, SeaState(**declared.reference.model_dump()))
+    return with_exponents(model.loads, exponents, SeaState(**declared.reference.model_dump()))
 
 
 def _chosen_drag(platform: schema.Platform, model: Model) -> dict[str, DragLaw]:

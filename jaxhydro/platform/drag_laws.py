@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,6 +11,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.hull.hull import Hull
 from jaxhydro.loads import AbstractLoad
 from jaxhydro.loads.drag import (
+    DRAG_LAWS,
     AbstractDragLaw,
     ConstantLaw,
     HighPassLaw,
@@ -18,26 +19,21 @@ from jaxhydro.loads.drag import (
     MorisonDrag,
     SuctionSideLaw,
 )
+from jaxhydro.loads.drag.abstract_law import LAW_LABEL
 from jaxhydro.loads.drag.drag_flow import lines_of
-from jaxhydro.loads.sea_state_law import SeaStateLaw
-from jaxhydro.parameters import strongly_typed
+from jaxhydro.loads.sea_state_law import EXPONENT_BASES, SeaStateLaw, exponent_label
+from jaxhydro.parameters import METADATA_KEY, strongly_typed
 from jaxhydro.platform.body import ConstantDrag, HighPass, HighPassAtEnds, KeuleganCarpenter, SuctionSide
 
 DragLaw: TypeAlias = ConstantDrag | HighPass | HighPassAtEnds | KeuleganCarpenter | SuctionSide
 Key: TypeAlias = tuple[str, str]
 """Group of members, and kind of its drag coefficient: t or z."""
-
-
-def parameter_label(label: str, name: str) -> str:
-    """Label of a law's parameter: column.drag_exponent_t for `exponent` and column.Cd_t."""
-    return label.replace(".Cd_", f".drag_{name}_")
-
-
-def coefficient_label(label: str) -> str | None:
-    """Label of the coefficient of a law's parameter; None for other labels."""
-    group, _, symbol = label.rpartition(".")
-    parts = symbol.split("_")
-    return f"{group}.Cd_{parts[-1]}" if group and parts[0] == "drag" and parts[-1] in ("t", "z") else None
+_LAW_PARAMETERS = [
+    field.name
+    for law in DRAG_LAWS.values()
+    for field in fields(law)
+    if METADATA_KEY in field.metadata and field.metadata[METADATA_KEY].label == LAW_LABEL
+]
 
 
 def drag_of(load: AbstractLoad) -> MorisonDrag | None:
@@ -77,6 +73,24 @@ def _declared(law: AbstractDragLaw, key: Key, hull: Hull) -> DragLaw | None:
     if isinstance(law, SuctionSideLaw):
         return SuctionSide.model_construct(law="suction_side", suction=float(law.suction[key]))
     return None
+
+
+def drag_law_labels(model: Model, name: str) -> dict[str, str]:
+    """Labels that a parameter of a drag law, such as exponent, has or would have, by label of the drag coefficient."""
+    drags = [drag for load in model.loads if (drag := drag_of(load)) is not None]
+    keys = {label: key for drag in drags for label, key in _coefficients(drag).items()}
+    return {label: LAW_LABEL.format(key=key, name=name) for label, key in keys.items()}
+
+
+def law_labels(model: Model) -> dict[str, str]:
+    """Coefficients by label of what a law adds to them, or would add.
+
+    Laws are powers of the sea state for every parameter, and drag laws for every drag coefficient.
+    """
+    found = {exponent_label(label, over): label for label in model.values for over in EXPONENT_BASES}
+    for name in _LAW_PARAMETERS:
+        found |= {label: coefficient for coefficient, label in drag_law_labels(model, name).items()}
+    return found
 
 
 def plain_drag(model: Model) -> list[str]:

@@ -20,6 +20,7 @@ from calibration.identifiability.directions import MAX_REPORTED_DIRECTIONS, Iden
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION, collinearity, shared_information, varimax
 from calibration.identifiability.standard_deviations import sandwich_covariance
 from calibration.identifiability.statements import Parameters
+from calibration.parameters.families import parameter_family
 from calibration.parameters.space import VAGUE_DEVIATION, parameter_space
 from calibration.uncertainty.further_tests import decay_information, effective_noise, expected_information, rank_tests
 from jaxhydro.dynamics.statics import linearised
@@ -32,7 +33,8 @@ def stated(labels: str, value=None, unit=None) -> Parameters:
     """Parameters of names, logarithmic in their coordinates."""
     names = tuple(labels.split())
     value = np.ones(len(names)) if value is None else np.asarray(value, float)
-    return Parameters(names, value, value.copy(), ("-",) * len(names) if unit is None else unit)
+    families = tuple(parameter_family(name, ()) for name in names)
+    return Parameters(names, value, value.copy(), ("-",) * len(names) if unit is None else unit, families)
 
 
 def judged(parameters: Parameters, information: np.ndarray, width: float = VAGUE_DEVIATION, **more) -> Identifiability:

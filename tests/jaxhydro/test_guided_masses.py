@@ -189,7 +189,7 @@ def test_a_decay_finds_the_mass(tmp_path: Path) -> None:
     assert (
         label not in default_free(model, ["surge"])
         and label.startswith(CAMPAIGN_PARAMETERS)
-        and parameter_family(label) == "inertia"
+        and parameter_family(label, ()) == "inertia"
     )
     assert parameter_space(model, [label]).moves_equilibrium
     times = np.arange(0.0, 150.0, 0.5)

@@ -128,7 +128,7 @@ def test_waves_refuse_what_they_do_not_know(model, waves):
         (lambda: sea.gauge(TIMES, order=3), "order: expected 1, 2 or None, found 3"),
         (lambda: to_omega(1.0, "periods"), "by: .* Did you mean 'period'"),
         (lambda: with_elements(jh.load_platform("volturnus-s"), "colum", 2), "no group of members 'colum'.*mean 'column'"),
-        (lambda: with_exponents(model.loads, {exponent_label("column.Cd_T", "peak_period"): 0.0}, (1, 1)), "mean 'column.Cd_t"),
+        (lambda: with_exponents(model.loads, {("column.Cd_T", "peak_period"): 0.0}, (1, 1)), "mean 'column.Cd_t"),
         (lambda: exponent_label("column.Cd_t", "peak_perod"), "over: .* Did you mean 'peak_period'"),
         (lambda: load_campaign(CAMPAIGN).record("surge-01x"), "no test 'surge-01x'; there are: "),
     ):

@@ -12,6 +12,7 @@ from jaxhydro.parameters import AbstractEffect
 
 TRANSVERSE = {"way": "transverse", "area": "projected"}
 VERTICAL_OR_AXIAL = {"way": "vertical or axial", "area": "plan or end"}
+LAW_LABEL = "{key[0]}.drag_{name}_{key[1]}"  # of a law's parameters
 
 
 class AbstractDragLaw(AbstractEffect):
@@ -44,7 +45,7 @@ class AbstractDragLaw(AbstractEffect):
         """
 
 
-def drag_parameters(unit: str, meaning: str, lower: float, upper: float, neutral: float = 0.0, label: str = "") -> Any:
+def drag_parameters(unit: str, meaning: str, lower: float, upper: float, neutral: float = 0.0, label: str = LAW_LABEL) -> Any:
     """Field with a parameter for each drag coefficient; labels are like column.drag_exponent_t.
 
     Args:
@@ -53,7 +54,6 @@ def drag_parameters(unit: str, meaning: str, lower: float, upper: float, neutral
         lower: Lower bound.
         upper: Upper bound.
         neutral: Neutral value.
-        label: Template of other labels; `key` is group and kind.
+        label: Template of the labels; `key` is group and kind.
     """
-    template = label or "{key[0]}.drag_{name}_{key[1]}"
-    return by_group(unit, meaning, lower, upper, neutral, t=TRANSVERSE, z=VERTICAL_OR_AXIAL, label=template)
+    return by_group(unit, meaning, lower, upper, neutral, t=TRANSVERSE, z=VERTICAL_OR_AXIAL, label=label, symbol="Cd")
