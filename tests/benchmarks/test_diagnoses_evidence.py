@@ -89,6 +89,7 @@ def test_a_page_of_them_says_what_falls_short():
         "diagnosis: in the set in 4 of 6",
         "diagnosis: both of two found in 1 of 2",
         "diagnosis: held-out error within 1.3 times that of a model that was told the truth in 3 of 6",
+        "diagnosis: middle and strong effects called by another name in 2",
         "diagnosis: false alarms in 2 of 3",
         "diagnosis: 14 of 244 campaigns run",
     ]
