@@ -11,8 +11,9 @@ from benchmarks.discovery import make_campaigns
 from benchmarks.discovery.cases import EFFECTS, Case
 from benchmarks.discovery_baselines import __main__ as baselines
 from benchmarks.discovery_baselines.law_answer import answer_of_laws, held_out_error
-from benchmarks.discovery_baselines.reconstructed_forces import ForcedTest, Reconstruction
+from benchmarks.discovery_baselines.reconstructed_forces import ForcedTest, Reconstruction, reconstructed
 from benchmarks.discovery_baselines.terms import EFFECT_OF, effect_of, hysteretic
+from benchmarks.evidence.common import DEMO
 from calibration.discovery.latent_force.recover_force import windows
 from calibration.discovery.latent_force.recovered_force import RecoveredForce, ResampledTest, filtered
 
@@ -93,6 +94,21 @@ def test_the_hysteretic_term_is_that_of_bouc_and_wen():
     """One way, z = 1 - exp(-x / limit); the force stays when the motion stops."""
     z = hysteretic(np.repeat([0.2, 0.0], 500), 0.01, 0.5)
     assert z[499] == pytest.approx(1 - np.exp(-0.2 * 4.99 / 0.5), abs=2e-3) and z[-1] == pytest.approx(z[499], abs=2e-3)
+
+
+@pytest.mark.slow
+def test_forces_of_a_campaign_are_reconstructed(tmp_path: Path):
+    """Of the embedded decays: the fit's own errors without a force, smaller ones with the force; kept for another method."""
+    kept = tmp_path / "forces" / "demo.pickle"
+    found = reconstructed(DEMO, kept)
+    assert [len(found.of_use(use)) for use in ("fit", "holdout")] == [9, 0]
+    for one in found.tests:
+        assert one.errors_with({}) == pytest.approx(one.relative, rel=1e-12)
+        assert np.linalg.eigvalsh((one.mass + one.mass.T) / 2).min() > 0 and (np.diag(one.damping) > 0).all()
+        mended = one.errors_with({name: force.force for name, force in one.forces.items()})
+        assert all(mended[name] <= error for name, error in one.relative.items())
+    again = reconstructed(tmp_path / "not read", kept)
+    assert again.minutes == found.minutes and again.motions() == found.motions()
 
 
 def test_terms_stand_for_effects_of_the_benchmark():
