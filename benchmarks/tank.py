@@ -100,6 +100,7 @@ class Spec:
     seed: int = 0
     coefficients: dict = field(default_factory=dict)  # group or "damping" or "errors" -> values instead
     scale: float = 1.0  # of the effect's sizes, for studies
+    name: str = ""  # of the campaign in its manifest (default: campaign-SEED)
 
     @property
     def effects(self) -> list[str]:
@@ -759,7 +760,7 @@ def write(setup: Setup, records: dict, folder) -> None:
             )
         )
     manifest = {
-        "name": f"campaign-{seed}",
+        "name": setup.spec.name or f"campaign-{seed}",
         "platform": "platform.yaml",
         "scale": 1.0,
         "channels": {

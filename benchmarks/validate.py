@@ -1,6 +1,6 @@
 """Makes docs/validation.md and its figures: every number on the page comes from a run of this program.
 
-    python -m benchmarks.validate [--seeds 20] [--starts 20] [--diagnoses 224] [--processes 2]
+    python -m benchmarks.validate [--seeds 20] [--starts 20] [--diagnoses 244] [--processes 2]
                                   [--only SECTION ...] [--fresh] [--stale] [--text]
 
 Finished parts are kept in .venv/validate-cache under a hash of the sources and files that they depend on; what has not

@@ -2,7 +2,10 @@
 
 from pathlib import Path
 
-from benchmarks.evidence.diagnoses import Case, Share, Tally, conclude, doubts, factors, merged, outcome
+from benchmarks.discovery.cases import Case
+from benchmarks.discovery.outcomes import Share, Tally, error_ratios, outcome
+from benchmarks.evidence.diagnoses_text import conclude
+from benchmarks.evidence.stored_diagnoses import answer_of, doubts, floors_of, merged
 from calibration.discovery.acceptance import Verdict
 
 
@@ -45,20 +48,22 @@ def test_what_is_outdone_by_something_refused_is_said_to_be_unexplained():
     """As a diagnosis says it: by what the last round tried; not where that let an effect in, or where one gains as much."""
     case, tried = Case("cogging", 2, 2), {"1 hysteresis surge": (60.0, 90.0, True), "1 current": (300.0, -40.0, False)}
     let_in = said(["hysteresis"], 0.4, motions=["surge"], tried=tried)
-    assert doubts(let_in) == [None] and outcome(case, let_in) == "another"
+    assert doubts(let_in) == [None] and outcome(case, answer_of(let_in)) == "another"
     for bic, doubt, words in ((149.0, None, "another"), (151.0, "current", "unexplained")):
         ended = said(["hysteresis"], 0.4, motions=["surge"], tried=tried | {"2 current": (bic, -40.0, False)})
-        assert doubts(ended) == [doubt] and outcome(case, ended) == words
+        assert doubts(ended) == [doubt] and outcome(case, answer_of(ended)) == words
     text = conclude({Case("", 2, 2): RESULTS[Case("", 2, 1)], case: ended}, 0, Path("none.png")).text
     assert "*unexplained* [in doubt: hysteresis] 4.00" in text
 
 
 def test_outcomes_are_counted_by_what_is_in_the_tank():
-    outcomes = {case: outcome(case, result) for case, result in RESULTS.items()}
-    tally = Tally.of(RESULTS, outcomes, factors(RESULTS))
+    answers = {case: answer_of(result) for case, result in RESULTS.items()}
+    outcomes = {case: outcome(case, answer) for case, answer in answers.items()}
+    tally = Tally.of(outcomes, answers, error_ratios(answers))
     assert tally == Tally(
         named=Share(3, 6),
         listed=Share(4, 6),
+        right=Share(4, 6),
         near=Share(2, 6),
         told=Share(3, 6),
         alarms=Share(2, 3),
@@ -84,8 +89,9 @@ def test_a_page_of_them_says_what_falls_short():
         "diagnosis: in the set in 4 of 6",
         "diagnosis: both of two found in 1 of 2",
         "diagnosis: held-out error within 1.3 times that of a model that was told the truth in 3 of 6",
+        "diagnosis: middle and strong effects called by another name in 2",
         "diagnosis: false alarms in 2 of 3",
-        "diagnosis: 14 of 224 campaigns run",
+        "diagnosis: 14 of 244 campaigns run",
     ]
 
 
@@ -100,5 +106,6 @@ def test_errors_are_over_those_with_nothing_missing_of_their_time():
     }
     after = merged(merged(before, {"nothing-1": said([], 0.1)}), {"current-2-1": said(["current"], 0.15)})
     assert {name for name, one in after.items() if "floor" in one} == {"umbilical-2-1"} and merged(after, after) == after
-    ratio = factors({Case.of(name): one for name, one in after.items()})
+    results = {Case.of(name): one for name, one in after.items()}
+    ratio = error_ratios({case: answer_of(one) for case, one in results.items()}, floors_of(results))
     assert [round(ratio[Case.of(name)], 12) for name in ("current-2-1", "umbilical-2-1", "umbilical-2-2")] == [1.5, 1.5, 1.0]

@@ -196,10 +196,10 @@ def latent_forces(
 def latent_of(search: Search, fitted: Calibration) -> tuple[LatentForce, ...]:
     """Latent forces of a diagnosis's final model. See `latent_forces`."""
     from_rest = search.campaign.manifest.zero is not None
-    return latent_forces(fitted.model, list(_moved(search, fitted)), search.setup.motions, from_rest)
+    return latent_forces(fitted.model, list(resampled_tests(search, fitted)), search.setup.motions, from_rest)
 
 
-def _moved(search: Search, fitted: Calibration) -> Iterator[ResampledTest]:
+def resampled_tests(search: Search, fitted: Calibration) -> Iterator[ResampledTest]:
     """Tests on even clocks; in waves on the clock of their sea."""
     seas = {name: sea for sea in search.study.seas for name in sea.tests}
     records = {record.id: record for record in search.campaign.records}
