@@ -45,6 +45,7 @@ def of_case(name: str) -> dict[str, Any]:
         "motions": [one.degree_of_freedom for one in result.effects],
         "alike": [[text.split(" ")[0] for text in one.indistinguishable] for one in result.effects],
         "evidence": [[e.delta_bic, e.holdout_gain, e.clear] for e in (one.evidence for one in result.effects)],
+        "probability": [one.evidence.probability for one in result.effects],
         "error": [result.baseline.objective("holdout"), result.augmented.objective("holdout")],
         "in_doubt": [one.in_doubt for one in result.effects],
         "refused": {listed(one.effect, one.degree_of_freedom): describe_refusal(one.reason) for one in result.rejected},

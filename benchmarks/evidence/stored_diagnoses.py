@@ -91,11 +91,15 @@ def in_doubt(result: dict[str, Any]) -> bool:
 def answer_of(result: Mapping[str, Any]) -> Answer:
     """The answer that a kept diagnosis is."""
     before, after = result["error"]
-    claims = zip(result["effects"], result["motions"], result["alike"], strict=True)
+    count = len(result["effects"])  # earlier searches had no probabilities
+    claims = zip(result["effects"], result["motions"], result["alike"], result.get("probability", [None] * count), strict=True)
     found = bool(result["effects"]) and not in_doubt(result)
     return Answer(
         verdict="found" if found else "nothing_missing" if result["verdict"] == "nothing_missing" else "unexplained",
-        effects=[ClaimedEffect(effect=name, motion=motion, indistinguishable_from=alike) for name, motion, alike in claims],
+        effects=[
+            ClaimedEffect(effect=name, motion=motion, indistinguishable_from=alike, probability=probability)
+            for name, motion, alike, probability in claims
+        ],
         held_out_error=HeldOutErrors(baseline=before, final=after),
         minutes=result["seconds"] / 60,
     )

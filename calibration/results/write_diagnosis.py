@@ -37,6 +37,9 @@ from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.units import for_people, unit_of
 
 
+PROBABILITY_DIGITS = 3
+
+
 def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: bool = True) -> Path:
     """Write all results into `folder` (made where absent); gives the folder.
 
@@ -77,7 +80,7 @@ def document(diagnosis: Diagnosis) -> DiagnosisFile:
                     effect=one.effect,
                     degree_of_freedom=one.degree_of_freedom,
                     reason=describe_refusal(one.reason),
-                    probability=one.reason.values[0] if one.reason.kind == RefusalKind.IMPROBABLE else None,
+                    probability=_rounded(one.reason.values[0]) if one.reason.kind == RefusalKind.IMPROBABLE else None,
                 )
                 for one in diagnosis.rejected
             ],
@@ -110,13 +113,18 @@ def _effect(one: Effect) -> FoundEffect:
         meaning=one.meaning,
         source=one.source,
         parameters={short(label): outputs.parameter(value, label=value.label) for label, value in one.parameters.items()},
-        evidence=Evidence(**_finite(asdict(one.evidence))),
+        evidence=Evidence(**_finite(asdict(one.evidence) | {"probability": _rounded(one.evidence.probability)})),
         share_of_residual_explained=_share(one.share),
         indistinguishable_from=list(one.indistinguishable),
         test_that_would_tell=one.telling_test,
         **stated(in_doubt=one.in_doubt),
         plausible={short(label): PlausibleSizeRange(**asdict(size)) for label, size in one.plausible.items()},
     )
+
+
+def _rounded(probability: float) -> float:
+    """A probability to the digits that resampling gives."""
+    return round(probability, PROBABILITY_DIGITS)
 
 
 def _latent(one: LatentForce) -> SavedLatentForce:

@@ -8,7 +8,9 @@ from jaxhydro.loads.base import AbstractLoad, Action
 from jaxhydro.loads.computed_excitation import ComputedExcitation
 from jaxhydro.loads.computed_radiation import ComputedRadiation
 from jaxhydro.loads.coulomb_friction import CoulombFriction
-from jaxhydro.loads.coupled_terms import CoupledAddedMass, CoupledDamping, CoupledStiffness
+from jaxhydro.loads.coupled_added_mass import CoupledAddedMass
+from jaxhydro.loads.coupled_damping import CoupledDamping
+from jaxhydro.loads.coupled_stiffness import CoupledStiffness
 from jaxhydro.loads.covered_ends import CoveredEnds
 from jaxhydro.loads.cubic_damping import CubicDamping
 from jaxhydro.loads.drag.morison_drag import MorisonDrag

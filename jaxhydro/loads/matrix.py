@@ -37,6 +37,21 @@ def by_entry(symbol: str, quantity: str, cause: str) -> Any:
     return parameters(about, "{prefix}.{key}")
 
 
+def by_pair(symbol: str, quantity: str) -> Any:
+    """Field of a load with one parameter, `prefix.B15`, for each pair of degrees of freedom.
+
+    Args:
+        symbol: Key of `UNITS`.
+        quantity: What the matrix is, for example "linear damping".
+    """
+
+    def about(load: Any, key: str) -> Parameter:
+        i, j = row_and_column(key)
+        return Parameter(unit(symbol, key), f"{quantity} that couples {DOFS[i]} and {DOFS[j]}")
+
+    return parameters(about, "{prefix}.{key}")
+
+
 def meaning(quantity: str, cause: str, key: str) -> str:
     """Meaning of an entry: "linear damping in surge", or "linear damping: surge force from pitch velocity"."""
     i, j = row_and_column(key)
@@ -65,3 +80,9 @@ def assemble(values: Entries) -> Float[Array, "6 6"]:
         i, j = row_and_column(key)
         basis[row, 6 * i + j] = 1.0
     return (jnp.stack(list(values.values())) @ basis).reshape(6, 6)
+
+
+def assemble_symmetric(values: Entries) -> Float[Array, "6 6"]:
+    """Symmetric matrix (6, 6) of entries above the diagonal by key; the others are 0."""
+    matrix = assemble(values)
+    return matrix + matrix.T

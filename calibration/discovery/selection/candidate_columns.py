@@ -57,7 +57,25 @@ def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
         fits: Study, candidates, priors.
         state: The fitted model.
     """
-    study, look = fits.study, state.look
+    look = state.look
+    if state.chosen:  # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
+        look = fits.study.linearise(look.place, fits.active(state.chosen))
+    names = {one.name for one in state.chosen}
+    return candidate_columns(fits, look, state.chosen, [one for one in fits.setup.candidates if one.name not in names])
+
+
+def candidate_columns(
+    fits: EffectFits, look: Linearisation, chosen: Sequence[Candidate], candidates: Sequence[Candidate]
+) -> CandidateColumns:
+    """A linear model of the effects in a model and of other candidates.
+
+    Args:
+        fits: Study, candidates, priors.
+        look: Linearisation along all free directions of the model.
+        chosen: The effects in the model.
+        candidates: Other candidates, which are linearised along.
+    """
+    study = fits.study
     columns, directions = [look.slopes], list(look.active)
     base = tuple(range(len(fits.base)))
     variants: list[Variant] = []
@@ -68,16 +86,15 @@ def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
         variants.append(Variant(one.name, tuple(mine), odds))
         values.append(at)
 
-    names = {one.name for one in state.chosen}
     others = []
-    for one in (*state.chosen, *(one for one in fits.setup.candidates if one.name not in names)):
+    for one in (*chosen, *candidates):
         mine = study.index(one.amplitudes)
         if set(mine) <= set(fits.base):  # nearly known, and let go further by a second column with the same slopes
             at = [look.active.index(i) for i in mine]
             add(one, range(len(directions), len(directions) + len(at)), {})
             columns.append(look.slopes[:, at])
             directions += mine
-        elif one.name in names:
+        elif one in chosen:
             add(one, [look.active.index(i) for i in study.index(one.labels)], {})
         else:
             others.append(one)

@@ -1,6 +1,6 @@
 """Joint search: select effects on a linearised model, go there, linearise again, verify by simulation."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect, Search
-from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates
+from calibration.discovery.selection.candidate_columns import CandidateColumns, candidate_columns, linearise_candidates
 from calibration.discovery.selection.cross_validation import held_out_gain
 from calibration.discovery.selection.joint_selection import JointSelection, Subset
 from calibration.discovery.set_up import StudySetup
@@ -80,15 +80,16 @@ class JointSearch(Search):
             one = self.candidates[name]
             self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
 
-    def move(self, state: FitState, subset: Subset, number: int) -> FitState:
-        """Fit the effects of a subset, from a state on, with the slopes of the last linear model.
+    def move(self, state: FitState, columns: CandidateColumns, subset: Subset, number: int) -> FitState:
+        """Fit the effects of a subset, from a state on, with the slopes of a linear model.
 
         Args:
             state: The state that was linearised.
+            columns: The linear model.
             subset: The subset.
             number: Number of the round.
         """
-        columns, place = self.columns, state.look.place
+        place = state.look.place
         chosen = tuple(self.candidates[columns.variants[i].name] for i in subset.variants)
         present = {one.name for one in state.chosen}
         gone = [label for one in state.chosen if one not in chosen for label in one.labels]
@@ -136,8 +137,10 @@ class JointSearch(Search):
             if names in visited or number == MAX_ROUNDS:
                 break
             visited.add(names)
-            state = self.settle(self.move(state, best, number), number)
+            state = self.move(state, self.columns, best, number)
             reach(state)
+        if state.chosen:
+            state = self.settle(state, MAX_ROUNDS)
         return state
 
     def with_split_modes(self, baseline: FitState) -> FitState | None:
@@ -165,9 +168,10 @@ class JointSearch(Search):
             state: The last state of the search.
         """
         while state.chosen:
-            for i, one in zip(present := self.columns.present(state.chosen), state.chosen, strict=True):
+            columns = candidate_columns(self, state.look, state.chosen, ())
+            for i, one in zip(self.columns.present(state.chosen), state.chosen, strict=True):
                 self.say(f"verification: the model without {effect_in_words(one.name)}", END)
-                self.found[one.name] = self.evidence(baseline, state, present, i)
+                self.found[one.name] = self.evidence(baseline, state, columns, i)
             refused = [one for one in state.chosen if self.found[one.name].verdict.refused]
             if not refused:
                 break
@@ -179,24 +183,26 @@ class JointSearch(Search):
         self.reject_others(state)
         return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
 
-    def evidence(self, baseline: FitState, state: FitState, present: Sequence[int], out: int) -> AcceptedEffect:
+    def evidence(self, baseline: FitState, state: FitState, columns: CandidateColumns, out: int) -> AcceptedEffect:
         """Evidence of one effect in a model: by simulation without it, and tests left out in turn in the linear model.
 
         Args:
             baseline: The fitted declared model.
             state: The fitted model.
-            present: Variants of its effects.
-            out: Variant of the effect.
+            columns: Linear model of its effects alone, at the fitted point.
+            out: Variant of the effect in the last selection.
         """
         one = self.candidates[self.columns.variants[out].name]
-        whole = self.selector.subset(present)
-        rest = self.selector.subset([i for i in present if i != out], whole)
-        held = held_out_gain(self.columns.model, whole.fit, rest.fit, self.test_of_pool)
-        without = self.move(state, rest, MAX_ROUNDS) if rest.variants else baseline
+        last = JointSelection(columns.model, columns.base, columns.variants, columns.series)
+        whole = last.subset(range(len(state.chosen)))
+        rest = last.subset([i for i in whole.variants if columns.variants[i].name != one.name], whole)
+        held = held_out_gain(columns.model, whole.fit, rest.fit, self.test_of_pool)
+        without = self.move(state, columns, rest, MAX_ROUNDS) if rest.variants else baseline
         verdict = self.assess(without, state, one, last=True)
         gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
+        alike = self.look_alikes(self.selector.subset(self.columns.present(state.chosen)), out)
         probability = self.probability.get(one.name, 0.0)
-        return AcceptedEffect(max(gains, default=0.0), without, state, verdict, self.look_alikes(whole, out), probability, held)
+        return AcceptedEffect(max(gains, default=0.0), without, state, verdict, alike, probability, held)
 
     @property
     def test_of_pool(self) -> np.ndarray:
