@@ -17,6 +17,7 @@ from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery import checkpoint, search
 from calibration.discovery.acceptance import ResidualSummary, Verdict, abandoned_decays
 from calibration.discovery.diagnose import diagnose
+from calibration.discovery.diagnosis import IMPLAUSIBLE_SIZE
 from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
@@ -124,6 +125,17 @@ def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
     assert not any("surge" in name for name in names)
 
 
+def test_a_term_that_is_declared_zero_is_a_candidate(tmp_path):
+    """And one that is declared and fitted is none."""
+    campaign = campaign_of(tmp_path, lambda x, v: 0.0)
+    assert "linear_damping (roll)" not in {one.name for one in set_up_study(campaign, Options()).candidates}
+    for change in ({"linear_damping": {"B44": 0.0}}, {"linear_damping": {}}):
+        with (tmp_path / "platform.yaml").open("w") as file:
+            YAML().dump(PLATFORM | change, file)
+        names = {one.name for one in set_up_study(load_campaign(tmp_path), Options()).candidates}
+        assert {"linear_damping (roll)", "stiffness (roll)"} <= names
+
+
 def found_in(campaign, **how):
     return diagnose(campaign.model, campaign, **how)
 
@@ -149,6 +161,30 @@ def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
     held = [one for one in found.anatomy_after if one.use == "holdout"]
     before = [one for one in found.anatomy_before if one.use == "holdout"]
     assert held[0].rms < left * before[0].rms
+
+
+@pytest.mark.slow
+def test_linear_damping_that_is_declared_zero_is_found(tmp_path):
+    """With its size: 2.4 N m s/rad of linear damping, by which the body loses its motion."""
+    campaign_of(tmp_path, lambda x, v: 0.0)
+    with (tmp_path / "platform.yaml").open("w") as file:
+        YAML().dump(PLATFORM | {"linear_damping": {"B44": 0.0}}, file)
+    found = found_in(load_campaign(tmp_path))
+    assert [one.effect for one in found.effects] == ["linear_damping"]
+    assert found.effects[0].evidence.probability > 0.9
+    assert found.effects[0].parameters["linear_damping.B44"].value == pytest.approx(2.4, rel=0.05)
+
+
+@pytest.mark.slow
+def test_a_size_beyond_what_is_plausible_is_not_named(tmp_path):
+    """Something acts like the law, which cannot be so large where the campaign says what is plausible."""
+    campaign_of(tmp_path, lambda x, v: -500.0 * x**3)
+    manifest = tmp_path / "campaign.yaml"
+    manifest.write_text(manifest.read_text() + "plausible:\n  nonlinear_hydrostatics: 0.2 %\n")
+    found = found_in(load_campaign(tmp_path))
+    mine = [one for one in found.effects if one.effect == "nonlinear_hydrostatics"]
+    assert all(one.in_doubt == IMPLAUSIBLE_SIZE for one in mine)
+    assert all(size.lower <= one.parameters[k].value <= size.upper for one in mine for k, size in one.plausible.items())
 
 
 # a body that rolls in 2.58 s: off its period, near it, where it makes two modes of one, and heavy enough for that further off

@@ -8,8 +8,9 @@ import pytest
 from scipy.integrate import dblquad
 from scipy.optimize import minimize
 
+from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
 from calibration.discovery.selection.joint_selection import JointSelection, Variant
-from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
+from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, OwnUnknowns
 
 ROWS, POOLS = 240, 12
 
@@ -125,3 +126,26 @@ def test_what_one_series_alone_shows_is_less_sure_than_what_all_show() -> None:
     once = replace(everywhere, slopes=slopes, residual=noise - 2.5 * slopes[:, 2])
     sure, unsure = (selection(one).run().probability()["effect 2"] for one in (everywhere, once))
     assert sure > 0.9 and 0.4 < unsure < 0.8  # a series is missing from 37 % of the resamplings
+
+
+def test_a_group_that_is_left_out_is_predicted_by_the_others() -> None:
+    """Its own unknowns are fitted to it, the columns to the others: as two fits by hand do."""
+    model = linear_model(2, {0: 0.8}, own=2)
+    group = np.where(np.arange(POOLS) < POOLS // 2, 0, 1)  # the decay, and the rest
+    whole = model.fit([0, 1])
+    found = left_out_deviances(model, [0, 1], group, whole)
+    rest = replace(model, freedom=model.freedom * (group == 1)).fit([0, 1])
+    residual = model.residual + model.slopes @ rest.step
+    alone = replace(model, residual=residual, freedom=model.freedom * (group == 0)).fit([])
+    assert found[0] == pytest.approx(alone.deviance.sum(), abs=SMALL_CHANGE)
+    own = model.own[0]
+    side = np.linalg.lstsq(own.slopes, -residual[own.rows], rcond=None)[0]
+    assert alone.own[0] == pytest.approx(side, abs=0.05)
+
+
+def test_an_effect_that_is_there_predicts_what_is_left_out_and_another_does_not() -> None:
+    model, group = linear_model(4, {2: 0.8}), np.arange(POOLS) // 3
+    without = model.fit([0, 1])
+    there, absent = (held_out_gain(model, model.fit([0, 1, column]), without, group) for column in (2, 3))
+    assert there.shape == (4,) and (there > 0).all()
+    assert absent.sum() < 4.0 < there.sum()
