@@ -36,7 +36,6 @@ from jaxhydro.files import staged
 from jaxhydro.result_model import finite_or_null, stated
 from jaxhydro.units import for_people, unit_of
 
-
 PROBABILITY_DIGITS = 3
 
 

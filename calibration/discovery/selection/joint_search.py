@@ -19,6 +19,7 @@ from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
 
 INDISTINGUISHABLE_SHARE = 0.1  # of an effect's log evidence: another that has all but this much is not told from it
+MIN_PROBABILITY = 0.5  # of an effect and those that the records cannot tell from it
 MAX_ROUNDS = 6  # linearisations along all candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
 BEGIN, END = 0.2, 0.9  # progress of the rounds
@@ -202,6 +203,8 @@ class JointSearch(Search):
         gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
         alike = self.look_alikes(self.selector.subset(self.columns.present(state.chosen)), out)
         probability = self.probability.get(one.name, 0.0)
+        if verdict.refused is None and probability + sum(self.probability.get(name, 0.0) for name in alike) < MIN_PROBABILITY:
+            verdict = verdict._replace(refused=Refusal(RefusalKind.IMPROBABLE, (probability,)))
         return AcceptedEffect(max(gains, default=0.0), without, state, verdict, alike, probability, held)
 
     @property

@@ -25,6 +25,7 @@ MAX_SUBSETS = 400  # subsets that are fitted
 PROMISING = 8  # additions that are fitted, of those ranked by one linear step
 EXCHANGED = 3  # exchanges of each effect that are fitted
 RESAMPLES = 400  # resamplings of the series
+MIN_SERIES = 8  # series that are resampled; of fewer, their pools of bands are
 SEED = 7
 
 
@@ -141,7 +142,8 @@ class JointSelection:
             some = [c for c in self.variants[i].columns if c in at]
             rows, width = [at[c] for c in some], model.width[some]
             matrix, slope = rest[np.ix_(rows, rows)] + np.diag(1 / width**2), rest[rows, -1]
-            step = bounded_minimum(matrix, slope, model.lower[some], model.upper[some])
+            neutral = model.neutral[some]
+            step = bounded_minimum(matrix, slope, model.lower[some] - neutral, model.upper[some] - neutral)
             gain = float(-(step @ matrix @ step) - 2 * slope @ step)
             occam = float(np.linalg.slogdet(matrix * np.outer(width, width))[1]) if step.any() else 0.0
             found[i] = gain, gain - occam + 2 * self.variants[i].log_odds
@@ -189,9 +191,11 @@ class JointSelection:
         return Selection(ordered, self.variants, self.bagged(ordered))
 
     def bagged(self, subsets: Sequence[Subset]) -> np.ndarray:
-        """Posterior probability of subsets, averaged over resampled series."""
-        used = np.unique(self.series[self.model.used])
-        deviance = np.array([np.bincount(self.series, one.fit.deviance, self.series.max() + 1)[used] for one in subsets])
+        """Posterior probability of subsets, averaged over resampled series; over resampled pools where series are few."""
+        few = len(np.unique(self.series[self.model.used])) < MIN_SERIES
+        unit = np.arange(len(self.series)) if few else self.series
+        used = np.unique(unit[self.model.used])
+        deviance = np.array([np.bincount(unit, one.fit.deviance, unit.max() + 1)[used] for one in subsets])
         constant = np.array([one.evidence for one in subsets]) + 0.5 * deviance.sum(axis=1)
         count = np.random.default_rng(SEED).multinomial(len(used), np.full(len(used), 1 / len(used)), RESAMPLES)
         log = constant[:, None] - 0.5 * deviance @ count.T
