@@ -105,6 +105,13 @@ def quantity(value: float, deviation: float | None, unit: str) -> str:
     return f"{text} {unit}".strip()
 
 
+def quantity_range(lower: float, upper: float, unit: str) -> str:
+    """A range in a unit that people read: `0 to 81.0 kN`, degrees for radians."""
+    factor, unit = _readable(max(abs(lower), abs(upper)), unit)
+    ends = [number(one / factor, 3) if one else "0" for one in (lower, upper)]
+    return f"{ends[0]} to {ends[1]} {unit}".strip()
+
+
 def _readable(largest: float, unit: str) -> tuple[float, str]:
     """What values are divided by, and the unit then."""
     if unit in ("-", "1"):

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from calibration.discovery.diagnosis import HELD_OUT_ERROR, IMPLAUSIBLE_SIZE, Outcome
 from calibration.discovery.effects.effect_names import capitalised, effect_in_words
-from calibration.formatting import listed, number, percent, quantity
+from calibration.formatting import listed, number, percent, quantity, quantity_range
 from calibration.results.calibration_file import Parameter
 from calibration.results.diagnosis_file import DiagnosisFile, Evidence, FoundEffect
 from calibration.vocabulary import UNDETERMINED
@@ -117,10 +117,7 @@ def describe_probability(probability: float | None) -> str:
 def describe_range(one: FoundEffect, name: str) -> str:
     """Plausible range of an effect's parameter."""
     size = one.plausible.get(name)
-    if size is None:
-        return ""
-    unit = one.parameters[name].unit
-    return f"{quantity(size.lower, None, unit)} to {quantity(size.upper, None, unit)}"
+    return "" if size is None else quantity_range(size.lower, size.upper, one.parameters[name].unit)
 
 
 def evidence_strength(evidence: Evidence) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Score
+from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Rejected, Score
 from calibration.discovery.refusal import RefusalKind
 from calibration.result import BandError, Calibration, Series, TestFit
 from calibration.results import write_calibration as outputs
@@ -79,7 +79,7 @@ def document(diagnosis: Diagnosis) -> DiagnosisFile:
                     effect=one.effect,
                     degree_of_freedom=one.degree_of_freedom,
                     reason=describe_refusal(one.reason),
-                    probability=_rounded(one.reason.values[0]) if one.reason.kind == RefusalKind.IMPROBABLE else None,
+                    **stated(probability=_probability(one)),
                 )
                 for one in diagnosis.rejected
             ],
@@ -119,6 +119,11 @@ def _effect(one: Effect) -> FoundEffect:
         **stated(in_doubt=one.in_doubt),
         plausible={short(label): PlausibleSizeRange(**asdict(size)) for label, size in one.plausible.items()},
     )
+
+
+def _probability(one: Rejected) -> float | None:
+    """Probability of an effect that is rejected for it."""
+    return _rounded(one.reason.values[0]) if one.reason.kind == RefusalKind.IMPROBABLE else None
 
 
 def _rounded(probability: float) -> float:

@@ -14,7 +14,7 @@ from PIL import Image
 from test_outputs import SCHEMAS, Page, changed, contents
 
 import jaxhydro as jh
-from calibration.discovery.diagnosis import Diagnosis
+from calibration.discovery.diagnosis import IMPLAUSIBLE_SIZE, Diagnosis, PlausibleRange
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.plots import diagnosis_figures as plots
 from calibration.report import diagnosis_tables as tables
@@ -60,7 +60,8 @@ def test_the_document_says_what_the_contract_says(result: Diagnosis, written: Pa
     assert (effect["effect"], effect["degree_of_freedom"]) == ("coulomb_friction", "surge")
     force = effect["parameters"]["force"]
     assert (force["value"], force["standard_deviation"], force["unit"]) == (81000.0, 2100.0, "N")
-    assert effect["evidence"] == {"score": 812.0, "delta_bic": 604.0, "holdout_gain": 0.61, "clear": 38.6}
+    known = {"score": 812.0, "delta_bic": 604.0, "holdout_gain": 0.61, "clear": 38.6}
+    assert effect["evidence"] == known | {"probability": 0.97, "left_out": 512.0, "left_out_better": 0.75}
     assert effect["share_of_residual_explained"] == 0.93 and effect["indistinguishable_from"] == ["hysteresis (surge)"]
     reason = "the squared error of the held-out tests grows by 2 %"
     assert missing["rejected"][0] == {"effect": "current", "degree_of_freedom": None, "reason": reason}
@@ -195,6 +196,22 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
     jsonschema.validate(json.loads((tmp_path / "c" / "diagnosis.json").read_text()), json.loads(SCHEMAS[0].read_text()))
     text = Page(write_report(tmp_path / "c").read_text()).text
     assert "No test was held out" in text and "Coulomb friction in surge, Coulomb friction in surge and new in yaw" in text
+
+
+def test_a_size_at_the_end_of_what_is_plausible_is_told(result: Diagnosis, tmp_path: Path) -> None:
+    """With the range and where it comes from; the effect is in doubt, and its probability is beside it."""
+    one = replace(
+        result.effects[0],
+        in_doubt=IMPLAUSIBLE_SIZE,
+        plausible={FORCE: PlausibleRange(0.0, 81000.0, "engineering judgement: a tenth of the largest restoring force.", True)},
+    )
+    write_diagnosis(replace(result, effects=(one, *result.effects[1:])), tmp_path)
+    saved = read_diagnosis(tmp_path)
+    assert saved.missing.effects[0].plausible["force"].at_end
+    said = words.describe_alternatives(saved.missing.effects[0])
+    assert "at the end of what is plausible: force, plausible from 0 to 81.0 kN (engineering judgement" in said
+    text = Page(write_report(tmp_path).read_text()).text
+    assert "97 %" in text and "75 % are predicted better with it" in text and "acts like it" in text
 
 
 def test_what_is_not_finite_is_refused(result: Diagnosis) -> None:

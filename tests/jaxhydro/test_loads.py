@@ -24,7 +24,9 @@ from jaxhydro.loads import (
     ComputedExcitation,
     ComputedRadiation,
     CoulombFriction,
+    CoupledAddedMass,
     CoupledDamping,
+    CoupledStiffness,
     CoveredEnds,
     CubicDamping,
     DriftTransfer,
@@ -186,6 +188,8 @@ def in_water(model: jh.Model) -> jh.Model:
     computed = (DriftTransfer(TRANSFER), ComputedExcitation(EXCITATION))
     drift = (
         CoupledDamping({"B15": 0.0}),
+        CoupledStiffness({"C15": 0.0}),
+        CoupledAddedMass({"A15": 0.0}),
         WaveDrift.neutral(DOFS),
         WaveDriftDamping.neutral(("surge", "heave", "pitch")),
         *computed,
