@@ -116,8 +116,8 @@ def unexplained_motions(search: Search, left: Sequence[Finding]) -> list[Finding
 def next_test(search: Search, after: FitState, verdict: Outcome) -> str:
     """The test that would tell the effects found from others; without any, that of the best rejected one."""
     if verdict == Outcome.UNEXPLAINED:
-        tried = [one for one in search.scores if one.verdict is not None and one.round == search.scores[-1].round]
-        best = max(tried, key=lambda one: one.verdict.bic if one.verdict else 0.0, default=None)
+        last = [one for one in search.scores if one.round == search.scores[-1].round]
+        best = max(last, key=lambda one: one.gain, default=None)
         name = None if best is None else (best.effect, best.degree_of_freedom)
         mine = [one for one in search.setup.candidates if (one.effect, one.dof) == name]
         return "; ".join(

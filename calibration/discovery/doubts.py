@@ -47,7 +47,7 @@ def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) ->
 
     Args:
         worth: Gain of every effect in fitted and held-out tests, by name.
-        tried: Verdicts of the last round and of removed effects, by name.
+        tried: Verdicts of removed effects, by name; of earlier searches those of the last round, too.
 
     Returns:
         The rejected effect by the name of the effect that it outdoes.
@@ -67,14 +67,7 @@ def doubted_effects(search: Search, state: FitState, before: Calibration, after:
     - a rejected effect explains more (`outdone_effects`);
     - the held-out error rose, in all or in the effect's motion.
     """
-    last = max((one.round for one in search.scores), default=0)
-    candidates = {(one.effect, one.dof): one.name for one in search.setup.candidates}
-    tried = {
-        candidates[one.effect, one.degree_of_freedom]: one.verdict
-        for one in search.scores
-        if one.round == last and one.verdict is not None
-    }
-    tried |= {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
+    tried = {name: one.taken_out for name, one in search.rejected.items() if one.taken_out is not None}
     verdicts = {one.name: search.found[one.name].verdict for one in state.chosen}
     found = outdone_effects({name: one.worth for name, one in verdicts.items()}, tried)
     every = held_out_error_rose(before.objective("holdout"), after.objective("holdout"))

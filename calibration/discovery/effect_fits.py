@@ -21,7 +21,6 @@ from calibration.residuals.decays import first_guess
 
 MAX_ITERATIONS = 50  # iterations of a full refit
 MAX_RELINEARISATIONS = 8  # new slopes in a full refit
-MIN_FIT_GAIN = 1.0  # decrease of -2 ln L that another fit needs to be continued
 
 
 class EffectFits:
@@ -95,19 +94,6 @@ class EffectFits:
     def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """Fit all directions of a linearisation until nothing is gained."""
         return self.state(chosen, self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction))
-
-    def refitted_from(self, place: Point, state: FitState, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
-        """The better of a state and a fit from another point.
-
-        The state's slopes are used to test the other point; only if it seems better are slopes computed anew.
-        """
-        look = state.look.restricted_to(self.active(chosen))
-        there = replace(look, place=place, residual=self.study.residual(place))
-        reached = self.fit(there, chosen, MAX_ITERATIONS, 0, name, fraction).look
-        gain = float((state.likelihood - minus_two_log_likelihood(self.study, reached.residual))[self.study.used].sum())
-        if gain < MIN_FIT_GAIN:
-            return state
-        return self.likeliest(state, self.refit(self.study.linearise(reached.place, look.active), chosen, name, fraction))
 
     def fit(
         self,

@@ -24,10 +24,6 @@ class RefusalKind(StrEnum):
     INSIGNIFICANT = "insignificant"  # parameters over their standard deviations
     NEGLIGIBLE = "negligible"
     WORSE_MOTION = "worse_motion"  # objective of the motion `name`, or "" for all, without and with the effect
-    WEAK_AT_FIRST_ORDER = "weak_at_first_order"
-    OUTDONE_AT_FIRST_ORDER = "outdone_at_first_order"
-    FAR_WEAKER = "far_weaker"
-    OUTDONE = "outdone"  # by the effect `name`
     IMPROBABLE = "improbable"  # posterior probability
 
 
@@ -40,11 +36,9 @@ class Refusal:
         values: Numbers of that kind.
         name: A parameter, motion or effect, where the kind has one.
         compared: Data that the reason refers to.
-        later: Whether the effect was in the model, and later effects made it needless.
     """
 
     kind: RefusalKind
     values: tuple[float, ...] = ()
     name: str = ""
     compared: ComparedData = ComparedData.FITTED
-    later: bool = False

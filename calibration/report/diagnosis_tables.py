@@ -49,7 +49,7 @@ def effects(saved: DiagnosisFile) -> Rows:
             size = (plain_name(name), said, describe_range(one, name))
             rows.append((first[0], *size, *first[1:]) if i == 0 else ("", *size, "", ""))
     gain = f"Gain over {validation_tests(saved)}"
-    return ("Effect", "Parameter", "Value ± 1 sd", "Plausible", "Probability", gain), rows
+    return ("Effect", "Parameter", "Value ± 1 sd", "Plausible range", "Probability", gain), rows
 
 
 def errors(saved: DiagnosisFile) -> Rows:

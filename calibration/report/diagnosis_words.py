@@ -147,7 +147,7 @@ def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
     if evidence.left_out is not None and evidence.left_out_better is not None:
         better = f"{percent(evidence.left_out_better)} are predicted better with it"
         said.append(
-            f"Of fitted tests left out in turn (linearised model), {better}; −2 ln L falls by {number(evidence.left_out, 3)}."
+            f"Of whole fitted tests left out in turn (linearised model), {better}; −2 ln L falls by {number(evidence.left_out, 3)}."
         )
     share = one.share_of_residual_explained
     whole = share is not None and 0.99 < share < 1
@@ -158,7 +158,7 @@ def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
         said.append(f"All its parameters together are {away}." if len(one.parameters) > 1 else f"Its size is {away}.")
     if evidence.score is not None:
         fell = f"−2 ln L fell by {number(evidence.score, 3)}"
-        said.append(f"Before any refit, by its first-order effect beyond what the coefficients can explain, {fell}.")
+        said.append(f"Its largest first-order gain in any round, beyond what the coefficients can explain: {fell}.")
     return said
 
 
@@ -183,8 +183,8 @@ def describe_alternatives(one: FoundEffect) -> str:
             if size.at_end
         ]
         said += (
-            f" The records ask for a size at the end of what is plausible: {'; '.join(ends)}. Something acts like it, and is "
-            "not, or not only, this."
+            f" The fitted size is at the end of what is plausible: {'; '.join(ends)}. Something acts like it, and is not, or "
+            "not only, this."
         )
     elif one.in_doubt is not None:
         said += (

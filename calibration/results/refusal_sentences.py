@@ -13,10 +13,6 @@ COMPARED = {
 
 def describe_refusal(one: Refusal) -> str:
     """Reason why an effect is not in the model, in words."""
-    return ("with what was found after it, " if one.later else "") + _reason(one)
-
-
-def _reason(one: Refusal) -> str:
     values, where = one.values, COMPARED.get(one.compared, "all tests")
     match one.kind:
         case RefusalKind.IMPOSSIBLE_VALUE:
@@ -44,13 +40,6 @@ def _reason(one: Refusal) -> str:
             what, its = (f"{one.name} is", "J of it") if one.name else ("what moves is", "J")
             tests = where if one.compared == ComparedData.ALL else f"the {where}"
             return f"{what} followed worse with it ({its} in {tests}: {values[0]:.3f} without it, {values[1]:.3f} with it)"
-        case RefusalKind.WEAK_AT_FIRST_ORDER:
-            return "explains too little at first order"
-        case RefusalKind.OUTDONE_AT_FIRST_ORDER:
-            return "others explain more at first order"
-        case RefusalKind.FAR_WEAKER:
-            return "explains far less than others"
-        case RefusalKind.OUTDONE:
-            return f"{one.name} explains more"
         case RefusalKind.IMPROBABLE:
-            return f"improbable ({100 * values[0]:.0f} %)" if values[0] >= MIN_SHOWN_PROBABILITY else "improbable (below 1 %)"
+            said = f"{100 * values[0]:.0f} %" if values[0] >= MIN_SHOWN_PROBABILITY else "below 1 %"
+            return f"improbable ({said})"

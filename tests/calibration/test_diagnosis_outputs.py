@@ -307,7 +307,9 @@ def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Pat
         telling_test=evil,
         indistinguishable=(evil,),
     )
-    rejected = tuple(replace(r, effect=evil, reason=Refusal(RefusalKind.OUTDONE, name=evil)) for r in result.rejected)
+    rejected = tuple(
+        replace(r, effect=evil, reason=Refusal(RefusalKind.IMPOSSIBLE_VALUE, (-1.0,), evil)) for r in result.rejected
+    )
     anatomy = tuple(replace(f, test=evil, words=evil) for f in result.anatomy_before)
     strange = replace(
         result,

@@ -369,6 +369,5 @@ def test_every_reason_has_a_sentence_of_its_own():
     sentences = {describe_refusal(Refusal(kind, (1.0, 2.0), "drag")) for kind in RefusalKind}
     assert len(sentences) == len(RefusalKind) and all(sentences)
     for kind in RefusalKind:
-        refusal = Refusal(kind, (1.0, 2.0), "drag", ComparedData.BLOCKS, later=True)
+        refusal = Refusal(kind, (1.0, 2.0), "drag", ComparedData.BLOCKS)
         assert _rebuilt(Refusal, json.loads(json.dumps(_packed(refusal, []))), {}, {}) == refusal
-        assert describe_refusal(refusal).startswith("with what was found after it, ")

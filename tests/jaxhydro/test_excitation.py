@@ -212,15 +212,11 @@ def test_a_platform_file_names_one(tmp_path: Path) -> None:
     scales = {"surge": NoticeableScales(5.0, 0.1, 1e5, 2e7)}
     known = {waves: [one.effect for one in catalogue(model, scales, waves, 1.0)[0]] for waves in (True, False)}
     assert "computed_excitation" in known[True] and "computed_excitation" not in known[False]
-    (alone,) = [one for one in catalogue(model, scales, True, 1.0)[0] if one.effect == "computed_excitation"]
-    assert alone.starting_values == {"computed_excitation.share": 1.0}
     np.savetxt(tmp_path / "hull.12d", [[p, q, 0, 0, 1, 1.0, 0, 1.0, 0] for p in (8.0, 12.0) for q in (8.0, 12.0) if p <= q])
     both = "\nexcitation: {file: hull.3, use: candidate}\ndrift: {file: hull.12d, use: candidate}\n"
     path.write_text(text + both, encoding="utf-8")
     some = {one.effect: one for one in catalogue(jh.load_model(path), scales, True, 1.0)[0]}
-    assert some["potential_flow"].starting_values == {"computed_excitation.share": 1.0, "drift_transfer.share": 1.0}
     assert some["potential_flow"].amplitudes == (*some["computed_excitation"].amplitudes, *some["drift_transfer"].amplitudes)
-    assert not some["computed_excitation"].starting_values
     path.write_text(text + "\nexcitation: {file: none.3}\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"none\.3: expected a \.3 file, found no such file"):
         jh.load_model(path)

@@ -79,7 +79,7 @@ def test_diagnose_prints_and_writes(searching, result: Diagnosis, tmp_path: Path
         "The declared model lacks Coulomb friction in surge",
         "(81.0 ± 2.1) kN",
         "very strong",
-        "hysteresis in surge friction explains more",
+        "hysteresis in surge improbable (2 %)",
         "surge-3 held out surge 12 % 1.9 %",
         "Note: surge-2 repeats",
         "sea-1 fitted surge low frequency -24 % -3 %",

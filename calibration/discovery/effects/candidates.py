@@ -57,8 +57,7 @@ class Candidate:
         grid: Values of shapes or discrete choices that are tried.
         shape_finder: Finds further shapes to try, from a linearisation and the slopes along the first amplitude.
         positive: Amplitudes that physics requires to be positive.
-        starting_values: Values where a refit begins too, from another program.
-        starting_values_finder: Finds such values, of coefficients too, from the decays.
+        starting_values_finder: Finds values where a fit begins too, of coefficients as well, from the decays.
         phase_per_unit: Phase that a unit of the only amplitude shifts waves by, where the effect does nothing else.
         telling: The test that would tell the effect from others.
         source: Reference of its law.
@@ -73,7 +72,6 @@ class Candidate:
     grid: tuple[Mapping[str, float], ...] = ()
     shape_finder: ShapeFinder | None = None
     positive: tuple[str, ...] = ()
-    starting_values: Mapping[str, float] = field(default_factory=dict)
     starting_values_finder: StartingValuesFinder | None = None
     phase_per_unit: PhasePerUnit | None = None
     telling: str = ""

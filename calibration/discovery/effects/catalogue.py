@@ -70,13 +70,12 @@ def _of_tables(builder: CatalogueBuilder, model: Model, waves: bool) -> None:
     looked_for = requested_table_labels(model)
     tables = {k: one for k, one in TABLE_EFFECTS.items() if f"{k}.share" in looked_for and (waves or not one.in_waves)}
     for effect, one in tables.items():
-        share, alone = builder.add_linear(f"{effect}.share", NOTICEABLE_SHARE), len(tables) == 1
-        begin = {share: 1.0} if alone else {}
-        builder.add(effect, None, [share], passive=True, starting_values=begin, telling=one.telling, source=one.load.source)
+        share = builder.add_linear(f"{effect}.share", NOTICEABLE_SHARE)
+        builder.add(effect, None, [share], passive=True, telling=one.telling, source=one.load.source)
     if len(tables) > 1:  # what one program has computed belongs together: one table alone may not be better than none
-        shares = {f"{effect}.share": 1.0 for effect in tables}
+        shares = [f"{effect}.share" for effect in tables]
         telling, sources = next(iter(tables.values())).telling, "; ".join(one.load.source for one in tables.values())
-        builder.add("potential_flow", None, list(shares), passive=True, starting_values=shares, telling=telling, source=sources)
+        builder.add("potential_flow", None, shares, passive=True, telling=telling, source=sources)
 
 
 def _of_the_whole(builder: CatalogueBuilder, scales: Mapping[str, NoticeableScales]) -> None:

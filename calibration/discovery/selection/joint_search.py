@@ -81,14 +81,15 @@ class JointSearch(Search):
             one = self.candidates[name]
             self.scores.append(Score(number, one.effect, one.dof, gain, len(one.amplitudes), float("nan"), None, None))
 
-    def move(self, state: FitState, columns: CandidateColumns, subset: Subset, number: int) -> FitState:
+    def fit_subset(self, state: FitState, columns: CandidateColumns, subset: Subset, stage: str, share: float) -> FitState:
         """Fit the effects of a subset, from a state on, with the slopes of a linear model.
 
         Args:
             state: The state that was linearised.
             columns: The linear model.
             subset: The subset.
-            number: Number of the round.
+            stage: Stage to report.
+            share: Progress to report (0 to 1).
         """
         place = state.look.place
         chosen = tuple(self.candidates[columns.variants[i].name] for i in subset.variants)
@@ -108,16 +109,13 @@ class JointSearch(Search):
             slopes = columns.model.slopes[:, mine]
             look = Linearisation(place, directions, residual, slopes, columns.look.own)
         names = listed([effect_in_words(one.name) for one in chosen]) or "no effect"
-        return self.state(
-            chosen, self.fit(look, chosen, STEP_ITERATIONS, 0, f"round {number}: fit with {names}", self.share(number - 0.5))
-        )
+        reached = self.fit(look, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share)
+        return self.state(chosen, reached)
 
-    def settle(self, state: FitState, number: int) -> FitState:
+    def refit_all(self, state: FitState) -> FitState:
         """Fit a state to convergence with slopes of its own, the shapes of its effects free."""
-        name = f"round {number}: fit of all parameters"
-        return self.refit(
-            self.study.linearise(state.look.place, self.active(state.chosen)), state.chosen, name, self.share(number - 0.2)
-        )
+        look = self.study.linearise(state.look.place, self.active(state.chosen))
+        return self.refit(look, state.chosen, "final fit of all parameters", END)
 
     def search(self, states: list[FitState], reach: Callable[[FitState], None]) -> FitState:
         """Select and move until the selection stays.
@@ -138,10 +136,10 @@ class JointSearch(Search):
             if names in visited or number == MAX_ROUNDS:
                 break
             visited.add(names)
-            state = self.move(state, self.columns, best, number)
+            state = self.fit_subset(state, self.columns, best, f"round {number}", self.share(number - 0.5))
             reach(state)
         if state.chosen:
-            state = self.settle(state, MAX_ROUNDS)
+            state = self.refit_all(state)
         return state
 
     def with_split_modes(self, baseline: FitState) -> FitState | None:
@@ -179,7 +177,7 @@ class JointSearch(Search):
             least = min(refused, key=lambda one: self.found[one.name].verdict.worth)
             gone = self.found.pop(least.name)
             self.reject(least, gone.verdict.refused, gone.verdict)
-            state = self.settle(gone.before, MAX_ROUNDS) if len(state.chosen) > 1 else baseline
+            state = self.refit_all(gone.before) if len(state.chosen) > 1 else baseline
             self.select(state, MAX_ROUNDS)
         self.reject_others(state)
         return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
@@ -198,7 +196,7 @@ class JointSearch(Search):
         whole = last.subset(range(len(state.chosen)))
         rest = last.subset([i for i in whole.variants if columns.variants[i].name != one.name], whole)
         held = held_out_gain(columns.model, whole.fit, rest.fit, self.test_of_pool)
-        without = self.move(state, columns, rest, MAX_ROUNDS) if rest.variants else baseline
+        without = self.fit_subset(state, columns, rest, "verification", END) if rest.variants else baseline
         verdict = self.assess(without, state, one, last=True)
         gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
         alike = self.look_alikes(self.selector.subset(self.columns.present(state.chosen)), out)
