@@ -146,9 +146,8 @@ def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
         said.append(f"The squared error of {validation_tests(saved)} grows by {percent(-gain)}.")
     if evidence.left_out is not None and evidence.left_out_better is not None:
         better = f"{percent(evidence.left_out_better)} are predicted better with it"
-        said.append(
-            f"Of whole fitted tests left out in turn (linearised model), {better}; −2 ln L falls by {number(evidence.left_out, 3)}."
-        )
+        fell = f"−2 ln L falls by {number(evidence.left_out, 3)}"
+        said.append(f"Of whole fitted tests left out in turn (linearised model), {better}; {fell}.")
     share = one.share_of_residual_explained
     whole = share is not None and 0.99 < share < 1
     part = "more than 99 %" if whole else percent(share)

@@ -195,8 +195,11 @@ def test_a_shift_is_told_from_afar(tmp_path: Path, label: str, turns, far: float
 
 @pytest.mark.slow
 def test_a_gauge_that_stood_far_off_is_found(tmp_path: Path) -> None:
-    """And nothing beside it, a wave's phase further off than slopes lead."""
-    campaign = campaign_of(tmp_path, lambda omega: pressure(omega) * np.exp(-25j * omega**2 / G))
+    """And nothing beside it, a wave's phase further off than slopes lead; where the campaign says that it can be so far off."""
+    campaign_of(tmp_path, lambda omega: pressure(omega) * np.exp(-25j * omega**2 / G))
+    manifest = json.loads((tmp_path / "campaign.yaml").read_text()) | {"plausible": {"wave_gauge": "40 m"}}
+    (tmp_path / "campaign.yaml").write_text(json.dumps(manifest))
+    campaign = load_campaign(tmp_path)
     found = diagnose(campaign.model, campaign)
     assert [one.effect for one in found.effects] == ["wave_gauge_position"]
     assert found.effects[0].parameters["wave_gauge_position.distance"].value == pytest.approx(-25.0, abs=0.3)
