@@ -69,7 +69,7 @@ def _claim(one: dict[str, Any]) -> ClaimedEffect:
     return ClaimedEffect(
         effect=one["effect"],
         motion=one.get("degree_of_freedom"),
-        probability=one.get("probability"),
+        probability=one.get("evidence", one).get("probability"),
         indistinguishable_from=[text.split(" ")[0] for text in one.get("indistinguishable_from", [])],
     )
 

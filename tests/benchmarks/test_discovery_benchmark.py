@@ -183,14 +183,13 @@ def test_mistakes_in_answers_are_told(benchmark: Path, capsys, change: dict, mes
 def test_a_diagnosis_is_an_answer(benchmark: Path):
     """With its effects, errors and time, and with probabilities where it states them."""
     saved = document(fake_diagnosis()).model_dump(mode="json")
-    saved["missing"]["effects"][0]["probability"] = 0.97
     saved["missing"]["rejected"][0]["probability"] = 0.01
     found = answer_of(saved)
     assert found.verdict == "found" and found.minutes == 321.0 / 60
     assert found.effects == [
         ClaimedEffect(effect="coulomb_friction", motion="surge", probability=0.97, indistinguishable_from=["hysteresis"])
     ]
-    assert [one.effect for one in found.considered] == ["current"]
+    assert {one.effect: one.probability for one in found.considered} == {"current": 0.01, "hysteresis": 0.02}
     assert found.held_out_error.final < found.held_out_error.baseline
     write_answers(benchmark.parent / "mine.json", {Case.of("hysteresis-2-1").public_name: found})
     assert scored(benchmark, "--answered-only")["table"]["named_or_in_set"]["all"] == {"count": 1, "of": 1}
