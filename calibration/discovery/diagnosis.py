@@ -29,7 +29,7 @@ class Outcome(StrEnum):
 
 # reason for doubt in an effect: the effects increase the held-out error, in all or in the effect's motion
 HELD_OUT_ERROR = "held_out_error"
-# reason for doubt in an effect: the records ask for a size at an end of what is plausible, or beyond
+# reason for doubt in an effect: its fitted size is at an end of its plausible range
 IMPLAUSIBLE_SIZE = "implausible_size"
 
 

@@ -22,8 +22,8 @@ from jaxhydro.interrupts import stop_if_asked
 
 EXPANDED_SUBSETS = 5  # best subsets whose neighbours are all tried
 MAX_SUBSETS = 400  # subsets that are fitted
-PROMISING = 8  # additions that are fitted, of those ranked by one linear step
-EXCHANGED = 3  # exchanges of each effect that are fitted
+MAX_ADDITIONS = 8  # effects added to a subset in turn, those with the largest gain of one linear step
+MAX_EXCHANGES = 3  # effects tried in the place of each effect of a subset
 RESAMPLES = 400  # resamplings of the series
 MIN_SERIES = 8  # series that are resampled; of fewer, their pools of bands are
 SEED = 7
@@ -160,11 +160,11 @@ class JointSelection:
 
     def neighbours(self, subset: Subset) -> list[Subset]:
         """Subsets with one effect more, one less, or one exchanged."""
-        found = [self.subset([*subset.variants, i], subset) for i in self.additions(subset)[:PROMISING]]
+        found = [self.subset([*subset.variants, i], subset) for i in self.additions(subset)[:MAX_ADDITIONS]]
         for i in subset.variants:
             rest = self.subset([j for j in subset.variants if j != i], subset)
             found.append(rest)
-            others = [j for j in self.additions(rest) if j != i][:EXCHANGED]
+            others = [j for j in self.additions(rest) if j != i][:MAX_EXCHANGES]
             found += [self.subset([*rest.variants, j], rest) for j in others]
         return found
 

@@ -66,17 +66,6 @@ class LinearFit(NamedTuple):
         """-2 ln L and the squares of the priors."""
         return float(self.deviance.sum()) + self.penalty
 
-    @property
-    def covariance(self) -> np.ndarray:
-        """Covariance of the steps (m, m)."""
-        scale = 1 / np.sqrt(np.diag(self.matrix))
-        both = self.matrix * np.outer(scale, scale)
-        return np.linalg.pinv(both, hermitian=True, rcond=RIDGE) * np.outer(scale, scale)
-
-    def deviation(self) -> np.ndarray:
-        """Standard deviations of the steps (m,)."""
-        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
-
 
 @dataclass(frozen=True)
 class LinearModel:
