@@ -83,6 +83,8 @@ def show_diagnosis(saved: DiagnosisFile, notes: list[str]) -> None:
     table("Errors over the motion's standard deviation, before and after", *tables.errors(saved), left=3)
     if (rows := tables.bands(saved))[1]:
         table("Errors of energy in bands", *rows, left=4)
+    if (rows := tables.predictions(saved))[1]:
+        table("Bands in which 95 % of the samples of held-out tests are expected", *rows, left=3)
     if (rows := tables.effects(saved))[1]:
         table("What was found", *rows, left=2)
     for note in notes:

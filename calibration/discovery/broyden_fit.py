@@ -19,7 +19,7 @@ from calibration.discovery.study import OVERFLOW, Study
 from jaxhydro.interrupts import stop_if_asked
 
 MAX_LOG_STEP = 0.7  # largest step of a logarithmic coordinate
-MIN_RELATIVE_GAIN = 1e-4  # of the cost: a step that gains less ends the fit, whatever the number of samples
+MIN_RELATIVE_GAIN = 3e-3  # of the cost: a step that gains less ends the fit, whatever the number of samples
 MIN_PREDICTED_SHARE = 0.25  # of the predicted gain: slopes that give less are outdated
 
 

@@ -174,6 +174,27 @@ class Finding:
 
 
 @dataclass(frozen=True, eq=False)
+class Prediction:
+    """Predicted motion of a held-out test, with a band that 95 % of the samples are expected in.
+
+    Attributes:
+        test: Name of the test.
+        channel: The motion.
+        half_width: Half the width of the band at every sample (m, rad; t,).
+        inside: Fraction of the samples that lie in the band.
+        parameter_error: Standard deviation of the motion due to that of the parameters, root mean square (m, rad).
+        model_error: Standard deviation of noise and of what the model leaves, from the fitted tests (m, rad).
+    """
+
+    test: str
+    channel: str
+    half_width: np.ndarray
+    inside: float
+    parameter_error: float
+    model_error: float
+
+
+@dataclass(frozen=True, eq=False)
 class ForceCoherence:
     """Relation of a latent force to another quantity.
 
@@ -300,6 +321,7 @@ class Diagnosis:
         latent: Missing forces by motion, where something is unexplained.
         seas: How waves are reconstructed and act.
         complete: False where the search was stopped before its end.
+        predictions: Predicted motions of the held-out tests.
     """
 
     campaign: str
@@ -319,3 +341,4 @@ class Diagnosis:
     latent: tuple[LatentForce, ...] = ()
     seas: Options | None = None
     complete: bool = True
+    predictions: tuple[Prediction, ...] = ()

@@ -25,6 +25,7 @@ from calibration.discovery.effects.candidates import Candidate, with_candidates,
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import predict_gain
 from calibration.discovery.latent_force.recover_force import latent_of
+from calibration.discovery.predictions import predictions_of
 from calibration.discovery.residual_anatomy import anatomy, signature
 from calibration.fitting.fit_conclusion import records_not_followed
 from calibration.residuals.measured_seas import peak_period
@@ -98,6 +99,7 @@ def conclude(
         seconds,
         latent,
         search.study.options if search.study.seas else None,
+        predictions=predictions_of(search, after, augmented.tests),
     )
 
 

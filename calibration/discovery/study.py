@@ -261,7 +261,23 @@ class Study:
             whole = whole.joined_with(one)
         return whole
 
-    def _slopes(self, pool: Executor, place: Point, active: tuple[int, ...]) -> list[Any]:
+    def time_slopes(self, place: Point, active: Sequence[int]) -> list[np.ndarray]:
+        """Slopes of the motions in time along some directions (s, t, q), of the decays and of every run in waves.
+
+        The decays' have their own unknowns' after them (s, t, q + o).
+        """
+        some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
+        with stoppable_threads(cores()) as pool:
+            jobs = [self._slopes(pool, place, mine, "all") for mine in some]
+            found = [[job.result()[1] for job in one] for one in jobs]
+        whole = []
+        for i, parts in enumerate(zip(*found, strict=True)):
+            columns = [part[..., : len(mine)] for part, mine in zip(parts, some, strict=True)]
+            own = [parts[0][..., self.width :]] if i == 0 and self.decays is not None else []
+            whole.append(np.concatenate([*columns, *own], axis=-1))
+        return whole
+
+    def _slopes(self, pool: Executor, place: Point, active: tuple[int, ...], seas: SeaSelection = "fit") -> list[Any]:
         """Work on residual and slopes at a point, along at most `width` directions."""
         basis = np.zeros((len(place.x), self.width))
         basis[:, : len(active)] = self.directions[list(active)].T
@@ -275,7 +291,7 @@ class Study:
             assert self.decays is not None
             return flat(decay_slopes(self.decays, frame, own))
 
-        return self._parts(pool, of_decays, lambda one: flat(sea_slopes(one, frame, self._steps(one, "fit"))), "fit")
+        return self._parts(pool, of_decays, lambda one: flat(sea_slopes(one, frame, self._steps(one, seas))), seas)
 
     def _linearisation(
         self, place: Point, active: tuple[int, ...], parts: Sequence[tuple[np.ndarray, np.ndarray] | None]

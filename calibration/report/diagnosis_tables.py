@@ -80,6 +80,15 @@ def bands(saved: DiagnosisFile) -> Rows:
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
+def predictions(saved: DiagnosisFile) -> Rows:
+    """Bands of the predicted motions of held-out tests, and how many samples they hold."""
+    rows = []
+    for one in saved.predictions:
+        errors = (number(value, 2) for value in (one.half_width, one.parameter_error, one.model_error))
+        rows.append((one.test, one.channel, one.unit, *errors, percent(one.inside)))
+    return ("Test", "Motion", "Unit", "Half-width", "Parameters", "Model and noise", "Samples inside"), rows
+
+
 def coefficients(saved: DiagnosisFile) -> Rows:
     """Every fitted parameter as declared, before and after, the effects' own among those after."""
     rows = []

@@ -192,6 +192,32 @@ class Anatomy(ResultModel):
     after: list[Residual] = Field(default_factory=list)
 
 
+class PredictedMotion(ResultModel):
+    """Predicted motion of a held-out test, in `unit` (m or deg), and how many samples its band holds.
+
+    The band itself is in simulated.nc.
+
+    Attributes:
+        test: Name of the test.
+        channel: The motion.
+        unit: m or deg.
+        samples: Number of samples.
+        inside: Fraction of the samples in the band, in which 95 % are expected.
+        half_width: Half the width of the band, root mean square.
+        parameter_error: Standard deviation due to that of the parameters, root mean square.
+        model_error: Standard deviation of noise and of what the model leaves, from the fitted tests.
+    """
+
+    test: str
+    channel: str
+    unit: str = ""
+    samples: int
+    inside: Number
+    half_width: Number | None = None
+    parameter_error: Number | None = None
+    model_error: Number | None = None
+
+
 class DiagnosisFile(CalibrationFile):
     """Content of diagnosis.json.
 
@@ -201,6 +227,7 @@ class DiagnosisFile(CalibrationFile):
         augmented: The calibrated model with the effects that were found.
         scores: Scores of all candidates in all rounds.
         anatomy: Residuals before and after.
+        predictions: Predicted motions of the held-out tests.
         next_test: The test to do next.
         notes: Notes and doubts, as sentences.
         seconds: Computing time (s).
@@ -211,6 +238,7 @@ class DiagnosisFile(CalibrationFile):
     augmented: FittedModel
     scores: list[EffectScore] = Field(default_factory=list)
     anatomy: Anatomy = Field(default_factory=Anatomy)
+    predictions: list[PredictedMotion] = Field(default_factory=list)
     next_test: str = ""
     notes: list[str] = Field(default_factory=list)
     seconds: Number | None = None

@@ -7,8 +7,9 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
-from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Rejected, Score
+from calibration.discovery.diagnosis import Diagnosis, Effect, Finding, LatentForce, Prediction, Rejected, Score
 from calibration.discovery.refusal import RefusalKind
 from calibration.result import BandError, Calibration, Series, TestFit
 from calibration.results import write_calibration as outputs
@@ -23,6 +24,7 @@ from calibration.results.diagnosis_file import (
     FoundEffect,
     MissingEffects,
     PlausibleSizeRange,
+    PredictedMotion,
     RejectedEffect,
     Residual,
     ResidualBand,
@@ -57,7 +59,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: 
         motion.attrs["title"] = f"Diagnosis of {diagnosis.campaign}"
         motion["simulated"].attrs["long_name"] = "motion of the model with what was found missing"
         motion["before"].attrs["long_name"] = "motion of the declared model, calibrated"
-        write_motion(motion, temporary)
+        write_motion(with_bands(motion, diagnosis) if diagnosis.predictions else motion, temporary)
     return folder
 
 
@@ -96,6 +98,7 @@ def document(diagnosis: Diagnosis) -> DiagnosisFile:
             before=[_residual(one) for one in diagnosis.anatomy_before],
             after=[_residual(one) for one in diagnosis.anatomy_after],
         ),
+        predictions=[_prediction(one) for one in diagnosis.predictions],
         next_test=diagnosis.next_test,
         notes=list(diagnosis.notes),
         seconds=finite_or_null(diagnosis.seconds),
@@ -177,6 +180,36 @@ def _score(one: Score) -> EffectScore:
         refitted_gain=finite_or_null(one.refitted),
         refitted_holdout_gain=finite_or_null(one.refitted_holdout),
     )
+
+
+def _prediction(one: Prediction) -> PredictedMotion:
+    def shown(value: float) -> float | None:
+        return finite_or_null(float(for_people(one.channel, value)))
+
+    return PredictedMotion(
+        test=one.test,
+        channel=one.channel,
+        unit=unit_of(one.channel),
+        samples=len(one.half_width),
+        inside=one.inside,
+        half_width=shown(float(np.sqrt(np.mean(one.half_width**2)))),
+        parameter_error=shown(one.parameter_error),
+        model_error=shown(one.model_error),
+    )
+
+
+def with_bands(motion: xr.Dataset, diagnosis: Diagnosis) -> xr.Dataset:
+    """Motions of the tests, with half the widths of the predictions' bands beside them."""
+    widths = xr.full_like(motion["simulated"], np.nan)
+    times = {test.id: test.time for test in diagnosis.augmented.tests}
+    for one in diagnosis.predictions:
+        time = times[one.test]
+        half_width = for_people(one.channel, one.half_width)
+        widths.loc[{"test": one.test, "channel": one.channel}] = np.interp(
+            motion["time"], time - time[0], half_width, left=np.nan, right=np.nan
+        )
+    widths.attrs["long_name"] = "half the width of the band in which 95 % of a held-out test's samples are expected"
+    return motion.assign(half_width=widths)
 
 
 def _residual(one: Finding) -> Residual:

@@ -25,6 +25,7 @@ from calibration.results.diagnosis_file import read_diagnosis
 from calibration.results.write_calibration import NotFinite
 from calibration.results.write_diagnosis import document, paired, write_diagnosis
 from jaxhydro.errors import InputError
+from jaxhydro.units import for_people
 
 DEMO = Path(jh.__file__).parent / "campaigns" / "volturnus-s-decays"
 FORCE = "coulomb_friction.surge.force"
@@ -144,8 +145,9 @@ def test_a_gain_is_called_after_what_it_was_found_on(result: Diagnosis, written:
     less = {
         key: replace(getattr(result, key), tests=tuple(test for test in getattr(result, key).tests if test.use == "fit"))
         for key in ("baseline", "augmented")
-    }
+    } | {"predictions": ()}
     saved = read_diagnosis(write_diagnosis(replace(result, **less), tmp_path, figures=False))
+    assert not tables.predictions(saved)[1]
     assert tables.effects(saved)[0][-1] == "Gain over blocks of the fitted tests left out in turn"
     text = " ".join(words.describe_certainty(saved, saved.missing.effects[0]))
     assert "squared error of blocks of the fitted tests left out in turn falls by 61 %" in text
@@ -175,7 +177,7 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
     page = Page(write_report(tmp_path / "a").read_text())
     assert "nothing that the declared model lacks" in page.text and "No effect." in page.text
     assert json.loads((tmp_path / "a" / "diagnosis.json").read_text())["missing"]["unexplained"]["share"] == 0.0
-    less = {key: replace(getattr(result, key), tests=()) for key in ("baseline", "augmented")}
+    less = {key: replace(getattr(result, key), tests=()) for key in ("baseline", "augmented")} | {"predictions": ()}
     write_diagnosis(replace(nothing(verdict="unexplained", signature="at 0.01 Hz, as Hs^2"), **less), tmp_path / "b")
     assert "at 0.01 Hz, as Hs^2" in Page(write_report(tmp_path / "b").read_text()).text
     stopped = nothing(verdict="unexplained", scores=result.scores[:1], augmented=replace(result.augmented, converged=False))
@@ -196,6 +198,20 @@ def test_odd_results_can_be_written_and_made_a_page_of(result: Diagnosis, tmp_pa
     jsonschema.validate(json.loads((tmp_path / "c" / "diagnosis.json").read_text()), json.loads(SCHEMAS[0].read_text()))
     text = Page(write_report(tmp_path / "c").read_text()).text
     assert "No test was held out" in text and "Coulomb friction in surge, Coulomb friction in surge and new in yaw" in text
+
+
+def test_bands_of_held_out_tests_are_written_and_told(result: Diagnosis, written: Path) -> None:
+    """Their widths at every sample beside the motions, in people's units, and how many samples they hold."""
+    one = next(one for one in result.predictions if one.channel == "pitch" or one.test == "surge-3")
+    saved = next(p for p in read_diagnosis(written).predictions if (p.test, p.channel) == (one.test, one.channel))
+    assert saved.samples == len(one.half_width) and saved.inside == one.inside
+    assert saved.half_width == pytest.approx(float(for_people(one.channel, one.half_width[0])))
+    with xr.open_dataset(written / "simulated.nc") as data:
+        held = data["half_width"].sel(test=one.test, channel=one.channel).values
+        assert np.nanmax(held) == pytest.approx(saved.half_width)
+        assert np.isfinite(held).sum() == np.isfinite(data["simulated"].sel(test=one.test, channel=one.channel)).sum()
+        assert np.isnan(data["half_width"].sel(test="surge-1")).all()
+    assert "Samples inside" in Page(write_report(written).read_text()).text
 
 
 def test_a_size_at_the_end_of_what_is_plausible_is_told(result: Diagnosis, tmp_path: Path) -> None:

@@ -150,12 +150,17 @@ def found_in(campaign, **how):
     ids=["nothing", "hydrostatics", "friction"],
 )
 def test_what_a_rolling_body_lacks(tmp_path, torque, expected, left):
-    """The effect is named, the held-out decay comes down; where there is none, none is named."""
+    """The effect is named, the held-out decay comes down, and its band holds it; where there is none, none is named."""
     found = found_in(campaign_of(tmp_path, torque))
+    predicted = [one for one in found.predictions if one.test == "roll-2"]
+    assert len(predicted) == len(found.predictions) == 1
+    assert predicted[0].model_error >= NOISE
     if expected is None:
         assert found.verdict == "nothing_missing"
         assert not found.effects
+        assert abs(predicted[0].inside - 0.95) < 3 * np.sqrt(0.95 * 0.05 / 1200)
         return
+    assert predicted[0].inside > 0.93
     assert found.verdict == "found"
     assert expected in {found.effects[0].effect, *(name.split(" ")[0] for name in found.effects[0].indistinguishable)}
     held = [one for one in found.anatomy_after if one.use == "holdout"]

@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import dblquad
 from scipy.optimize import minimize
 
+from calibration.discovery.selection.candidate_columns import discrepancy
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
 from calibration.discovery.selection.joint_selection import JointSelection, Variant
 from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, OwnUnknowns
@@ -30,10 +31,9 @@ def linear_model(columns: int, truth: dict[int, float], seed: int = 1, noise: fl
         residual[mine] -= side @ np.full(own, 2.0)
         decays.append(OwnUnknowns(mine, side, np.full(own, 50.0), np.full(own, 0.5)))
     freedom = np.full(POOLS, float(ROWS // POOLS))
-    wide, none = np.full(columns, 10.0), np.zeros(columns)
-    return LinearModel(
-        slopes, residual, tuple(decays), pool, np.full(ROWS, POOLS / ROWS), freedom, none, wide, none - 1e3, none + 1e3, none
-    )
+    wide, none, share = np.full(columns, 10.0), np.zeros(columns), np.full(ROWS, POOLS / ROWS)
+    low, high = none - 1e3, none + 1e3
+    return LinearModel(slopes, residual, tuple(decays), pool, share, freedom, none, wide, low, high, none, none == 0)
 
 
 def test_a_fit_is_the_minimum_of_likelihood_and_priors_found_by_another_method() -> None:
@@ -116,6 +116,27 @@ def test_a_candidate_is_taken_at_one_of_its_values_only() -> None:
     variants = [Variant("memory", (2,), -3.0), Variant("memory", (3,), -3.0), Variant("friction", (4,), -3.0)]
     found = selection(linear_model(5, {2: 0.7, 3: 0.7}), variants).run()
     assert all(len(set(found.names(one))) == len(one.variants) for one in found.subsets)
+
+
+def test_effects_at_the_ends_of_their_ranges_are_taken_alone_or_not_at_all() -> None:
+    """Two of them explain more than one that is not at an end; alone, what is at an end is still selected."""
+    model = linear_model(8, {3: 0.9, 4: 0.9, 5: 0.5})
+    narrow = replace(model, lower=np.where(np.isin(np.arange(8), (3, 4)), -0.6, model.lower), upper=np.full(8, 0.6))
+    assert set(selection(model).run().best.variants) == {1, 2, 3}
+    found = selection(narrow).run()
+    assert all(len(one.variants) < 2 for one in found.subsets if one.at_end)
+    assert found.names(found.best) in {("effect 3",), ("effect 4",), ("effect 5",)}
+    once = linear_model(8, {3: 0.9})
+    found = selection(replace(once, upper=np.full(8, 0.6))).run()
+    assert found.names(found.best) == ("effect 3",) and found.best.at_end
+
+
+def test_a_model_that_leaves_more_than_noise_has_fewer_observations() -> None:
+    """None at the noise, and as many fewer as the mean square is over that of the noise; what is not fitted does not count."""
+    freedom = np.array([10.0, 30.0, 0.0])
+    assert discrepancy(np.array([1.0, 0.4, 50.0]), freedom) == 1.0
+    assert discrepancy(np.array([7.0, 7.0, 50.0]), freedom) == pytest.approx(7.0)
+    assert discrepancy(np.array([1.0, 16.0, 1.0]), freedom) == pytest.approx(8.0)
 
 
 def test_what_one_series_alone_shows_is_less_sure_than_what_all_show() -> None:

@@ -188,18 +188,23 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
     Raises:
         KeyError: If no effect has such a label.
     """
-    left = [label for label in labels if label not in model.values]
-    effects, drag = [make(model) for make in OPTIONAL_EFFECTS], with_drag(model).values if left else {}
-    while left:
-        effect = next((one for one in effects if left[0] in one.values), None)
-        if effect is not None:
-            keys = {key for label, key in effect.keys.items() if label in left}
-            model = model.with_effect(effect.restricted(keys))
-        elif left[0] in drag:
-            model = with_drag(model)
-        else:
-            raise KeyError(f"no effect with the parameter {left[0]!r}")
-        left = [label for label in left if label not in model.values]
+    present = model.values
+    left = [label for label in dict.fromkeys(labels) if label not in present]
+    if not left:
+        return model
+    drag = with_drag(model)
+    if any(label in drag.values for label in left):
+        model = drag
+        left = [label for label in left if label not in drag.values]
+    for make in OPTIONAL_EFFECTS if left else ():
+        effect = make(model)
+        keys = {key for label, key in effect.keys.items() if label in left}
+        if keys:
+            added = effect.restricted(keys)
+            model, gone = model.with_effect(added), set(added.values)
+            left = [label for label in left if label not in gone]
+    if left:
+        raise KeyError(f"no effect with the parameter {left[0]!r}")
     return model
 
 

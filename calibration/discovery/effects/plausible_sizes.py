@@ -67,8 +67,9 @@ def plausible_sizes(
         KeyError: No rule is about a label.
     """
     case, parameters, reaches = Case(model, scales, wave), {}, {}
+    whole = with_effects(model, [label for one in candidates if one.load is None for label in one.amplitudes])
     for candidate in candidates:
-        about = candidate.load or with_effects(model, candidate.amplitudes)
+        about = candidate.load or whole
         for label in candidate.amplitudes:
             parameters[label] = about.about(label)
             if candidate.load is not None:  # one's own effect may begin anywhere

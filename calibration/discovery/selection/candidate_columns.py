@@ -1,7 +1,7 @@
 """Columns of all candidate effects at a fitted point, and the linear model made of them."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 
@@ -12,10 +12,11 @@ from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.linearisations import Linearisation
-from calibration.discovery.selection.joint_selection import Variant
+from calibration.discovery.selection.joint_selection import JointSelection, Variant
 from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
 from calibration.discovery.study import Study
 
+MIN_SCREENED_GAIN = 6.0  # of -2 ln L by an earlier linearisation: slopes along an effect that gains less are not computed anew
 MAX_COEFFICIENT_STEP = 1.0  # of a logarithm in one linearisation
 MAX_NUISANCE = 3.0  # standard deviations of nearly known quantities
 LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
@@ -34,6 +35,7 @@ class CandidateColumns:
         directions: Direction of the study of every column.
         series: Series of every pool.
         look: Linearisation along the base directions and the effects in the model.
+        candidates: Names of the candidates that are not in the model.
     """
 
     model: LinearModel
@@ -43,6 +45,7 @@ class CandidateColumns:
     directions: tuple[int, ...]
     series: np.ndarray
     look: Linearisation
+    candidates: frozenset[str]
 
     def present(self, chosen: Sequence[Candidate]) -> tuple[int, ...]:
         """Variants of the effects in the model: each effect's first."""
@@ -50,22 +53,39 @@ class CandidateColumns:
         return tuple(names.index(one.name) for one in chosen)
 
 
-def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
+def linearise_candidates(fits: EffectFits, state: FitState, earlier: CandidateColumns | None = None) -> CandidateColumns:
     """Linearise a fitted model along every candidate effect, at every value of its shapes.
+
+    Slopes along effects that a first-order gain does not speak for are taken from an earlier linearisation.
 
     Args:
         fits: Study, candidates, priors.
         state: The fitted model.
+        earlier: An earlier linear model of all candidates.
     """
     look = state.look
     if state.chosen:  # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
         look = fits.study.linearise(look.place, fits.active(state.chosen))
     names = {one.name for one in state.chosen}
-    return candidate_columns(fits, look, state.chosen, [one for one in fits.setup.candidates if one.name not in names])
+    others = [one for one in fits.setup.candidates if one.name not in names]
+    if earlier is None:
+        return candidate_columns(fits, look, state.chosen, others)
+    known = earlier.candidates
+    screening = candidate_columns(fits, look, state.chosen, [one for one in others if one.name in known], earlier)
+    present = screening.present(state.chosen)
+    selection = JointSelection(screening.model, screening.base, screening.variants, screening.series)
+    gains = selection.first_order_gains(selection.subset(present))
+    anew = {screening.variants[i].name for i, gain in gains.items() if gain > MIN_SCREENED_GAIN}
+    return candidate_columns(fits, look, state.chosen, others, earlier, anew | ({one.name for one in others} - known))
 
 
 def candidate_columns(
-    fits: EffectFits, look: Linearisation, chosen: Sequence[Candidate], candidates: Sequence[Candidate]
+    fits: EffectFits,
+    look: Linearisation,
+    chosen: Sequence[Candidate],
+    candidates: Sequence[Candidate],
+    earlier: CandidateColumns | None = None,
+    anew: Collection[str] = (),
 ) -> CandidateColumns:
     """A linear model of the effects in a model and of other candidates.
 
@@ -74,6 +94,8 @@ def candidate_columns(
         look: Linearisation along all free directions of the model.
         chosen: The effects in the model.
         candidates: Other candidates, which are linearised along.
+        earlier: An earlier linear model, whose slopes are used along all but some candidates.
+        anew: Names of these.
     """
     study = fits.study
     columns, directions = [look.slopes], list(look.active)
@@ -96,6 +118,12 @@ def candidate_columns(
             directions += mine
         elif one in chosen:
             add(one, [look.active.index(i) for i in study.index(one.labels)], {})
+        elif earlier is not None and one.name not in anew:
+            for variant, shapes in zip(earlier.variants, earlier.values, strict=True):
+                if variant.name == one.name:
+                    add(one, range(len(directions), len(directions) + len(variant.columns)), shapes)
+                    columns.append(earlier.model.slopes[:, list(variant.columns)])
+                    directions += [earlier.directions[c] for c in variant.columns]
         else:
             others.append(one)
     grids = {one.name: one.grid or ({},) for one in others}
@@ -133,6 +161,7 @@ def candidate_columns(
         tuple(directions),
         np.repeat(np.arange(len(study.series)), study.dof.shape[1]),
         look,
+        frozenset(one.name for one in candidates),
     )
 
 
@@ -163,19 +192,38 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
     amplitudes = {label for one in fits.setup.candidates for label in one.amplitudes}
     sized = ~base & ~further & np.isin(names, sorted(amplitudes))
     used = study.used[study.row_series]
+    freedom = (study.pooled * study.used[:, None]).ravel()
     return LinearModel(
         slopes,
         look.residual,
         own_unknowns(study, look),
         study.pool,
         study.share * used,
-        (study.pooled * study.used[:, None]).ravel(),
+        freedom / discrepancy(study.levels(look.residual).ravel(), freedom),
         np.where(further, 0.0, np.where(sized, -now, prior.mean[directions] - now)),
         width,
         low,
         high,
         np.where(sized, -now, 0.0),
+        sized | further,
     )
+
+
+def discrepancy(levels: np.ndarray, freedom: np.ndarray) -> float:
+    """How many degrees of freedom of a residual count as one, as the model leaves more than noise.
+
+    It is the geometric mean of the residual's mean square over the floor's, and at least 1. What a model leaves above the noise
+    is its own error, and is alike in all records. Its samples are not so many independent observations. The likelihood is
+    tempered (coarsened posterior).
+
+    Args:
+        levels: Mean square over the floor's by pool (p,).
+        freedom: Degrees of freedom by pool (p,), 0 of what is not fitted.
+
+    References:
+        Miller and Dunson 2019, Journal of the American Statistical Association 114, 1113-1125.
+    """
+    return max(1.0, math.exp(float((freedom * np.log(np.maximum(levels, 1.0))).sum()) / max(float(freedom.sum()), 1.0)))
 
 
 def own_unknowns(study: Study, look: Linearisation) -> tuple[OwnUnknowns, ...]:

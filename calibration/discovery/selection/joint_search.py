@@ -38,6 +38,7 @@ class JointSearch(Search):
         super().__init__(campaign, setup, say)
         self.candidates = {one.name: one for one in setup.candidates}
         self.columns: CandidateColumns
+        self.last_columns: CandidateColumns | None = None
         self.selector: JointSelection
         self.probability: dict[str, float] = {}
 
@@ -57,7 +58,7 @@ class JointSearch(Search):
         """
         name = f"round {number}: comparing sets of effects"
         self.say(f"round {number}: linearising along {len(self.setup.candidates)} effects", self.share(number - 1))
-        self.columns = columns = linearise_candidates(self, state)
+        self.columns = self.last_columns = columns = linearise_candidates(self, state, self.last_columns)
 
         def told(count: int) -> None:
             self.say(f"{name} ({count})", self.share(number - 0.6))
@@ -223,8 +224,9 @@ class JointSearch(Search):
         best: dict[str, float] = {}
         for i in self.selector.additions(rest):
             name = self.columns.variants[i].name
-            if name != mine and tuple(sorted((*rest.variants, i))) in self.selector.fitted:
-                best[name] = max(best.get(name, -np.inf), self.selector.subset([*rest.variants, i]).evidence)
+            other = self.selector.fitted.get(tuple(sorted((*rest.variants, i))))
+            if name != mine and other is not None and other.plausible:
+                best[name] = max(best.get(name, -np.inf), other.evidence)
         asked = whole.evidence - INDISTINGUISHABLE_SHARE * (whole.evidence - rest.evidence)
         return tuple(name for name, evidence in best.items() if evidence > asked)
 

@@ -5,6 +5,9 @@ probability of a subset is its evidence times its prior. A linear model with the
 averaged over resampled series of the records (bagged posterior). Each series' -2 ln L at the fitted point is resampled; nothing
 is fitted again.
 
+A subset with an effect at the end of its plausible range is left out. Several such effects together would follow almost any
+record. One alone takes part: it says what the missing effect acts like.
+
 References:
     Huggins and Miller 2023, Bayesian Analysis 18, 79-104: reproducible model selection with bagged posteriors.
     Kishino, Miyata and Hasegawa 1990, Journal of Molecular Evolution 31, 151-160: resampled estimated log-likelihoods.
@@ -51,11 +54,18 @@ class Subset:
         variants: Numbers of the variants.
         fit: Their fit, with the base columns.
         evidence: Logarithm of evidence times prior.
+        at_end: Whether an effect is at the end of its plausible range.
     """
 
     variants: tuple[int, ...]
     fit: LinearFit
     evidence: float
+    at_end: bool
+
+    @property
+    def plausible(self) -> bool:
+        """Whether it takes part: no effect is at the end of its plausible range, or there is only one effect."""
+        return not self.at_end or len(self.variants) < 2
 
 
 @dataclass(frozen=True)
@@ -118,14 +128,15 @@ class JointSelection:
             mine = [column for i in key for column in self.variants[i].columns if column not in self.base]
             fit = self.model.fit([*self.base, *dict.fromkeys(mine)], None if begin is None else begin.fit)
             odds = sum(self.variants[i].log_odds for i in key)
-            self.fitted[key] = Subset(key, fit, self.model.log_evidence(fit) + odds)
+            self.fitted[key] = Subset(key, fit, self.model.log_evidence(fit) + odds, self.model.at_end(fit))
         return self.fitted[key]
 
-    def steps(self, subset: Subset) -> dict[int, tuple[float, float]]:
+    def steps(self, subset: Subset) -> dict[int, tuple[float, float, bool]]:
         """What one linear step along each variant of other candidates would gain, with the subset's weights.
 
         Returns:
-            By variant: decrease of -2 ln L and prior, and of -2 times the logarithm of evidence times prior.
+            By variant: decrease of -2 ln L and prior, and of -2 times the logarithm of evidence times prior; whether the step
+            ends at the end of a plausible range.
         """
         model, mine = self.model, list(subset.fit.columns)
         there = {self.variants[i].name for i in subset.variants}
@@ -143,20 +154,25 @@ class JointSelection:
             rows, width = [at[c] for c in some], model.width[some]
             matrix, slope = rest[np.ix_(rows, rows)] + np.diag(1 / width**2), rest[rows, -1]
             neutral = model.neutral[some]
-            step = bounded_minimum(matrix, slope, model.lower[some] - neutral, model.upper[some] - neutral)
+            low, high = model.lower[some] - neutral, model.upper[some] - neutral
+            step = bounded_minimum(matrix, slope, low, high)
             gain = float(-(step @ matrix @ step) - 2 * slope @ step)
             occam = float(np.linalg.slogdet(matrix * np.outer(width, width))[1]) if step.any() else 0.0
-            found[i] = gain, gain - occam + 2 * self.variants[i].log_odds
+            at_end = bool((model.ends[some] & ((step <= low) | (step >= high)) & (step != 0)).any())
+            found[i] = gain, gain - occam + 2 * self.variants[i].log_odds, at_end
         return found
 
     def additions(self, subset: Subset) -> list[int]:
-        """Variants of other candidates, the most promising first, by one linear step."""
+        """Variants of other candidates, the most promising first, by one linear step.
+
+        Beside other effects, those that would be at the end of their plausible range come last.
+        """
         found = self.steps(subset)
-        return sorted(found, key=lambda i: -found[i][1])
+        return sorted(found, key=lambda i: (bool(subset.variants) and found[i][2], -found[i][1]))
 
     def first_order_gains(self, subset: Subset) -> dict[int, float]:
         """Decrease of -2 ln L and prior by one linear step along each variant of other candidates."""
-        return {i: gain for i, (gain, _) in self.steps(subset).items()}
+        return {i: gain for i, (gain, _, _) in self.steps(subset).items()}
 
     def neighbours(self, subset: Subset) -> list[Subset]:
         """Subsets with one effect more, one less, or one exchanged."""
@@ -179,7 +195,7 @@ class JointSelection:
             self.subset(begin)
         done: set[tuple[int, ...]] = set()
         while len(self.fitted) < MAX_SUBSETS:
-            best = sorted(self.fitted.values(), key=lambda one: -one.evidence)[:EXPANDED_SUBSETS]
+            best = self.ordered()[:EXPANDED_SUBSETS]
             todo = next((one for one in best if one.variants not in done), None)
             if todo is None:
                 break
@@ -187,8 +203,12 @@ class JointSelection:
             stop_if_asked()
             self.neighbours(todo)
             self.told(len(self.fitted))
-        ordered = tuple(sorted(self.fitted.values(), key=lambda one: -one.evidence))
+        ordered = self.ordered()
         return Selection(ordered, self.variants, self.bagged(ordered))
+
+    def ordered(self) -> tuple[Subset, ...]:
+        """The fitted subsets that take part, the most probable first."""
+        return tuple(sorted((one for one in self.fitted.values() if one.plausible), key=lambda one: -one.evidence))
 
     def bagged(self, subsets: Sequence[Subset]) -> np.ndarray:
         """Posterior probability of subsets, averaged over resampled series; over resampled pools where series are few."""

@@ -83,6 +83,7 @@ class LinearModel:
         lower: Lowest steps (k,).
         upper: Highest steps (k,).
         neutral: Steps to where columns have no effect (k,); columns that are not fitted are there.
+        ends: Which columns have the ends of a plausible range as bounds (k,).
     """
 
     slopes: np.ndarray
@@ -96,6 +97,7 @@ class LinearModel:
     lower: np.ndarray
     upper: np.ndarray
     neutral: np.ndarray
+    ends: np.ndarray
 
     def levels(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by pool (p,)."""
@@ -185,6 +187,11 @@ class LinearModel:
         width = self.width[list(found.columns)][free]
         scaled = found.matrix[np.ix_(free, free)] * np.outer(width, width)
         return -0.5 * found.cost - 0.5 * float(np.linalg.slogdet(scaled)[1])
+
+    def at_end(self, found: LinearFit) -> bool:
+        """Whether a column of a fit is at the end of its plausible range."""
+        columns = list(found.columns)
+        return bool((found.at_bound & self.ends[columns] & (np.abs(found.step - self.neutral[columns]) > 1e-12)).any())
 
     @cached_property
     def used(self) -> np.ndarray:

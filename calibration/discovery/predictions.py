@@ -1,0 +1,89 @@
+"""Predictions of held-out tests: bands that 95 % of the samples are expected in.
+
+The variance of a predicted sample is g C g^T + e^2 + n^2. g are the slopes of the motion along the fitted parameters, C is
+their covariance. n is the sensor's noise. e is the error above the noise in fitted tests of the same kind, in proportion to the
+motion.
+
+References:
+    Seber and Wild 2003, Nonlinear Regression, section 5.1: prediction intervals by linearisation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calibration.discovery.diagnosis import Prediction
+from calibration.discovery.eliminated_least_squares import predict_gain
+from calibration.result import TestFit
+from jaxhydro.environment import DOFS
+
+if TYPE_CHECKING:
+    from calibration.discovery.acceptance import FitState
+    from calibration.discovery.search import Search
+
+NORMAL_95 = 1.96  # standard deviations of a normal distribution on both sides of its mean that hold 95 %
+
+
+def predictions_of(search: Search, state: FitState, tests: Sequence[TestFit]) -> tuple[Prediction, ...]:
+    """Predicted motions of the held-out tests, with their bands.
+
+    Args:
+        search: The search.
+        state: A fit.
+        tests: Measured and simulated motions of every test with this fit.
+    """
+    held = [(test, one) for test in tests if test.use == "holdout" for one in test.series if one.scored]
+    if not held:
+        return ()
+    covariance = predict_gain(search.study, state.look, search.prior(state.chosen)).covariance
+    slopes, left = motion_slopes(search, state), relative_errors(tests)
+    found = []
+    for test, one in held:
+        mine = slopes[test.id, one.channel][: len(one.measured)]
+        parameters = np.maximum(np.einsum("tq,qr,tr->t", mine, covariance, mine), 0.0)
+        spread = float(np.std(one.measured))
+        error = float(np.hypot(one.noise, left.get((test.kind == "decay", one.channel), 0.0) * spread))
+        half_width = NORMAL_95 * np.sqrt(parameters + error**2)
+        inside = float(np.mean(np.abs(one.measured - one.simulated) <= half_width))
+        found.append(Prediction(test.id, one.channel, half_width, inside, float(np.sqrt(np.mean(parameters))), error))
+    return tuple(found)
+
+
+def relative_errors(tests: Sequence[TestFit]) -> dict[tuple[bool, str], float]:
+    """RMSE above the noise over the motion's standard deviation in the fitted tests, by kind (whether decays) and motion."""
+    squares: dict[tuple[bool, str], list[float]] = {}
+    for test in tests:
+        for one in test.series if test.use == "fit" else ():
+            if one.scored and (variance := float(np.var(one.measured))) > 0:
+                above = float(np.mean((one.measured - one.simulated) ** 2)) - one.noise**2
+                squares.setdefault((test.kind == "decay", one.channel), []).append(max(above, 0.0) / variance)
+    return {key: float(np.sqrt(np.mean(values))) for key, values in squares.items()}
+
+
+def motion_slopes(search: Search, state: FitState) -> dict[tuple[str, str], np.ndarray]:
+    """Slopes of the motions in time along a fit's directions (t, q), by test and motion.
+
+    A decay's own initial position, rate and offset are fitted to it whatever the parameters are. Its slopes are what that
+    leaves.
+    """
+    study = search.study
+    parts = study.time_slopes(state.look.place, state.look.active)
+    q, found = len(state.look.active), {}
+    if study.decays is not None:
+        dofs = study.decays.data.dofs
+        whole = parts.pop(0)
+        for record, mine in zip(study.decay_records, whole.reshape(-1, len(dofs), *whole.shape[1:]), strict=True):
+            weight = np.array([1 / record.noise[DOFS[dof]] if DOFS[dof] in record.noise else 0.0 for dof in dofs])
+            weighed = (weight[:, None, None] * mine).reshape(-1, mine.shape[-1])
+            moved = np.linalg.lstsq(weighed[:, q:], weighed[:, :q], rcond=None)[0]
+            for dof, slopes in zip(dofs, mine[..., :q] - mine[..., q:] @ moved, strict=True):
+                found[record.id, DOFS[dof]] = slopes
+    for sea, mine in zip(study.seas, parts, strict=True):
+        by_test = mine.reshape(len(sea.tests), len(sea.dofs), *mine.shape[1:])
+        for test, motions in zip(sea.tests, by_test, strict=True):
+            for dof, slopes in zip(sea.dofs, motions, strict=True):
+                found[test, DOFS[dof]] = slopes
+    return found
