@@ -19,7 +19,7 @@ from calibration.discovery.study import OVERFLOW, Study
 from jaxhydro.interrupts import stop_if_asked
 
 MAX_LOG_STEP = 0.7  # largest step of a logarithmic coordinate
-MIN_RELATIVE_GAIN = 3e-3  # of the cost: a step that gains less ends the fit, whatever the number of samples
+MIN_RELATIVE_GAIN = 1e-4  # of the cost: a step that gains less ends the fit, whatever the number of samples
 MIN_PREDICTED_SHARE = 0.25  # of the predicted gain: slopes that give less are outdated
 
 
@@ -103,11 +103,12 @@ def fit(
     iterations: int,
     relinearisations: int = 0,
     tolerance: float = 0.5,
+    relative_tolerance: float = MIN_RELATIVE_GAIN,
     report: Callable[[int, float], None] = lambda *_: None,
 ) -> FitOutcome:
     """Fit the directions of a linearisation, and the decays' own unknowns, to some series.
 
-    The fit ends where a step gains less than `tolerance`, or than `MIN_RELATIVE_GAIN` of the cost. A step that makes a
+    The fit ends where a step gains less than `tolerance`, or than `relative_tolerance` of the cost. A step that makes a
     simulation diverge is rejected.
 
     Args:
@@ -118,6 +119,7 @@ def fit(
         iterations: Maximum number of iterations.
         relinearisations: How often slopes may be computed anew; if any, once more at the end.
         tolerance: Smallest gain in cost that is worth a step.
+        relative_tolerance: The same as a fraction of the cost.
         report: Called with the iteration and the cost.
     """
     logarithmic = study.logarithmic[list(look.active)]
@@ -137,7 +139,7 @@ def fit(
         cost = cost_of(study, look, residual, there, used, prior)
         expected = now - cost_of(study, look, linear_residual(study, look, step, own), there, used, prior)
         gain = -np.inf if has_diverged(residual) else now - cost
-        least = max(tolerance, MIN_RELATIVE_GAIN * abs(now))  # of what is minimised here, however large it was before
+        least = max(tolerance, relative_tolerance * abs(now))  # of what is minimised here, however large it was before
         known, little = fresh or not left, 0 <= gain < least or expected < least
         if gain > 0:
             look, now, fresh = broyden_update(study, look, there, residual, step, own), cost, False

@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.acceptance import FitState, HeldOutComparison, ResidualSummary, Verdict, assess_effect
-from calibration.discovery.broyden_fit import FitOutcome, fit
+from calibration.discovery.broyden_fit import MIN_RELATIVE_GAIN, FitOutcome, fit
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.expected_residuals import expected_rows
@@ -21,6 +21,7 @@ from calibration.residuals.decays import first_guess
 
 MAX_ITERATIONS = 50  # iterations of a full refit
 MAX_RELINEARISATIONS = 8  # new slopes in a full refit
+REFIT_TOLERANCE = 3e-3  # of the cost: a step of a full refit that gains less ends it
 
 
 class EffectFits:
@@ -93,7 +94,8 @@ class EffectFits:
 
     def refit(self, look: Linearisation, chosen: Sequence[Candidate], name: str, fraction: float) -> FitState:
         """Fit all directions of a linearisation until nothing is gained."""
-        return self.state(chosen, self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction))
+        reached = self.fit(look, chosen, MAX_ITERATIONS, MAX_RELINEARISATIONS, name, fraction, REFIT_TOLERANCE)
+        return self.state(chosen, reached)
 
     def fit(
         self,
@@ -103,6 +105,7 @@ class EffectFits:
         relinearisations: int,
         name: str,
         fraction: float,
+        relative_tolerance: float = MIN_RELATIVE_GAIN,
     ) -> FitOutcome:
         """Fit all directions of a linearisation for some iterations, reporting progress."""
 
@@ -118,6 +121,7 @@ class EffectFits:
             iterations=iterations,
             relinearisations=relinearisations,
             tolerance=1.0,
+            relative_tolerance=relative_tolerance,
             report=report,
         )
 

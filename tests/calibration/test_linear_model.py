@@ -8,7 +8,6 @@ import pytest
 from scipy.integrate import dblquad
 from scipy.optimize import minimize
 
-from calibration.discovery.selection.candidate_columns import discrepancy
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
 from calibration.discovery.selection.joint_selection import JointSelection, Variant
 from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, OwnUnknowns
@@ -132,11 +131,25 @@ def test_effects_at_the_ends_of_their_ranges_are_taken_alone_or_not_at_all() -> 
 
 
 def test_a_model_that_leaves_more_than_noise_has_fewer_observations() -> None:
-    """None at the noise, and as many fewer as the mean square is over that of the noise; what is not fitted does not count."""
-    freedom = np.array([10.0, 30.0, 0.0])
-    assert discrepancy(np.array([1.0, 0.4, 50.0]), freedom) == 1.0
-    assert discrepancy(np.array([7.0, 7.0, 50.0]), freedom) == pytest.approx(7.0)
-    assert discrepancy(np.array([1.0, 16.0, 1.0]), freedom) == pytest.approx(8.0)
+    """None at the noise, and as many fewer as the error is larger than the noise; what is not fitted does not count."""
+    model = linear_model(3, {})
+    model = replace(model, freedom=np.where(np.arange(POOLS) < 2, 0.0, 20.0))
+    unit = 1 / np.sqrt(model.levels(np.ones(ROWS)))[model.pool]
+    assert model.discrepancy(0.5 * unit) == 1.0
+    assert model.discrepancy(3.0 * unit) == pytest.approx(3.0)
+    assert model.discrepancy(np.where(model.pool < 7, 4.0, 1.0) * unit) == pytest.approx(2.0)
+    assert model.discrepancy(np.where(model.pool < 2, 4.0, 1.0) * unit) == pytest.approx(1.0)
+
+
+def test_what_no_effect_explains_makes_every_effect_less_sure() -> None:
+    """An effect that leaves noise alone is as sure as before, however large the residual is without it."""
+    clean, random = linear_model(8, {3: 6.0}), np.random.default_rng(4)
+    dirty = replace(clean, residual=clean.residual + 5.0 * random.standard_normal(ROWS))
+    first, second = selection(clean), selection(dirty)
+    assert first.run().probability()["effect 3"] > 0.99
+    assert first.model.freedom.sum() == clean.freedom.sum()
+    second.run()
+    assert 4.0 < dirty.freedom.sum() / second.model.freedom.sum() < 6.0
 
 
 def test_what_one_series_alone_shows_is_less_sure_than_what_all_show() -> None:

@@ -192,14 +192,13 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
     amplitudes = {label for one in fits.setup.candidates for label in one.amplitudes}
     sized = ~base & ~further & np.isin(names, sorted(amplitudes))
     used = study.used[study.row_series]
-    freedom = (study.pooled * study.used[:, None]).ravel()
     return LinearModel(
         slopes,
         look.residual,
         own_unknowns(study, look),
         study.pool,
         study.share * used,
-        freedom / discrepancy(study.levels(look.residual).ravel(), freedom),
+        (study.pooled * study.used[:, None]).ravel(),
         np.where(further, 0.0, np.where(sized, -now, prior.mean[directions] - now)),
         width,
         low,
@@ -207,23 +206,6 @@ def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, dire
         np.where(sized, -now, 0.0),
         sized | further,
     )
-
-
-def discrepancy(levels: np.ndarray, freedom: np.ndarray) -> float:
-    """How many degrees of freedom of a residual count as one, as the model leaves more than noise.
-
-    It is the geometric mean of the residual's mean square over the floor's, and at least 1. What a model leaves above the noise
-    is its own error, and is alike in all records. Its samples are not so many independent observations. The likelihood is
-    tempered (coarsened posterior).
-
-    Args:
-        levels: Mean square over the floor's by pool (p,).
-        freedom: Degrees of freedom by pool (p,), 0 of what is not fitted.
-
-    References:
-        Miller and Dunson 2019, Journal of the American Statistical Association 114, 1113-1125.
-    """
-    return max(1.0, math.exp(float((freedom * np.log(np.maximum(levels, 1.0))).sum()) / max(float(freedom.sum()), 1.0)))
 
 
 def own_unknowns(study: Study, look: Linearisation) -> tuple[OwnUnknowns, ...]:

@@ -5,12 +5,15 @@ probability of a subset is its evidence times its prior. A linear model with the
 averaged over resampled series of the records (bagged posterior). Each series' -2 ln L at the fitted point is resampled; nothing
 is fitted again.
 
+The likelihood is tempered by what the best subset leaves above the noise (coarsened posterior).
+
 A subset with an effect at the end of its plausible range is left out. Several such effects together would follow almost any
 record. One alone takes part: it says what the missing effect acts like.
 
 References:
     Huggins and Miller 2023, Bayesian Analysis 18, 79-104: reproducible model selection with bagged posteriors.
     Kishino, Miyata and Hasegawa 1990, Journal of Molecular Evolution 31, 151-160: resampled estimated log-likelihoods.
+    Miller and Dunson 2019, Journal of the American Statistical Association 114, 1113-1125: coarsened posteriors.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,6 +30,8 @@ EXPANDED_SUBSETS = 5  # best subsets whose neighbours are all tried
 MAX_SUBSETS = 400  # subsets that are fitted
 MAX_ADDITIONS = 8  # effects added to a subset in turn, those with the largest gain of one linear step
 MAX_EXCHANGES = 3  # effects tried in the place of each effect of a subset
+MAX_GROWN = 12  # effects of the subset that tells how much the best model leaves
+MIN_DISCREPANCY = 1.2  # a smaller one may be noise by chance
 RESAMPLES = 400  # resamplings of the series
 MIN_SERIES = 8  # series that are resampled; of fewer, their pools of bands are
 SEED = 7
@@ -190,6 +195,7 @@ class JointSelection:
         Args:
             begin: Variants of a subset to begin with, beside none.
         """
+        self.temper(self.grown(self.subset(begin)))
         self.subset(())
         if begin:
             self.subset(begin)
@@ -205,6 +211,21 @@ class JointSelection:
             self.told(len(self.fitted))
         ordered = self.ordered()
         return Selection(ordered, self.variants, self.bagged(ordered))
+
+    def grown(self, subset: Subset) -> Subset:
+        """A subset to which effects are added one by one as long as the evidence grows."""
+        while True:
+            trials = [self.subset([*subset.variants, i], subset) for i in self.additions(subset)[:MAX_EXCHANGES]]
+            better = [one for one in trials if one.plausible and one.evidence > subset.evidence]
+            if not better or len(subset.variants) >= MAX_GROWN:
+                return subset
+            subset = max(better, key=lambda one: one.evidence)
+
+    def temper(self, best: Subset) -> None:
+        """Temper the likelihood by what a subset leaves above the noise."""
+        discrepancy = self.model.discrepancy(self.model.residual_after(best.fit))
+        if discrepancy > MIN_DISCREPANCY:
+            self.model, self.fitted = self.model.tempered(discrepancy), {}
 
     def ordered(self) -> tuple[Subset, ...]:
         """The fitted subsets that take part, the most probable first."""

@@ -11,7 +11,7 @@ References:
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -192,6 +192,19 @@ class LinearModel:
         """Whether a column of a fit is at the end of its plausible range."""
         columns = list(found.columns)
         return bool((found.at_bound & self.ends[columns] & (np.abs(found.step - self.neutral[columns]) > 1e-12)).any())
+
+    def discrepancy(self, residual: np.ndarray) -> float:
+        """How many degrees of freedom of a residual count as one.
+
+        It is the geometric mean of the residual's root mean square over the floor's, and at least 1. What a model leaves above
+        the noise is its own error, and is alike in all records. Its samples are not so many independent observations.
+        """
+        logarithm = np.log(np.maximum(self.levels(residual), 1.0))
+        return math.exp(0.5 * float((self.freedom * logarithm).sum()) / max(float(self.freedom.sum()), 1.0))
+
+    def tempered(self, discrepancy: float) -> "LinearModel":
+        """The model with fewer degrees of freedom, by a factor."""
+        return replace(self, freedom=self.freedom / discrepancy)
 
     @cached_property
     def used(self) -> np.ndarray:
