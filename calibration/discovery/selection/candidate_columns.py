@@ -97,72 +97,117 @@ def candidate_columns(
         earlier: An earlier linear model, whose slopes are used along all but some candidates.
         anew: Names of these.
     """
-    study = fits.study
-    columns, directions = [look.slopes], list(look.active)
-    base = tuple(range(len(fits.base)))
-    variants: list[Variant] = []
-    values: list[Mapping[str, float]] = []
-
-    def add(one: Candidate, mine: Sequence[int], at: Mapping[str, float]) -> None:
-        odds = LABORATORY_LOG_ODDS if one.effect in LABORATORY_EFFECTS else PHYSICS_LOG_ODDS
-        variants.append(Variant(one.name, tuple(mine), odds))
-        values.append(at)
-
-    others = []
+    gathered, others = _Columns(fits, look), []
     for one in (*chosen, *candidates):
-        mine = study.index(one.amplitudes)
-        if set(mine) <= set(fits.base):  # nearly known, and let go further by a second column with the same slopes
-            at = [look.active.index(i) for i in mine]
-            add(one, range(len(directions), len(directions) + len(at)), {})
-            columns.append(look.slopes[:, at])
-            directions += mine
+        if set(fits.study.index(one.amplitudes)) <= set(fits.base):
+            gathered.add_nearly_known(one)
         elif one in chosen:
-            add(one, [look.active.index(i) for i in study.index(one.labels)], {})
+            gathered.add(one, [look.active.index(i) for i in fits.study.index(one.labels)], {})
         elif earlier is not None and one.name not in anew:
-            for variant, shapes in zip(earlier.variants, earlier.values, strict=True):
-                if variant.name == one.name:
-                    add(one, range(len(directions), len(directions) + len(variant.columns)), shapes)
-                    columns.append(earlier.model.slopes[:, list(variant.columns)])
-                    directions += [earlier.directions[c] for c in variant.columns]
+            gathered.add_earlier(one, earlier)
         else:
             others.append(one)
     grids = {one.name: one.grid or ({},) for one in others}
     for g in count():
         if not (todo := [one for one in others if g < len(grids[one.name])]):
             break
-        place = fits.with_values(look.place, {k: v for one in todo for k, v in grids[one.name][g].items()})
-        free = dict.fromkeys(i for one in todo for i in study.index(one.amplitudes) if i not in look.active)
-        seen = study.linearise(place, list(free))
-        begin = len(directions)
-        columns.append(seen.slopes)
-        directions += seen.active
+        further = gathered.linearise([(one, grids[one.name][g]) for one in todo])
         for one in todo:
-            mine = [
-                look.active.index(i) if i in look.active else begin + seen.active.index(i) for i in study.index(one.amplitudes)
-            ]
-            add(one, mine, grids[one.name][g])
-            if one.shape_finder is not None and g < len(one.grid):
-                some = one.shape_finder(study, look, seen.slopes[:, mine[0] - begin])
-                grids[one.name] += tuple({**one.grid[g], **shape} for shape in some)
-            if one.phase_per_unit is not None:
-                there = replace(look.joined_with(seen.restricted_to([directions[mine[0]]])), place=place)
-                far = phase_shift_start(study, there, one.amplitudes[0], one.phase_per_unit)
-                if far is not None:
-                    factor = phase_shift_factor(study, one.phase_per_unit, far.values[one.amplitudes[0]])
-                    lines = (seen.slopes[:, mine[0] - begin].reshape(-1, 2) @ [1, 1j]) * factor
-                    columns.append(np.stack([lines.real, lines.imag], axis=1).reshape(-1, 1))
-                    directions.append(directions[mine[0]])
-                    add(one, [len(directions) - 1], far.values)
+            if g < len(one.grid):
+                grids[one.name] += tuple({**one.grid[g], **shape} for shape in further.get(one.name, ()))
     return CandidateColumns(
-        linear_model(fits, look, np.hstack(columns), directions),
-        base,
-        tuple(variants),
-        tuple(values),
-        tuple(directions),
-        np.repeat(np.arange(len(study.series)), study.dof.shape[1]),
+        linear_model(fits, look, np.hstack(gathered.slopes), gathered.directions),
+        tuple(range(len(fits.base))),
+        tuple(gathered.variants),
+        tuple(gathered.values),
+        tuple(gathered.directions),
+        np.repeat(np.arange(len(fits.study.series)), fits.study.dof.shape[1]),
         look,
         frozenset(one.name for one in candidates),
     )
+
+
+class _Columns:
+    """Columns of a linear model and candidates on them, as they are gathered.
+
+    Attributes:
+        slopes: Blocks of columns (n, k).
+        directions: Direction of every column.
+        variants: Candidates at values of their shapes.
+        values: These values by variant.
+    """
+
+    def __init__(self, fits: EffectFits, look: Linearisation) -> None:
+        self.fits, self.study, self.look = fits, fits.study, look
+        self.slopes, self.directions = [look.slopes], list(look.active)
+        self.variants: list[Variant] = []
+        self.values: list[Mapping[str, float]] = []
+
+    def append(self, slopes: np.ndarray, directions: Sequence[int]) -> range:
+        """Append columns; gives their numbers."""
+        begin = len(self.directions)
+        self.slopes.append(slopes)
+        self.directions += directions
+        return range(begin, len(self.directions))
+
+    def add(self, one: Candidate, columns: Sequence[int], values: Mapping[str, float]) -> None:
+        """Add a candidate at values of its shapes."""
+        odds = LABORATORY_LOG_ODDS if one.effect in LABORATORY_EFFECTS else PHYSICS_LOG_ODDS
+        self.variants.append(Variant(one.name, tuple(columns), odds))
+        self.values.append(values)
+
+    def add_nearly_known(self, one: Candidate) -> None:
+        """Add an effect whose parameters move a little in every fit. Second columns of the same slopes let them go further."""
+        mine = self.study.index(one.amplitudes)
+        slopes = self.look.slopes[:, [self.look.active.index(i) for i in mine]]
+        self.add(one, self.append(slopes, mine), {})
+
+    def add_earlier(self, one: Candidate, earlier: CandidateColumns) -> None:
+        """Add a candidate with the slopes of an earlier linear model."""
+        for variant, values in zip(earlier.variants, earlier.values, strict=True):
+            if variant.name == one.name:
+                directions = [earlier.directions[column] for column in variant.columns]
+                self.add(one, self.append(earlier.model.slopes[:, list(variant.columns)], directions), values)
+
+    def linearise(self, some: Sequence[tuple[Candidate, Mapping[str, float]]]) -> dict[str, tuple[Mapping[str, float], ...]]:
+        """Linearise along candidates at values of their shapes, all at once.
+
+        Args:
+            some: Candidates and values.
+
+        Returns:
+            Further shapes to try, by name of the candidate.
+        """
+        place = self.fits.with_values(self.look.place, {k: v for _, at in some for k, v in at.items()})
+        active = self.look.active
+        free = dict.fromkeys(i for one, _ in some for i in self.study.index(one.amplitudes) if i not in active)
+        seen = self.study.linearise(place, list(free))
+        numbers = dict(zip(seen.active, self.append(seen.slopes, list(seen.active)), strict=True))
+        further: dict[str, tuple[Mapping[str, float], ...]] = {}
+        for one, at in some:
+            amplitudes = self.study.index(one.amplitudes)
+            self.add(one, [active.index(i) if i in active else numbers[i] for i in amplitudes], at)
+            if one.shape_finder is not None:
+                first = seen.slopes[:, seen.active.index(amplitudes[0])]
+                further[one.name] = tuple(one.shape_finder(self.study, self.look, first))
+            if one.phase_per_unit is not None:
+                self.add_far_shift(one, replace(self.look.joined_with(seen.restricted_to(amplitudes[:1])), place=place))
+        return further
+
+    def add_far_shift(self, one: Candidate, look: Linearisation) -> None:
+        """Add an effect that shifts the phases of waves, where phases say that it is further away than slopes reach.
+
+        Args:
+            one: The candidate.
+            look: Linearisation whose last direction is the candidate's.
+        """
+        assert one.phase_per_unit is not None
+        far = phase_shift_start(self.study, look, one.amplitudes[0], one.phase_per_unit)
+        if far is not None:
+            factor = phase_shift_factor(self.study, one.phase_per_unit, far.values[one.amplitudes[0]])
+            lines = (look.slopes[:, -1].reshape(-1, 2) @ [1, 1j]) * factor
+            secant = np.stack([lines.real, lines.imag], axis=1).reshape(-1, 1)
+            self.add(one, self.append(secant, look.active[-1:]), far.values)
 
 
 def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, directions: Sequence[int]) -> LinearModel:
