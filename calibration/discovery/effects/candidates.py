@@ -193,9 +193,8 @@ def with_effects(model: Model, labels: Iterable[str]) -> Model:
     if not left:
         return model
     drag = with_drag(model)
-    if any(label in drag.values for label in left):
-        model = drag
-        left = [label for label in left if label not in drag.values]
+    if rest := set(left) & set(drag.values):
+        model, left = drag, [label for label in left if label not in rest]
     for make in OPTIONAL_EFFECTS if left else ():
         effect = make(model)
         keys = {key for label, key in effect.keys.items() if label in left}
