@@ -1,7 +1,7 @@
 """Columns of all candidate effects at a fitted point, and the linear model made of them."""
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 
@@ -12,11 +12,10 @@ from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.linearisations import Linearisation
-from calibration.discovery.selection.joint_selection import JointSelection, Variant
+from calibration.discovery.selection.joint_selection import Variant
 from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
 from calibration.discovery.study import Study
 
-MIN_SCREENED_GAIN = 6.0  # of -2 ln L by an earlier linearisation: slopes along an effect that gains less are not computed anew
 MAX_COEFFICIENT_STEP = 1.0  # of a logarithm in one linearisation
 MAX_NUISANCE = 3.0  # standard deviations of nearly known quantities
 LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
@@ -35,7 +34,6 @@ class CandidateColumns:
         directions: Direction of the study of every column.
         series: Series of every pool.
         look: Linearisation along the base directions and the effects in the model.
-        candidates: Names of the candidates that are not in the model.
     """
 
     model: LinearModel
@@ -45,7 +43,6 @@ class CandidateColumns:
     directions: tuple[int, ...]
     series: np.ndarray
     look: Linearisation
-    candidates: frozenset[str]
 
     def present(self, chosen: Sequence[Candidate]) -> tuple[int, ...]:
         """Variants of the effects in the model: each effect's first."""
@@ -53,30 +50,18 @@ class CandidateColumns:
         return tuple(names.index(one.name) for one in chosen)
 
 
-def linearise_candidates(fits: EffectFits, state: FitState, earlier: CandidateColumns | None = None) -> CandidateColumns:
+def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
     """Linearise a fitted model along every candidate effect, at every value of its shapes.
-
-    Slopes along effects that a first-order gain does not speak for are taken from an earlier linearisation.
 
     Args:
         fits: Study, candidates, priors.
         state: The fitted model.
-        earlier: An earlier linear model of all candidates.
     """
     look = state.look
     if state.chosen:  # a fit moves on with the slopes at hand, and leaves the shapes of its effects alone
         look = fits.study.linearise(look.place, fits.active(state.chosen))
     names = {one.name for one in state.chosen}
-    others = [one for one in fits.setup.candidates if one.name not in names]
-    if earlier is None:
-        return candidate_columns(fits, look, state.chosen, others)
-    known = earlier.candidates
-    screening = candidate_columns(fits, look, state.chosen, [one for one in others if one.name in known], earlier)
-    present = screening.present(state.chosen)
-    selection = JointSelection(screening.model, screening.base, screening.variants, screening.series)
-    gains = selection.first_order_gains(selection.subset(present))
-    anew = {screening.variants[i].name for i, gain in gains.items() if gain > MIN_SCREENED_GAIN}
-    return candidate_columns(fits, look, state.chosen, others, earlier, anew | ({one.name for one in others} - known))
+    return candidate_columns(fits, look, state.chosen, [one for one in fits.setup.candidates if one.name not in names])
 
 
 def candidate_columns(
@@ -84,8 +69,6 @@ def candidate_columns(
     look: Linearisation,
     chosen: Sequence[Candidate],
     candidates: Sequence[Candidate],
-    earlier: CandidateColumns | None = None,
-    anew: Collection[str] = (),
 ) -> CandidateColumns:
     """A linear model of the effects in a model and of other candidates.
 
@@ -94,8 +77,6 @@ def candidate_columns(
         look: Linearisation along all free directions of the model.
         chosen: The effects in the model.
         candidates: Other candidates, which are linearised along.
-        earlier: An earlier linear model, whose slopes are used along all but some candidates.
-        anew: Names of these.
     """
     gathered, others = _Columns(fits, look), []
     for one in (*chosen, *candidates):
@@ -103,8 +84,6 @@ def candidate_columns(
             gathered.add_nearly_known(one)
         elif one in chosen:
             gathered.add(one, [look.active.index(i) for i in fits.study.index(one.labels)], {})
-        elif earlier is not None and one.name not in anew:
-            gathered.add_earlier(one, earlier)
         else:
             others.append(one)
     grids = {one.name: one.grid or ({},) for one in others}
@@ -123,7 +102,6 @@ def candidate_columns(
         tuple(gathered.directions),
         np.repeat(np.arange(len(fits.study.series)), fits.study.dof.shape[1]),
         look,
-        frozenset(one.name for one in candidates),
     )
 
 
@@ -161,13 +139,6 @@ class _Columns:
         mine = self.study.index(one.amplitudes)
         slopes = self.look.slopes[:, [self.look.active.index(i) for i in mine]]
         self.add(one, self.append(slopes, mine), {})
-
-    def add_earlier(self, one: Candidate, earlier: CandidateColumns) -> None:
-        """Add a candidate with the slopes of an earlier linear model."""
-        for variant, values in zip(earlier.variants, earlier.values, strict=True):
-            if variant.name == one.name:
-                directions = [earlier.directions[column] for column in variant.columns]
-                self.add(one, self.append(earlier.model.slopes[:, list(variant.columns)], directions), values)
 
     def linearise(self, some: Sequence[tuple[Candidate, Mapping[str, float]]]) -> dict[str, tuple[Mapping[str, float], ...]]:
         """Linearise along candidates at values of their shapes, all at once.

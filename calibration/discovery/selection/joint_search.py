@@ -38,7 +38,6 @@ class JointSearch(Search):
         super().__init__(campaign, setup, say)
         self.candidates = {one.name: one for one in setup.candidates}
         self.columns: CandidateColumns
-        self.last_columns: CandidateColumns | None = None
         self.selector: JointSelection
         self.probability: dict[str, float] = {}
 
@@ -58,7 +57,7 @@ class JointSearch(Search):
         """
         name = f"round {number}: comparing sets of effects"
         self.say(f"round {number}: linearising along {len(self.setup.candidates)} effects", self.share(number - 1))
-        self.columns = self.last_columns = columns = linearise_candidates(self, state, self.last_columns)
+        self.columns = columns = linearise_candidates(self, state)
 
         def told(count: int) -> None:
             self.say(f"{name} ({count})", self.share(number - 0.6))

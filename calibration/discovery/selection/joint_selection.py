@@ -11,6 +11,7 @@ A subset with an effect at the end of its plausible range is left out. Several s
 record. One alone takes part: it says what the missing effect acts like.
 
 References:
+    Kass and Raftery 1995, Journal of the American Statistical Association 90, 773-795: strength of evidence.
     Huggins and Miller 2023, Bayesian Analysis 18, 79-104: reproducible model selection with bagged posteriors.
     Kishino, Miyata and Hasegawa 1990, Journal of Molecular Evolution 31, 151-160: resampled estimated log-likelihoods.
     Miller and Dunson 2019, Journal of the American Statistical Association 114, 1113-1125: coarsened posteriors.
@@ -31,6 +32,8 @@ MAX_SUBSETS = 400  # subsets that are fitted
 MAX_ADDITIONS = 8  # effects added to a subset in turn, those with the largest gain of one linear step
 MAX_EXCHANGES = 3  # effects tried in the place of each effect of a subset
 MAX_GROWN = 12  # effects of the subset that tells how much the best model leaves
+STRONG_EVIDENCE = 3.0  # logarithm of a Bayes factor (Kass and Raftery 1995)
+EXPLAINED_ROUNDING = 1e-9  # of a column's square: what other columns leave of it is rounding
 MIN_DISCREPANCY = 1.2  # a smaller one may be noise by chance
 RESAMPLES = 400  # resamplings of the series
 MIN_SERIES = 8  # series that are resampled; of fewer, their pools of bands are
@@ -89,8 +92,9 @@ class Selection:
 
     @property
     def best(self) -> Subset:
-        """The subset with the highest evidence."""
-        return self.subsets[0]
+        """The subset with the fewest parameters among those that none has strong evidence against."""
+        near = [one for one in self.subsets if one.evidence > self.subsets[0].evidence - STRONG_EVIDENCE]
+        return min(near, key=lambda one: (len(one.fit.columns), -one.evidence))
 
     def names(self, subset: Subset) -> tuple[str, ...]:
         """Names of a subset's effects."""
@@ -152,6 +156,10 @@ class JointSelection:
         base = len(mine)
         inner = whole[:base, :base] + np.diag(1 / model.width[mine] ** 2)
         rest = whole[base:, base:] - whole[base:, :base] @ pseudo_inverse(inner) @ whole[:base, base:]
+        explained = (
+            np.diag(rest) <= EXPLAINED_ROUNDING * np.diag(whole)[base:]
+        )  # by the subset's columns: what is left is rounding
+        rest[explained], rest[:, explained] = 0.0, 0.0
         at = {column: i for i, column in enumerate(columns[base:])}
         found = {}
         for i in others:

@@ -220,7 +220,9 @@ def bounded_minimum(matrix: np.ndarray, slope: np.ndarray, low: np.ndarray, high
     step = -scale * np.linalg.solve(both, scale * slope)
     if (step >= low).all() and (step <= high).all():
         return step
-    root = np.linalg.cholesky(both).T
-    target = -np.linalg.solve(root.T, scale * slope)
+    size, directions = np.linalg.eigh(both)
+    roots = np.sqrt(np.maximum(size, RIDGE * size[-1]))  # rounding makes eigenvalues of dependent columns negative
+    root = roots[:, None] * directions.T
+    target = -(directions.T @ (scale * slope)) / roots
     found = lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
     return np.clip(scale * found.x, low, high)
