@@ -139,7 +139,7 @@ def fit(
         cost = cost_of(study, look, residual, there, used, prior)
         expected = now - cost_of(study, look, linear_residual(study, look, step, own), there, used, prior)
         gain = -np.inf if has_diverged(residual) else now - cost
-        least = max(tolerance, relative_tolerance * abs(now))  # of what is minimised here, however large it was before
+        least = max(tolerance, relative_tolerance * abs(now))  # of the present cost, not of the first one
         known, little = fresh or not left, 0 <= gain < least or expected < least
         if gain > 0:
             look, now, fresh = broyden_update(study, look, there, residual, step, own), cost, False

@@ -264,7 +264,7 @@ class Study:
     def time_slopes(self, place: Point, active: Sequence[int]) -> list[np.ndarray]:
         """Slopes of the motions in time along some directions (s, t, q), of the decays and of every run in waves.
 
-        The decays' have their own unknowns' after them (s, t, q + o).
+        The decays' have their own unknowns' after them (s, t, q + o). Slopes that overflow are zero, as in `linearise`.
         """
         some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
         with stoppable_threads(cores()) as pool:
@@ -274,7 +274,9 @@ class Study:
         for i, parts in enumerate(zip(*found, strict=True)):
             columns = [part[..., : len(mine)] for part, mine in zip(parts, some, strict=True)]
             own = [parts[0][..., self.width :]] if i == 0 and self.decays is not None else []
-            whole.append(np.concatenate([*columns, *own], axis=-1))
+            slopes = np.concatenate([*columns, *own], axis=-1)
+            slopes[..., ~(np.abs(slopes) < OVERFLOW).all(axis=(0, 1))] = 0.0
+            whole.append(slopes)
         return whole
 
     def _slopes(self, pool: Executor, place: Point, active: tuple[int, ...], seas: SeaSelection = "fit") -> list[Any]:

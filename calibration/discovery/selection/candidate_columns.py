@@ -65,10 +65,7 @@ def linearise_candidates(fits: EffectFits, state: FitState) -> CandidateColumns:
 
 
 def candidate_columns(
-    fits: EffectFits,
-    look: Linearisation,
-    chosen: Sequence[Candidate],
-    candidates: Sequence[Candidate],
+    fits: EffectFits, look: Linearisation, chosen: Sequence[Candidate], candidates: Sequence[Candidate]
 ) -> CandidateColumns:
     """A linear model of the effects in a model and of other candidates.
 

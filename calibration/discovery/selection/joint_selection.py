@@ -92,7 +92,7 @@ class Selection:
 
     @property
     def best(self) -> Subset:
-        """The subset with the fewest parameters among those that none has strong evidence against."""
+        """The subset with the fewest parameters, of those whose evidence is not far below the highest."""
         near = [one for one in self.subsets if one.evidence > self.subsets[0].evidence - STRONG_EVIDENCE]
         return min(near, key=lambda one: (len(one.fit.columns), -one.evidence))
 
@@ -156,9 +156,8 @@ class JointSelection:
         base = len(mine)
         inner = whole[:base, :base] + np.diag(1 / model.width[mine] ** 2)
         rest = whole[base:, base:] - whole[base:, :base] @ pseudo_inverse(inner) @ whole[:base, base:]
-        explained = (
-            np.diag(rest) <= EXPLAINED_ROUNDING * np.diag(whole)[base:]
-        )  # by the subset's columns: what is left is rounding
+        # a column that the subset's columns explain leaves rounding, of either sign
+        explained = np.diag(rest) <= EXPLAINED_ROUNDING * np.diag(whole)[base:]
         rest[explained], rest[:, explained] = 0.0, 0.0
         at = {column: i for i, column in enumerate(columns[base:])}
         found = {}
