@@ -1,14 +1,14 @@
 """Acceptance of an effect: BIC, held-out error, significance and relevance."""
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from calibration.discovery.effects.candidates import Candidate
-from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, predict_gain
-from calibration.discovery.linearisations import RELATIVE_FLOOR, Linearisation, Prior
+from calibration.discovery.eliminated_least_squares import predict_gain
+from calibration.discovery.fit_state import FitState, ResidualSummary
+from calibration.discovery.linearisations import RELATIVE_FLOOR, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.study import Study
 from calibration.formatting import percent
@@ -20,61 +20,10 @@ MIN_LIKELIHOOD_GAIN = 30.0  # BIC and held-out -2 ln L together; BIC alone witho
 MIN_HELD_OUT_SHARE = 0.15  # fraction of the squared held-out error above the floor
 MIN_HELD_OUT_GAIN = 10.0  # decrease of held-out -2 ln L: very strong evidence (Kass and Raftery 1995)
 MIN_SIGNIFICANCE = 3.0  # standard deviations
-MIN_MOTION_SHARE = 0.015  # of a motion: smallest decrease of its error that matters ...
+MIN_MOTION_SHARE = 0.015  # of a motion: smallest change of its error that matters ...
 MIN_FLOOR_MULTIPLE = 3.0  # ... or this many times the floor, if less
 MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
 MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
-
-
-class ResidualSummary(NamedTuple):
-    """Residual above the noise floor, by motion and frequency region.
-
-    Attributes:
-        squares: Sum over degrees of freedom of (residual / floor)^2 less 1, by series and region (s, 3).
-        parts: Root mean square above the floor (m, rad), by series and region (s, 3). Regions: see `Study.by_region`.
-        likelihood: -2 ln L by series (s,).
-    """
-
-    squares: np.ndarray
-    parts: np.ndarray
-    likelihood: np.ndarray
-
-    @classmethod
-    def of(cls, study: Study, residual: np.ndarray) -> "ResidualSummary":
-        """The summary of a residual given in rows (n,)."""
-        above = study.dof * np.maximum(study.mean_squares(residual) - 1, 0.0)
-        samples = np.array([one.samples for one in study.series])
-        squares = study.by_region(study.pooled * np.maximum(study.levels(residual) - 1, 0.0))
-        parts = np.sqrt(study.by_region(above * study.floor**2) / samples[:, None])
-        return cls(squares, parts, minus_two_log_likelihood(study, residual))
-
-    @property
-    def error(self) -> np.ndarray:
-        """Root mean square above the floor by series (s,; m, rad)."""
-        return np.sqrt((self.parts**2).sum(axis=1))
-
-
-@dataclass(frozen=True)
-class FitState:
-    """A fit with some effects in the model.
-
-    Attributes:
-        chosen: The effects in the model.
-        look: Linearisation at the fitted point.
-        residual: Residual of all tests, in rows (n,).
-        settled: Whether the fit converged.
-        iterations: Iterations taken.
-        likelihood: -2 ln L by series (s,).
-        left: Residual above the noise floor.
-    """
-
-    chosen: tuple[Candidate, ...]
-    look: Linearisation
-    residual: np.ndarray
-    settled: bool
-    iterations: int
-    likelihood: np.ndarray
-    left: ResidualSummary
 
 
 class HeldOutComparison(NamedTuple):
@@ -248,6 +197,20 @@ def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, afte
         if now > was + MIN_MOTION_SHARE:
             return Refusal(RefusalKind.WORSE_MOTION, (was, now), dof or "", where)
     return None
+
+
+def worsening(study: Study, before: ResidualSummary, after: ResidualSummary) -> np.ndarray:
+    """How much worse a fit follows each motion than another fit does, over the smallest change that matters and noise (s,).
+
+    Motions that a test is not about have zero.
+
+    Args:
+        study: The study.
+        before: Residual of the other fit.
+        after: Residual of the fit.
+    """
+    least = np.array([max(MIN_MOTION_SHARE * one.spread, one.floor_rms) for one in study.series])
+    return np.where(study.main, (after.error - before.error) / least, 0.0)
 
 
 def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary) -> list[str]:

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hin
 import numpy as np
 
 from calibration.campaign.manifest import platform_source
-from calibration.discovery.acceptance import FitState, ResidualSummary
 from calibration.discovery.diagnosis import Rejected, Score
 from calibration.discovery.effects.candidates import Candidate
+from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.search import AcceptedEffect
 from jaxhydro import fingerprint as fingerprints
 from jaxhydro.files import staged

@@ -36,7 +36,7 @@ from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import FitState
+    from calibration.discovery.fit_state import FitState
     from calibration.discovery.linearisations import Point
     from calibration.discovery.search import Search
 

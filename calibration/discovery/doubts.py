@@ -15,7 +15,8 @@ from calibration.result import Calibration
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import FitState, Verdict
+    from calibration.discovery.acceptance import Verdict
+    from calibration.discovery.fit_state import FitState
     from calibration.discovery.search import Search
 
 MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency

@@ -8,11 +8,12 @@ from functools import cached_property
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.discovery.acceptance import FitState, HeldOutComparison, ResidualSummary, Verdict, assess_effect
+from calibration.discovery.acceptance import HeldOutComparison, Verdict, assess_effect
 from calibration.discovery.broyden_fit import MIN_RELATIVE_GAIN, FitOutcome, fit
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.expected_residuals import expected_rows
+from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.held_out_blocks import HeldOutBlocks
 from calibration.discovery.linearisations import Linearisation, Point, Prior
 from calibration.discovery.set_up import StudySetup

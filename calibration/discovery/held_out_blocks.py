@@ -11,9 +11,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from calibration.campaign.records import Record
-from calibration.discovery.acceptance import FitState, ResidualSummary
 from calibration.discovery.broyden_fit import fit
 from calibration.discovery.expected_residuals import expected_rows
+from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.gather import gather_decay_series, gather_sea, highest_frequency
 from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.study import Study

@@ -21,7 +21,7 @@ from calibration.result import TestFit
 from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import FitState
+    from calibration.discovery.fit_state import FitState
     from calibration.discovery.search import Search
 
 NORMAL_95 = 1.96  # standard deviations of a normal distribution on both sides of its mean that hold 95 %

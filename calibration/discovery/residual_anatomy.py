@@ -13,7 +13,7 @@ from calibration.discovery.diagnosis import Finding
 from calibration.formatting import number
 
 if TYPE_CHECKING:
-    from calibration.discovery.acceptance import FitState
+    from calibration.discovery.fit_state import FitState
     from calibration.discovery.search import Search
 
 MIN_RESIDUAL_OVER_NOISE = 1.3  # rms; a smaller residual is at the noise

@@ -7,18 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.discovery.acceptance import (
-    MIN_BIC_GAIN,
-    MIN_HELD_OUT_GAIN,
-    MIN_SIGNIFICANCE,
-    FitState,
-    ResidualSummary,
-    Verdict,
-)
+from calibration.discovery.acceptance import MIN_BIC_GAIN, MIN_HELD_OUT_GAIN, MIN_SIGNIFICANCE, Verdict
 from calibration.discovery.diagnosis import Rejected, Score
 from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import predict_gain, prior_residuals
+from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.refusal import Refusal
 from calibration.discovery.set_up import StudySetup
 

@@ -40,6 +40,9 @@ def describe_refusal(one: Refusal) -> str:
             what, its = (f"{one.name} is", "J of it") if one.name else ("what moves is", "J")
             tests = where if one.compared == ComparedData.ALL else f"the {where}"
             return f"{what} followed worse with it ({its} in {tests}: {values[0]:.3f} without it, {values[1]:.3f} with it)"
+        case RefusalKind.WORSE_TEST:
+            left = f"{100 * values[1]:.1f} % of the motion is left with it, {100 * values[0]:.1f} % in the declared model"
+            return f"{one.name} is followed worse with it ({left})"
         case RefusalKind.IMPROBABLE:
             said = f"{100 * values[0]:.0f} %" if values[0] >= MIN_SHOWN_PROBABILITY else "below 1 %"
             return f"improbable ({said})"

@@ -15,12 +15,13 @@ import jaxhydro as jh
 from calibration import calibrate
 from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery import checkpoint, search
-from calibration.discovery.acceptance import ResidualSummary, Verdict, abandoned_decays
+from calibration.discovery.acceptance import Verdict, abandoned_decays
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis import IMPLAUSIBLE_SIZE
 from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales
+from calibration.discovery.fit_state import ResidualSummary
 from calibration.discovery.frequency_bands import FourierRows, cut_into_bands
 from calibration.discovery.linearisations import Point, Prior
 from calibration.discovery.refusal import Refusal, RefusalKind

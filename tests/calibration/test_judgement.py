@@ -15,11 +15,11 @@ from calibration.discovery import acceptance as acceptance
 from calibration.discovery.acceptance import (
     MIN_MOTION_SHARE,
     HeldOutComparison,
-    ResidualSummary,
     Verdict,
     assess_effect,
     reason_to_reject,
     worsened_motion,
+    worsening,
 )
 from calibration.discovery.broyden_fit import fit
 from calibration.discovery.checkpoint import _packed, _rebuilt
@@ -28,11 +28,14 @@ from calibration.discovery.diagnosis_conclusion import unexplained_motions
 from calibration.discovery.doubts import doubted_effects, moving_release_notes, outdone_effects, unexplained_note
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood, symmetric_inverse
+from calibration.discovery.fit_state import ResidualSummary
 from calibration.discovery.frequency_bands import FourierRows, band_powers, cut_into_bands
 from calibration.discovery.gather import gather_sea
 from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
+from calibration.discovery.search import AcceptedEffect
+from calibration.discovery.selection.joint_search import JointSearch
 from calibration.discovery.study import Study
 from calibration.results.refusal_sentences import describe_refusal
 
@@ -275,6 +278,39 @@ def test_an_effect_with_which_its_own_motion_is_followed_worse_is_refused():
     assert refused("surge", 0.6, 0.1, 0.21) == "" and refused("heave", 0.1, 0.12, 0.1)
     assert refused(None, 0.2, 0.3, 0.1) == "" != refused(None, 0.6, 0.32, 0.1)
     assert refused(None, 0.9, 0.1, 0.01).startswith("what moves is followed worse with it (J in the held-out tests: 0.500")
+
+
+def test_what_is_followed_worse_is_counted_in_what_matters():
+    """By a share of the motion or the floor, the larger; a motion that its test is not about is left out."""
+    study = study_of(series("surge", 0.01, spread=2.0), series("surge", 0.1, noise=0.1), series("surge", 0.01))
+    found = worsening(study, left([1, 1, 1], [0.2, 0.2, 0.2]), left([1, 1, 1], [0.26, 0.3, 0.1]))
+    assert_allclose(found, [0.06 / (MIN_MOTION_SHARE * 2.0), 1.0, -0.1 / MIN_MOTION_SHARE])
+    quiet = SimpleNamespace(series=study.series, main=np.array([False, True, True]))
+    assert worsening(quiet, left([1, 1, 1], [0, 0, 0]), left([1, 1, 1], [9, 0, 0]))[0] == 0
+
+
+@pytest.mark.parametrize(("worse", "refused"), [(0.5, "drift"), (0.1, None)])
+def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refused):
+    """The one without which that test is followed best, and only where it is the reason."""
+    study = study_of(series("surge", 0.01), series("surge", 0.01))
+    verdict = Verdict(50.0, 0.5, True, 50.0, 9.0, 9.0, None)
+
+    def state(*error: float) -> SimpleNamespace:
+        return SimpleNamespace(left=left([1, 1], error))
+
+    found = {
+        name: AcceptedEffect(1.0, before, None, verdict, (), 1.0, np.zeros(2))
+        for name, before in {"memory": state(0.9, worse), "drift": state(0.9, 0.1)}.items()
+    }
+    search = SimpleNamespace(study=study, found=found)
+    JointSearch.refuse_worsening(search, state(0.9, 0.1), state(0.1, worse))
+    assert [name for name, one in search.found.items() if one.verdict.refused] == ([refused] if refused else [])
+    if refused:
+        reason = describe_refusal(search.found["drift"].verdict.refused)
+        assert (
+            reason
+            == "surge of t is followed worse with it (50.0 % of the motion is left with it, 10.0 % in the declared model)"
+        )
 
 
 def test_gain_in_waves_is_where_an_effect_acts():

@@ -226,7 +226,7 @@ def test_a_simulation_has_the_errors_of_its_diagnosis(folder: Path, tmp_path: Pa
         values = {label: study.value(label, place.x) for label in (*one.labels, *one.choices)}
         model = with_effects(setup.declared, values).with_values(values)
         after = calibration(place, model, (*damping, *values))
-        found = fake_diagnosis(baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name)
+        found = fake_diagnosis(baseline=before, augmented=after, seas=OPTIONS, campaign=campaign.manifest.name, predictions=())
         write_diagnosis(found, tmp_path / effect, figures=False)
         said = json.loads((tmp_path / effect / "diagnosis.json").read_text())["augmented"]["error"]
         used = apply_calibration(tmp_path / effect / "diagnosis.json", campaign.model, campaign.platform.name)

@@ -7,10 +7,10 @@ from itertools import count
 
 import numpy as np
 
-from calibration.discovery.acceptance import FitState
 from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
+from calibration.discovery.fit_state import FitState
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.selection.joint_selection import Variant
 from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.discovery.acceptance import MIN_LIKELIHOOD_GAIN, FitState
+from calibration.discovery.acceptance import MIN_LIKELIHOOD_GAIN, worsening
 from calibration.discovery.diagnosis import Score
 from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.fit_state import FitState
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect, Search
@@ -162,6 +163,8 @@ class JointSearch(Search):
     def verify(self, baseline: FitState, state: FitState) -> FitState:
         """Take every effect out in turn, simulate, and keep those that the records ask for.
 
+        The model that is kept follows no motion worse than the declared one, if an effect is the reason.
+
         Args:
             baseline: The fitted declared model.
             state: The last state of the search.
@@ -171,6 +174,7 @@ class JointSearch(Search):
             for i, one in zip(self.columns.present(state.chosen), state.chosen, strict=True):
                 self.say(f"verification: the model without {effect_in_words(one.name)}", END)
                 self.found[one.name] = self.evidence(baseline, state, columns, i)
+            self.refuse_worsening(baseline, state)
             refused = [one for one in state.chosen if self.found[one.name].verdict.refused]
             if not refused:
                 break
@@ -181,6 +185,25 @@ class JointSearch(Search):
             self.select(state, MAX_ROUNDS)
         self.reject_others(state)
         return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
+
+    def refuse_worsening(self, baseline: FitState, state: FitState) -> None:
+        """Refuse the effect that makes a motion of a test be followed worse than in the declared model, if there is one.
+
+        Args:
+            baseline: The fitted declared model.
+            state: The fitted model, every effect's evidence in `found`.
+        """
+        worse = worsening(self.study, baseline.left, state.left)
+        worst = int(np.argmax(worse))
+        if worse[worst] <= 1 or any(one.verdict.refused for one in self.found.values()):
+            return
+        name = min(self.found, key=lambda name: self.found[name].before.left.error[worst])
+        found, series = self.found[name], self.study.series[worst]
+        if worsening(self.study, found.before.left, state.left)[worst] <= 1:
+            return  # no single effect is the reason
+        error = [float(some.left.error[worst]) / series.spread for some in (baseline, state)]
+        refused = Refusal(RefusalKind.WORSE_TEST, tuple(error), f"{series.channel} of {series.test}")
+        self.found[name] = found._replace(verdict=found.verdict._replace(refused=refused))
 
     def evidence(self, baseline: FitState, state: FitState, columns: CandidateColumns, out: int) -> AcceptedEffect:
         """Evidence of one effect in a model: by simulation without it, and tests left out in turn in the linear model.
