@@ -16,7 +16,7 @@ from calibration.discovery.diagnosis_conclusion import conclude, unexplained_mot
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.residual_anatomy import anatomy
-from calibration.discovery.selection.joint_search import JointSearch
+from calibration.discovery.selection.verified_search import VerifiedSearch
 from calibration.discovery.set_up import set_up_study
 from calibration.fitting.progress import Progress
 from calibration.residuals.measured_seas import NO_ZERO, Options, options_of
@@ -78,9 +78,9 @@ def diagnose(
 
     say("reading the records", 0.0)
 
-    def begun_with(campaign: Campaign) -> JointSearch:
+    def begun_with(campaign: Campaign) -> VerifiedSearch:
         how = options_of(campaign) if options is None else options
-        search = JointSearch(campaign, set_up_study(campaign, how, candidates), say)
+        search = VerifiedSearch(campaign, set_up_study(campaign, how, candidates), say)
         states.extend([] if kept is None else load_checkpoint(kept, search, unusable.append))
         return search
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import pairwise
 from typing import Any
 
@@ -249,24 +249,31 @@ class Study:
 
     def linearise(self, place: Point, active: Sequence[int]) -> Linearisation:
         """Residual and slopes at a point, of the decays and of runs with a fitted test."""
-        some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
+        return self.linearise_all([(place, active)])[0]
+
+    def linearise_all(self, jobs: Sequence[tuple[Point, Sequence[int]]]) -> list[Linearisation]:
+        """Residual and slopes at several points along some directions each, side by side."""
+        found: list[Linearisation] = []
         with stoppable_threads(cores()) as pool:
-            jobs = [self._slopes(pool, place, mine) for mine in some]
-            looks = [
-                self._linearisation(place, mine, [None if job is None else job.result() for job in one])
-                for mine, one in zip(some, jobs)
-            ]
-        whole = looks[0]
-        for one in looks[1:]:
-            whole = whole.joined_with(one)
-        return whole
+            begun = [[(mine, self._slopes(pool, place, mine)) for mine in self._chunks(active)] for place, active in jobs]
+            for (place, _), chunks in zip(jobs, begun, strict=True):
+                looks = [
+                    self._linearisation(place, mine, [None if job is None else job.result() for job in parts])
+                    for mine, parts in chunks
+                ]
+                found.append(reduce(Linearisation.joined_with, looks))
+        return found
+
+    def _chunks(self, active: Sequence[int]) -> list[tuple[int, ...]]:
+        """Directions in groups that are differentiated at a time; one empty group without any."""
+        return [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
 
     def time_slopes(self, place: Point, active: Sequence[int]) -> list[np.ndarray]:
         """Slopes of the motions in time along some directions (s, t, q), of the decays and of every run in waves.
 
         The decays' have their own unknowns' after them (s, t, q + o). Slopes that overflow are zero, as in `linearise`.
         """
-        some = [tuple(active[begin : begin + self.width]) for begin in range(0, max(len(active), 1), self.width)]
+        some = self._chunks(active)
         with stoppable_threads(cores()) as pool:
             jobs = [self._slopes(pool, place, mine, "all") for mine in some]
             found = [[job.result()[1] for job in one] for one in jobs]

@@ -35,7 +35,7 @@ from calibration.discovery.held_out_blocks import BLOCKS_PER_TEST, split_record
 from calibration.discovery.linearisations import Linearisation, MotionSeries, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect
-from calibration.discovery.selection.joint_search import JointSearch
+from calibration.discovery.selection.verified_search import VerifiedSearch
 from calibration.discovery.study import Study
 from calibration.results.refusal_sentences import describe_refusal
 
@@ -303,7 +303,7 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
         for name, before in {"memory": state(0.9, worse), "drift": state(0.9, 0.1)}.items()
     }
     search = SimpleNamespace(study=study, found=found)
-    JointSearch.refuse_worsening(search, state(0.9, 0.1), state(0.1, worse))
+    VerifiedSearch.refuse_worsening(search, state(0.9, 0.1), state(0.1, worse))
     assert [name for name, one in search.found.items() if one.verdict.refused] == ([refused] if refused else [])
     if refused:
         reason = describe_refusal(search.found["drift"].verdict.refused)

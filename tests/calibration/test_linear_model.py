@@ -9,8 +9,9 @@ from scipy.integrate import dblquad
 from scipy.optimize import minimize
 
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
-from calibration.discovery.selection.joint_selection import JointSelection, Variant
-from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, OwnUnknowns
+from calibration.discovery.selection.joint_selection import JointSelection
+from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, OwnUnknowns, bounded_minimum
+from calibration.discovery.selection.subsets import Variant
 
 ROWS, POOLS = 240, 12
 
@@ -128,6 +129,42 @@ def test_effects_at_the_ends_of_their_ranges_are_taken_alone_or_not_at_all() -> 
     once = linear_model(8, {3: 0.9})
     found = selection(replace(once, upper=np.full(8, 0.6))).run()
     assert found.names(found.best) == ("effect 3",) and found.best.at_end
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_minimum_at_a_bound_is_at_it_to_the_last_digit(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    root, width = random.standard_normal((30, 6)), 10.0 ** random.uniform(-3, 3, 6)
+    matrix, slope, high = root.T @ root, 100 * random.standard_normal(6), width / 7
+    found = bounded_minimum(matrix, slope, -high, high)
+    assert (np.abs(found) == high).sum() >= 3
+    at, gradient = np.abs(found) == high, matrix @ found + slope
+    assert (gradient[at] * found[at] < 0).all() and np.abs(gradient[~at]).max(initial=0.0) < 1e-6 * np.abs(slope).max()
+
+
+def test_an_effect_that_hardly_matters_is_not_selected() -> None:
+    """However sure it is; it comes in as soon as what it takes is a large enough part of what the others leave."""
+    model = linear_model(8, {3: 6.0, 5: 1.0})
+
+    def some(share: float) -> tuple[str, ...]:
+        def matters(before: np.ndarray, after: np.ndarray) -> bool:
+            return float((after**2).sum()) < (1 - share) * float((before**2).sum())
+
+        chosen = JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), matters=matters)
+        found = chosen.run()
+        assert max(found.probability().get("effect 5", 0.0), 0.0) < 0.01 or "effect 5" in found.names(found.best)
+        return tuple(sorted(found.names(found.best)))
+
+    both, free = ("effect 3", "effect 5"), selection(model).run()
+    assert tuple(sorted(free.names(free.best))) == both == some(0.3)
+    assert some(0.8) == ("effect 3",)
+
+
+def test_only_the_named_variants_are_selected() -> None:
+    model = linear_model(8, {3: 1.0, 5: 1.0})
+    chosen = JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), among=[1, 2])
+    found = chosen.run()
+    assert found.names(found.best) == ("effect 3",) and "effect 5" not in found.probability()
 
 
 def test_a_model_that_leaves_more_than_noise_has_fewer_observations() -> None:

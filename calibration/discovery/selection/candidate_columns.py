@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import count
 
 import numpy as np
 
@@ -12,12 +11,13 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.linearisations import Linearisation
-from calibration.discovery.selection.joint_selection import Variant
 from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
+from calibration.discovery.selection.subsets import Variant
 from calibration.discovery.study import Study
 
 MAX_COEFFICIENT_STEP = 1.0  # of a logarithm in one linearisation
 MAX_NUISANCE = 3.0  # standard deviations of nearly known quantities
+CandidateValues = tuple[Candidate, Mapping[str, float]]  # a candidate at values of its shapes
 LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
 LABORATORY_LOG_ODDS, PHYSICS_LOG_ODDS = math.log(0.05), math.log(0.02)  # one effect is expected, among some forty
 
@@ -43,6 +43,11 @@ class CandidateColumns:
     directions: tuple[int, ...]
     series: np.ndarray
     look: Linearisation
+
+    @property
+    def laboratory(self) -> frozenset[int]:
+        """Variants that are mistakes of the laboratory."""
+        return frozenset(i for i, one in enumerate(self.variants) if one.name.split(" ")[0] in LABORATORY_EFFECTS)
 
     def present(self, chosen: Sequence[Candidate]) -> tuple[int, ...]:
         """Variants of the effects in the model: each effect's first."""
@@ -83,14 +88,13 @@ def candidate_columns(
             gathered.add(one, [look.active.index(i) for i in fits.study.index(one.labels)], {})
         else:
             others.append(one)
-    grids = {one.name: one.grid or ({},) for one in others}
-    for g in count():
-        if not (todo := [one for one in others if g < len(grids[one.name])]):
-            break
-        further = gathered.linearise([(one, grids[one.name][g]) for one in todo])
-        for one in todo:
-            if g < len(one.grid):
-                grids[one.name] += tuple({**one.grid[g], **shape} for shape in further.get(one.name, ()))
+    # shapes that are found from slopes are tried last, beside what has had no room before
+    every = [(one, at) for one in others for at in one.grid or ({},)]
+    passes = packed(sorted(every, key=lambda pair: pair[0].shape_finder is None), fits.study.width)
+    seeking = [some for some in passes if any(one.shape_finder is not None for one, _ in some)]
+    found = gathered.linearise(seeking)
+    later = [pair for some in passes[len(seeking) :] for pair in some]
+    gathered.linearise(packed([*found, *later], fits.study.width))
     return CandidateColumns(
         linear_model(fits, look, np.hstack(gathered.slopes), gathered.directions),
         tuple(range(len(fits.base))),
@@ -100,6 +104,27 @@ def candidate_columns(
         np.repeat(np.arange(len(fits.study.series)), fits.study.dof.shape[1]),
         look,
     )
+
+
+def packed(some: Sequence[CandidateValues], width: int) -> list[list[CandidateValues]]:
+    """Candidates at values of their shapes in as few passes as possible, in their order.
+
+    A pass has every candidate at one of its values at most, and at most so many directions.
+
+    Args:
+        some: Candidates and values.
+        width: Directions of a pass.
+    """
+    passes: list[list[CandidateValues]] = []
+    for one, at in some:
+        for there in passes:
+            room = width - sum(len(other.amplitudes) for other, _ in there)
+            if len(one.amplitudes) <= room and all(other is not one for other, _ in there):
+                there.append((one, at))
+                break
+        else:
+            passes.append([(one, at)])
+    return passes
 
 
 class _Columns:
@@ -137,29 +162,33 @@ class _Columns:
         slopes = self.look.slopes[:, [self.look.active.index(i) for i in mine]]
         self.add(one, self.append(slopes, mine), {})
 
-    def linearise(self, some: Sequence[tuple[Candidate, Mapping[str, float]]]) -> dict[str, tuple[Mapping[str, float], ...]]:
-        """Linearise along candidates at values of their shapes, all at once.
+    def linearise(self, passes: Sequence[Sequence[CandidateValues]]) -> list[CandidateValues]:
+        """Linearise along candidates at values of their shapes.
 
         Args:
-            some: Candidates and values.
+            passes: Candidates and values.
 
         Returns:
-            Further shapes to try, by name of the candidate.
+            Further values to try.
         """
-        place = self.fits.with_values(self.look.place, {k: v for _, at in some for k, v in at.items()})
-        active = self.look.active
-        free = dict.fromkeys(i for one, _ in some for i in self.study.index(one.amplitudes) if i not in active)
-        seen = self.study.linearise(place, list(free))
-        numbers = dict(zip(seen.active, self.append(seen.slopes, list(seen.active)), strict=True))
-        further: dict[str, tuple[Mapping[str, float], ...]] = {}
-        for one, at in some:
-            amplitudes = self.study.index(one.amplitudes)
-            self.add(one, [active.index(i) if i in active else numbers[i] for i in amplitudes], at)
-            if one.shape_finder is not None:
-                first = seen.slopes[:, seen.active.index(amplitudes[0])]
-                further[one.name] = tuple(one.shape_finder(self.study, self.look, first))
-            if one.phase_per_unit is not None:
-                self.add_far_shift(one, replace(self.look.joined_with(seen.restricted_to(amplitudes[:1])), place=place))
+        active, study = self.look.active, self.study
+        jobs = []
+        for some in passes:
+            place = self.fits.with_values(self.look.place, {k: v for _, at in some for k, v in at.items()})
+            free = dict.fromkeys(i for one, _ in some for i in study.index(one.amplitudes) if i not in active)
+            jobs.append((place, tuple(free)))
+        further: list[CandidateValues] = []
+        for some, seen in zip(passes, study.linearise_all(jobs), strict=True):
+            numbers = dict(zip(seen.active, self.append(seen.slopes, list(seen.active)), strict=True))
+            for one, at in some:
+                amplitudes = study.index(one.amplitudes)
+                self.add(one, [active.index(i) if i in active else numbers[i] for i in amplitudes], at)
+                if one.shape_finder is not None and at in (one.grid or ({},)):
+                    first = seen.slopes[:, seen.active.index(amplitudes[0])]
+                    further += [(one, {**at, **shape}) for shape in one.shape_finder(study, self.look, first)]
+                if one.phase_per_unit is not None:
+                    look = self.look.joined_with(seen.restricted_to(amplitudes[:1]))
+                    self.add_far_shift(one, replace(look, place=seen.place))
         return further
 
     def add_far_shift(self, one: Candidate, look: Linearisation) -> None:

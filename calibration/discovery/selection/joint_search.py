@@ -1,26 +1,28 @@
-"""Joint search: select effects on a linearised model, go there, linearise again, verify by simulation."""
+"""Joint search: select effects on a linearised model, go there, linearise again."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from calibration.campaign.load_campaign import Campaign
-from calibration.discovery.acceptance import MIN_LIKELIHOOD_GAIN, worsening
+from calibration.discovery.acceptance import (
+    MIN_BIC_GAIN,
+    MIN_HELD_OUT_SHARE,
+    MIN_LIKELIHOOD_GAIN,
+    HeldOutComparison,
+)
 from calibration.discovery.diagnosis import Score
 from calibration.discovery.effects.effect_names import effect_in_words
-from calibration.discovery.fit_state import FitState
+from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
+from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.linearisations import Linearisation
-from calibration.discovery.refusal import Refusal, RefusalKind
-from calibration.discovery.search import AcceptedEffect, Search
-from calibration.discovery.selection.candidate_columns import CandidateColumns, candidate_columns, linearise_candidates
-from calibration.discovery.selection.cross_validation import held_out_gain
-from calibration.discovery.selection.joint_selection import JointSelection, Subset
+from calibration.discovery.search import Search
+from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates
+from calibration.discovery.selection.joint_selection import JointSelection
+from calibration.discovery.selection.subsets import Subset
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed
 
-INDISTINGUISHABLE_SHARE = 0.1  # of an effect's log evidence: another that has all but this much is not told from it
-MIN_PROBABILITY = 0.5  # of an effect and those that the records cannot tell from it
 MAX_ROUNDS = 6  # linearisations along all candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
 BEGIN, END = 0.2, 0.9  # progress of the rounds
@@ -49,6 +51,9 @@ class JointSearch(Search):
     def select(self, state: FitState, number: int) -> Subset:
         """Linearise a state along all candidates, and select.
 
+        The laboratory comes first: where mistakes of it are among the effects that the declared model lacks, those alone are
+        selected, jointly. Real seas pull any law of physics to wherever it stands for them.
+
         Args:
             state: The fitted model.
             number: Number of the round.
@@ -64,12 +69,35 @@ class JointSearch(Search):
             self.say(f"{name} ({count})", self.share(number - 0.6))
 
         told(0)
-        self.selector = JointSelection(columns.model, columns.base, columns.variants, columns.series, told)
+        self.selector = self.selection(columns, told)
         present = columns.present(state.chosen)
         found = self.selector.run(present)
         self.probability = found.probability()
         self.score(self.selector.subset(present), number)
-        return found.best
+        best, laboratory = found.best, columns.laboratory
+        mine = laboratory.intersection(best.variants)
+        if state.chosen or not mine or mine == set(best.variants):
+            return best
+        return self.selection(columns, told, sorted(laboratory)).run().best
+
+    def selection(
+        self, columns: CandidateColumns, told: Callable[[int], None], among: Sequence[int] | None = None
+    ) -> JointSelection:
+        """Selection on a linear model, of effects that matter.
+
+        Args:
+            columns: The linear model.
+            told: Called with the number of subsets that were fitted.
+            among: Variants that may be selected; None: all.
+        """
+        study = self.study
+
+        def matters(before: np.ndarray, after: np.ndarray) -> bool:
+            without, with_it = (ResidualSummary.of(study, residual) for residual in (before, after))
+            share, some = HeldOutComparison(study, study.used, without, with_it, False).error_reduction()
+            return not some or share >= MIN_HELD_OUT_SHARE
+
+        return JointSelection(columns.model, columns.base, columns.variants, columns.series, told, matters, among)
 
     def score(self, subset: Subset, number: int) -> None:
         """Record the first-order gain of every candidate beside a subset, in a round."""
@@ -113,6 +141,11 @@ class JointSearch(Search):
         reached = self.fit(look, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share)
         return self.state(chosen, reached)
 
+    def as_predicted(self, state: FitState, subset: Subset) -> bool:
+        """Whether a state follows the fitted tests as the linear model said that a subset would."""
+        predicted = minus_two_log_likelihood(self.study, self.columns.model.residual_after(subset.fit))
+        return abs(float((state.likelihood - predicted)[self.study.used].sum())) < MIN_BIC_GAIN
+
     def refit_all(self, state: FitState) -> FitState:
         """Fit a state to convergence with slopes of its own, the shapes of its effects free."""
         look = self.study.linearise(state.look.place, self.active(state.chosen))
@@ -137,7 +170,9 @@ class JointSearch(Search):
             if names in visited or number == MAX_ROUNDS:
                 break
             visited.add(names)
-            state = self.fit_subset(state, self.columns, best, f"round {number}", self.share(number - 0.5))
+            before, state = state, self.fit_subset(state, self.columns, best, f"round {number}", self.share(number - 0.5))
+            if names <= {one.name for one in before.chosen} and self.as_predicted(state, best):
+                break  # effects have gone; slopes elsewhere would tell nothing else
             reach(state)
         if state.chosen:
             state = self.refit_all(state)
@@ -159,104 +194,3 @@ class JointSearch(Search):
                 found.append(self.refit(look, (one,), f"trial of {effect_in_words(one.name)}", BEGIN))
         best = self.likeliest(*found)
         return best if self.likelihood_gain(baseline, best) > MIN_LIKELIHOOD_GAIN else None
-
-    def verify(self, baseline: FitState, state: FitState) -> FitState:
-        """Take every effect out in turn, simulate, and keep those that the records ask for.
-
-        The model that is kept follows no motion worse than the declared one, if an effect is the reason.
-
-        Args:
-            baseline: The fitted declared model.
-            state: The last state of the search.
-        """
-        while state.chosen:
-            columns = candidate_columns(self, state.look, state.chosen, ())
-            for i, one in zip(self.columns.present(state.chosen), state.chosen, strict=True):
-                self.say(f"verification: the model without {effect_in_words(one.name)}", END)
-                self.found[one.name] = self.evidence(baseline, state, columns, i)
-            self.refuse_worsening(baseline, state)
-            refused = [one for one in state.chosen if self.found[one.name].verdict.refused]
-            if not refused:
-                break
-            least = min(refused, key=lambda one: self.found[one.name].verdict.worth)
-            gone = self.found.pop(least.name)
-            self.reject(least, gone.verdict.refused, gone.verdict)
-            state = self.refit_all(gone.before) if len(state.chosen) > 1 else baseline
-            self.select(state, MAX_ROUNDS)
-        self.reject_others(state)
-        return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
-
-    def refuse_worsening(self, baseline: FitState, state: FitState) -> None:
-        """Refuse the effect that makes a motion of a test be followed worse than in the declared model, if there is one.
-
-        Args:
-            baseline: The fitted declared model.
-            state: The fitted model, every effect's evidence in `found`.
-        """
-        worse = worsening(self.study, baseline.left, state.left)
-        worst = int(np.argmax(worse))
-        if worse[worst] <= 1 or any(one.verdict.refused for one in self.found.values()):
-            return
-        name = min(self.found, key=lambda name: self.found[name].before.left.error[worst])
-        found, series = self.found[name], self.study.series[worst]
-        if worsening(self.study, found.before.left, state.left)[worst] <= 1:
-            return  # no single effect is the reason
-        error = [float(some.left.error[worst]) / series.spread for some in (baseline, state)]
-        refused = Refusal(RefusalKind.WORSE_TEST, tuple(error), f"{series.channel} of {series.test}")
-        self.found[name] = found._replace(verdict=found.verdict._replace(refused=refused))
-
-    def evidence(self, baseline: FitState, state: FitState, columns: CandidateColumns, out: int) -> AcceptedEffect:
-        """Evidence of one effect in a model: by simulation without it, and tests left out in turn in the linear model.
-
-        Args:
-            baseline: The fitted declared model.
-            state: The fitted model.
-            columns: Linear model of its effects alone, at the fitted point.
-            out: Variant of the effect in the last selection.
-        """
-        one = self.candidates[self.columns.variants[out].name]
-        last = JointSelection(columns.model, columns.base, columns.variants, columns.series)
-        whole = last.subset(range(len(state.chosen)))
-        rest = last.subset([i for i in whole.variants if columns.variants[i].name != one.name], whole)
-        held = held_out_gain(columns.model, whole.fit, rest.fit, self.test_of_pool)
-        without = self.fit_subset(state, columns, rest, "verification", END) if rest.variants else baseline
-        verdict = self.assess(without, state, one, last=True)
-        gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
-        alike = self.look_alikes(self.selector.subset(self.columns.present(state.chosen)), out)
-        probability = self.probability.get(one.name, 0.0)
-        if verdict.refused is None and probability + sum(self.probability.get(name, 0.0) for name in alike) < MIN_PROBABILITY:
-            verdict = verdict._replace(refused=Refusal(RefusalKind.IMPROBABLE, (probability,)))
-        return AcceptedEffect(max(gains, default=0.0), without, state, verdict, alike, probability, held)
-
-    @property
-    def test_of_pool(self) -> np.ndarray:
-        """Number of the test of every pool (p,)."""
-        tests = list(dict.fromkeys(one.test for one in self.study.series))
-        return np.repeat([tests.index(one.test) for one in self.study.series], self.study.dof.shape[1])
-
-    def look_alikes(self, whole: Subset, out: int) -> tuple[str, ...]:
-        """Effects that would do nearly as well in the place of one of a subset.
-
-        Args:
-            whole: The subset.
-            out: Variant of the effect that is exchanged.
-        """
-        rest = self.selector.subset([i for i in whole.variants if i != out], whole)
-        mine = self.columns.variants[out].name
-        best: dict[str, float] = {}
-        for i in self.selector.additions(rest):
-            name = self.columns.variants[i].name
-            other = self.selector.fitted.get(tuple(sorted((*rest.variants, i))))
-            if name != mine and other is not None and other.plausible:
-                best[name] = max(best.get(name, -np.inf), other.evidence)
-        asked = whole.evidence - INDISTINGUISHABLE_SHARE * (whole.evidence - rest.evidence)
-        return tuple(name for name, evidence in best.items() if evidence > asked)
-
-    def reject_others(self, state: FitState) -> None:
-        """Record why the other candidates are not in the model: their probability is low."""
-        present = {one.name for one in state.chosen}
-        for one in self.setup.candidates:
-            if one.name not in present and one.name not in self.rejected:
-                self.reject(one, Refusal(RefusalKind.IMPROBABLE, (self.probability.get(one.name, 0.0),)))
-        for name in present:
-            self.rejected.pop(name, None)

@@ -225,4 +225,5 @@ def bounded_minimum(matrix: np.ndarray, slope: np.ndarray, low: np.ndarray, high
     root = roots[:, None] * directions.T
     target = -(directions.T @ (scale * slope)) / roots
     found = lsq_linear(root, target, (low / scale, high / scale), method="bvls", tol=1e-12)
-    return np.clip(scale * found.x, low, high)
+    inside = np.clip(scale * found.x, low, high)
+    return np.where(found.active_mask > 0, high, np.where(found.active_mask < 0, low, inside))

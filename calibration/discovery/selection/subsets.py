@@ -1,0 +1,111 @@
+"""Subsets of candidate effects and their posterior probabilities.
+
+A linear model with the wrong noise is too sure. So the posterior is averaged over resampled series of the records (bagged
+posterior). Each series' -2 ln L at the fitted point is resampled; nothing is fitted again.
+
+References:
+    Kass and Raftery 1995, Journal of the American Statistical Association 90, 773-795: strength of evidence.
+    Huggins and Miller 2023, Bayesian Analysis 18, 79-104: reproducible model selection with bagged posteriors.
+    Kishino, Miyata and Hasegawa 1990, Journal of Molecular Evolution 31, 151-160: resampled estimated log-likelihoods.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.discovery.selection.linear_model import LinearFit
+
+STRONG_EVIDENCE = 3.0  # logarithm of a Bayes factor (Kass and Raftery 1995)
+RESAMPLES = 400  # resamplings of the series
+MIN_SERIES = 8  # series that are resampled; of fewer, their pools of bands are
+SEED = 7
+
+
+class Variant(NamedTuple):
+    """A candidate effect at some values of its shapes.
+
+    Attributes:
+        name: Name of the candidate.
+        columns: Its columns of the linear model.
+        log_odds: Logarithm of its prior odds.
+    """
+
+    name: str
+    columns: tuple[int, ...]
+    log_odds: float
+
+
+@dataclass(frozen=True)
+class Subset:
+    """Some effects with their fit.
+
+    Attributes:
+        variants: Numbers of the variants.
+        fit: Their fit, with the base columns.
+        evidence: Logarithm of evidence times prior.
+        at_end: Whether an effect is at the end of its plausible range.
+    """
+
+    variants: tuple[int, ...]
+    fit: LinearFit
+    evidence: float
+    at_end: bool
+
+    @property
+    def plausible(self) -> bool:
+        """Whether no effect is at the end of its plausible range beside others."""
+        return not self.at_end or len(self.variants) < 2
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Posterior over subsets of effects.
+
+    Attributes:
+        subsets: Subsets, the most probable first.
+        variants: The variants.
+        weights: Bagged posterior probability of every subset.
+    """
+
+    subsets: tuple[Subset, ...]
+    variants: tuple[Variant, ...]
+    weights: np.ndarray
+
+    @property
+    def best(self) -> Subset:
+        """The subset with the fewest parameters, of those whose evidence is not far below the highest."""
+        near = [one for one in self.subsets if one.evidence > self.subsets[0].evidence - STRONG_EVIDENCE]
+        return min(near, key=lambda one: (len(one.fit.columns), -one.evidence))
+
+    def names(self, subset: Subset) -> tuple[str, ...]:
+        """Names of a subset's effects."""
+        return tuple(self.variants[i].name for i in subset.variants)
+
+    def probability(self) -> dict[str, float]:
+        """Posterior probability of every effect that is in any subset."""
+        found: dict[str, float] = {}
+        for subset, weight in zip(self.subsets, self.weights, strict=True):
+            for name in self.names(subset):
+                found[name] = found.get(name, 0.0) + float(weight)
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def bagged_posterior(subsets: Sequence[Subset], series: np.ndarray, used: np.ndarray) -> np.ndarray:
+    """Posterior probability of subsets, averaged over resampled series; over resampled pools where series are few.
+
+    Args:
+        subsets: The subsets.
+        series: Series of every pool (p,).
+        used: Which pools count (p,).
+    """
+    few = len(np.unique(series[used])) < MIN_SERIES
+    unit = np.arange(len(series)) if few else series
+    mine = np.unique(unit[used])
+    deviance = np.array([np.bincount(unit, one.fit.deviance, unit.max() + 1)[mine] for one in subsets])
+    constant = np.array([one.evidence for one in subsets]) + 0.5 * deviance.sum(axis=1)
+    count = np.random.default_rng(SEED).multinomial(len(mine), np.full(len(mine), 1 / len(mine)), RESAMPLES)
+    log = constant[:, None] - 0.5 * deviance @ count.T
+    weight = np.exp(log - log.max(axis=0))
+    return (weight / weight.sum(axis=0)).mean(axis=1)

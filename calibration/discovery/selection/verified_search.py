@@ -1,0 +1,124 @@
+"""Verification of a joint search by simulation: every effect is taken out in turn."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from calibration.discovery.acceptance import worsening
+from calibration.discovery.effects.effect_names import effect_in_words
+from calibration.discovery.fit_state import FitState
+from calibration.discovery.refusal import Refusal, RefusalKind
+from calibration.discovery.search import AcceptedEffect
+from calibration.discovery.selection.candidate_columns import CandidateColumns, candidate_columns
+from calibration.discovery.selection.cross_validation import held_out_gain
+from calibration.discovery.selection.joint_search import END, MAX_ROUNDS, JointSearch
+from calibration.discovery.selection.joint_selection import JointSelection
+from calibration.discovery.selection.subsets import Subset
+
+INDISTINGUISHABLE_SHARE = 0.1  # of an effect's log evidence: another that has all but this much is not told from it
+MIN_PROBABILITY = 0.5  # of an effect and those that the records cannot tell from it
+
+
+class VerifiedSearch(JointSearch):
+    """Joint search whose effects are verified by simulation."""
+
+    def verify(self, baseline: FitState, state: FitState) -> FitState:
+        """Take every effect out in turn, simulate, and keep those that the records ask for.
+
+        The model that is kept follows no motion worse than the declared one, if an effect is the reason.
+
+        Args:
+            baseline: The fitted declared model.
+            state: The last state of the search.
+        """
+        while state.chosen:
+            columns = candidate_columns(self, state.look, state.chosen, ())
+            for i, one in zip(self.columns.present(state.chosen), state.chosen, strict=True):
+                self.say(f"verification: the model without {effect_in_words(one.name)}", END)
+                self.found[one.name] = self.evidence(baseline, state, columns, i)
+            self.refuse_worsening(baseline, state)
+            refused = [one for one in state.chosen if self.found[one.name].verdict.refused]
+            if not refused:
+                break
+            least = min(refused, key=lambda one: self.found[one.name].verdict.worth)
+            gone = self.found.pop(least.name)
+            self.reject(least, gone.verdict.refused, gone.verdict)
+            state = self.refit_all(gone.before) if len(state.chosen) > 1 else baseline
+            self.select(state, MAX_ROUNDS)
+        self.reject_others(state)
+        return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
+
+    def refuse_worsening(self, baseline: FitState, state: FitState) -> None:
+        """Refuse the effect that makes a motion of a test be followed worse than in the declared model, if there is one.
+
+        Args:
+            baseline: The fitted declared model.
+            state: The fitted model, every effect's evidence in `found`.
+        """
+        worse = worsening(self.study, baseline.left, state.left)
+        worst = int(np.argmax(worse))
+        if worse[worst] <= 1 or any(one.verdict.refused for one in self.found.values()):
+            return
+        name = min(self.found, key=lambda name: self.found[name].before.left.error[worst])
+        found, series = self.found[name], self.study.series[worst]
+        if worsening(self.study, found.before.left, state.left)[worst] <= 1:
+            return  # no single effect is the reason
+        error = [float(some.left.error[worst]) / series.spread for some in (baseline, state)]
+        refused = Refusal(RefusalKind.WORSE_TEST, tuple(error), f"{series.channel} of {series.test}")
+        self.found[name] = found._replace(verdict=found.verdict._replace(refused=refused))
+
+    def evidence(self, baseline: FitState, state: FitState, columns: CandidateColumns, out: int) -> AcceptedEffect:
+        """Evidence of one effect in a model: by simulation without it, and tests left out in turn in the linear model.
+
+        Args:
+            baseline: The fitted declared model.
+            state: The fitted model.
+            columns: Linear model of its effects alone, at the fitted point.
+            out: Variant of the effect in the last selection.
+        """
+        one = self.candidates[self.columns.variants[out].name]
+        last = JointSelection(columns.model, columns.base, columns.variants, columns.series)
+        whole = last.subset(range(len(state.chosen)))
+        rest = last.subset([i for i in whole.variants if columns.variants[i].name != one.name], whole)
+        held = held_out_gain(columns.model, whole.fit, rest.fit, self.test_of_pool)
+        without = self.fit_subset(state, columns, rest, "verification", END) if rest.variants else baseline
+        verdict = self.assess(without, state, one, last=True)
+        gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
+        alike = self.look_alikes(self.selector.subset(self.columns.present(state.chosen)), out)
+        probability = self.probability.get(one.name, 0.0)
+        if verdict.refused is None and probability + sum(self.probability.get(name, 0.0) for name in alike) < MIN_PROBABILITY:
+            verdict = verdict._replace(refused=Refusal(RefusalKind.IMPROBABLE, (probability,)))
+        return AcceptedEffect(max(gains, default=0.0), without, state, verdict, alike, probability, held)
+
+    @property
+    def test_of_pool(self) -> np.ndarray:
+        """Number of the test of every pool (p,)."""
+        tests = list(dict.fromkeys(one.test for one in self.study.series))
+        return np.repeat([tests.index(one.test) for one in self.study.series], self.study.dof.shape[1])
+
+    def look_alikes(self, whole: Subset, out: int) -> tuple[str, ...]:
+        """Effects that would do nearly as well in the place of one of a subset.
+
+        Args:
+            whole: The subset.
+            out: Variant of the effect that is exchanged.
+        """
+        rest = self.selector.subset([i for i in whole.variants if i != out], whole)
+        mine = self.columns.variants[out].name
+        best: dict[str, float] = {}
+        for i in self.selector.additions(rest):
+            name = self.columns.variants[i].name
+            other = self.selector.fitted.get(tuple(sorted((*rest.variants, i))))
+            if name != mine and other is not None and other.plausible:
+                best[name] = max(best.get(name, -np.inf), other.evidence)
+        asked = whole.evidence - INDISTINGUISHABLE_SHARE * (whole.evidence - rest.evidence)
+        return tuple(name for name, evidence in best.items() if evidence > asked)
+
+    def reject_others(self, state: FitState) -> None:
+        """Record why the other candidates are not in the model: their probability is low."""
+        present = {one.name for one in state.chosen}
+        for one in self.setup.candidates:
+            if one.name not in present and one.name not in self.rejected:
+                self.reject(one, Refusal(RefusalKind.IMPROBABLE, (self.probability.get(one.name, 0.0),)))
+        for name in present:
+            self.rejected.pop(name, None)
