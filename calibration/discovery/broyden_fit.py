@@ -20,6 +20,7 @@ from jaxhydro.interrupts import stop_if_asked
 
 MAX_LOG_STEP = 0.7  # largest step of a logarithmic coordinate
 MIN_RELATIVE_GAIN = 1e-4  # of the cost: a step that gains less ends the fit, whatever the number of samples
+STEP_PARTS = (1.0, 0.5, 0.25, 0.125)  # of a long step, that are tried in turn
 MIN_PREDICTED_SHARE = 0.25  # of the predicted gain: slopes that give less are outdated
 
 
@@ -87,6 +88,39 @@ def bounded_step(
         rest = replace(rest, residual=look.residual + look.slopes[:, held] @ kept[held])
         kept[~held], own = damped_step(study, rest, used, prior, damping)
     return np.clip(kept, low, high), own
+
+
+def far_step(
+    study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own: np.ndarray
+) -> Linearisation:
+    """The linearisation after a long step, or after the longest part of it that gains what slopes predict for it.
+
+    A damped step is short along every direction if one of them leads astray. This one keeps its proportions.
+
+    Args:
+        study: The study.
+        look: Linearisation where the step begins.
+        used: Which series (s,) are fitted.
+        prior: Priors of the directions.
+        step: Step along the active directions (q,).
+        own: Step of the decays' own unknowns (r, o).
+
+    Returns:
+        The linearisation there, its slopes updated; the one given where no part gains.
+    """
+    directions = study.directions[list(look.active)]
+    now = cost_of(study, look, look.residual, look.place, used, prior)
+    for part in STEP_PARTS:
+        stop_if_asked()
+        some, mine = part * step, part * own
+        there = look.place.moved(directions, some, mine)
+        residual = study.residual(there)
+        if has_diverged(residual):
+            continue
+        expected = now - cost_of(study, look, linear_residual(study, look, some, mine), there, used, prior)
+        if now - cost_of(study, look, residual, there, used, prior) > MIN_PREDICTED_SHARE * max(expected, 0.0):
+            return broyden_update(study, look, there, residual, some, mine)
+    return look
 
 
 def has_diverged(residual: np.ndarray) -> bool:

@@ -131,6 +131,7 @@ def set_up_study(
     taken = set(declared.values) - (requested_table_labels(declared) - set(labels)) - zero_terms(declared, labels)
     candidates = [one for one in candidates if not set(one.amplitudes) & taken]
     scaled = {label: one for label, one in scaled.items() if label not in taken}
+    units = {label: one for label, one in units.items() if label not in taken}
     base_space = space_of(campaign, labels, declared)
     nuisances: dict[str, tuple[dict[str, float], float]] = {}  # name -> parameters and how they go together, deviation
     free: list[FreeParameter] = [*base_space.free]

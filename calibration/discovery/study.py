@@ -247,15 +247,15 @@ class Study:
         parts = self.motions(place, seas)
         return np.concatenate([np.zeros(2 * len(cut.take)) if one is None else cut(one) for cut, one in zip(self.cuts, parts)])
 
-    def linearise(self, place: Point, active: Sequence[int]) -> Linearisation:
-        """Residual and slopes at a point, of the decays and of runs with a fitted test."""
-        return self.linearise_all([(place, active)])[0]
+    def linearise(self, place: Point, active: Sequence[int], seas: SeaSelection = "fit") -> Linearisation:
+        """Residual and slopes at a point, of the decays and of runs with a fitted test, or of all runs."""
+        return self.linearise_all([(place, active)], seas)[0]
 
-    def linearise_all(self, jobs: Sequence[tuple[Point, Sequence[int]]]) -> list[Linearisation]:
+    def linearise_all(self, jobs: Sequence[tuple[Point, Sequence[int]]], seas: SeaSelection = "fit") -> list[Linearisation]:
         """Residual and slopes at several points along some directions each, side by side."""
         found: list[Linearisation] = []
         with stoppable_threads(cores()) as pool:
-            begun = [[(mine, self._slopes(pool, place, mine)) for mine in self._chunks(active)] for place, active in jobs]
+            begun = [[(mine, self._slopes(pool, place, mine, seas)) for mine in self._chunks(active)] for place, active in jobs]
             for (place, _), chunks in zip(jobs, begun, strict=True):
                 looks = [
                     self._linearisation(place, mine, [None if job is None else job.result() for job in parts])

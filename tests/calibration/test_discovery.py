@@ -127,9 +127,11 @@ def test_an_effect_of_the_platform_file_is_no_candidate(tmp_path):
 
 
 def test_a_term_that_is_declared_zero_is_a_candidate(tmp_path):
-    """And one that is declared and fitted is none."""
+    """And one that is declared and fitted is none: a unit of its direction is a unit of its logarithm."""
     campaign = campaign_of(tmp_path, lambda x, v: 0.0)
-    assert "linear_damping (roll)" not in {one.name for one in set_up_study(campaign, Options()).candidates}
+    setup = set_up_study(campaign, Options())
+    assert "linear_damping (roll)" not in {one.name for one in setup.candidates}
+    assert (np.abs(setup.study.directions[setup.study.index(setup.base)]).max(axis=1) == 1.0).all()
     for change in ({"linear_damping": {"B44": 0.0}}, {"linear_damping": {}}):
         with (tmp_path / "platform.yaml").open("w") as file:
             YAML().dump(PLATFORM | change, file)

@@ -9,7 +9,7 @@ from scipy.integrate import dblquad
 from scipy.optimize import minimize
 
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
-from calibration.discovery.selection.joint_selection import JointSelection
+from calibration.discovery.selection.joint_selection import MAX_EFFECTS, JointSelection
 from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, OwnUnknowns, bounded_minimum
 from calibration.discovery.selection.subsets import Variant
 
@@ -158,6 +158,13 @@ def test_an_effect_that_hardly_matters_is_not_selected() -> None:
     both, free = ("effect 3", "effect 5"), selection(model).run()
     assert tuple(sorted(free.names(free.best))) == both == some(0.3)
     assert some(0.8) == ("effect 3",)
+
+
+def test_a_set_has_no_more_effects_than_anybody_can_test() -> None:
+    """The largest of eleven, each of them sure."""
+    found = selection(linear_model(16, {i: 1.0 + 0.2 * i for i in range(4, 15)})).run()
+    assert set(found.best.variants) == {i - 2 for i in range(7, 15)} and len(found.best.variants) == MAX_EFFECTS
+    assert all(len(one.variants) <= MAX_EFFECTS for one in found.subsets)
 
 
 def test_only_the_named_variants_are_selected() -> None:

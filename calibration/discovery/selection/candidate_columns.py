@@ -258,3 +258,13 @@ def own_unknowns(study: Study, look: Linearisation) -> tuple[OwnUnknowns, ...]:
         if fitted and there.any():
             found.append(OwnUnknowns(rows, look.own[rows][:, there], study.own_width[i][there], look.place.own[i][there]))
     return tuple(found)
+
+
+def step_of_decays(study: Study, look: Linearisation, own: Sequence[np.ndarray]) -> np.ndarray:
+    """Steps of all decays' own unknowns (r, o), from those of a fit."""
+    found, parts = np.zeros_like(look.place.own), iter(own)
+    for i, (rows, fitted) in enumerate(zip(study.spans, study.fitted_decays, strict=True)):
+        there = look.own[rows].any(axis=0)
+        if fitted and there.any():
+            found[i, there] = next(parts)
+    return found

@@ -11,13 +11,14 @@ from calibration.discovery.acceptance import (
     MIN_LIKELIHOOD_GAIN,
     HeldOutComparison,
 )
+from calibration.discovery.broyden_fit import far_step
 from calibration.discovery.diagnosis import Score
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.search import Search
-from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates
+from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates, step_of_decays
 from calibration.discovery.selection.joint_selection import JointSelection
 from calibration.discovery.selection.subsets import Subset
 from calibration.discovery.set_up import StudySetup
@@ -137,6 +138,10 @@ class JointSearch(Search):
             residual = self.study.residual(place) if gone else columns.look.residual
             slopes = columns.model.slopes[:, mine]
             look = Linearisation(place, directions, residual, slopes, columns.look.own)
+            moved = np.array(columns.directions)[list(subset.fit.columns)]  # nearly known properties have two columns
+            step = np.array([subset.fit.step[moved == i].sum() for i in directions])
+            own = step_of_decays(self.study, columns.look, subset.fit.own)
+            look = far_step(self.study, look, self.study.used, self.prior(chosen), step, own)
         names = listed([effect_in_words(one.name) for one in chosen]) or "no effect"
         reached = self.fit(look, chosen, STEP_ITERATIONS, 0, f"{stage}: fit with {names}", share)
         return self.state(chosen, reached)

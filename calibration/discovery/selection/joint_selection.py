@@ -29,7 +29,7 @@ EXPANDED_SUBSETS = 5  # best subsets whose neighbours are all tried
 MAX_SUBSETS = 400  # subsets that are fitted
 MAX_ADDITIONS = 8  # effects added to a subset in turn, those with the largest gain of one linear step
 MAX_EXCHANGES = 3  # effects tried in the place of each effect of a subset
-MAX_GROWN = 12  # effects of the subset that tells how much the best model leaves
+MAX_EFFECTS = 8  # of a subset: nobody can test more one by one
 MIN_LOG_POSTERIOR = -30.0  # of a subset, over the best: less is no part of the answer
 EXPLAINED_ROUNDING = 1e-9  # of a column's square: what other columns leave of it is rounding
 MIN_DISCREPANCY = 1.2  # a smaller one may be noise by chance
@@ -136,7 +136,8 @@ class JointSelection:
 
     def neighbours(self, subset: Subset) -> list[Subset]:
         """Subsets with one effect more, one less, or one exchanged."""
-        found = [self.subset([*subset.variants, i], subset) for i in self.additions(subset)[:MAX_ADDITIONS]]
+        more = self.additions(subset)[:MAX_ADDITIONS] if len(subset.variants) < MAX_EFFECTS else []
+        found = [self.subset([*subset.variants, i], subset) for i in more]
         for i in subset.variants:
             found.append(rest := self.without(subset, i))
             others = [j for j in self.additions(rest) if j != i][:MAX_EXCHANGES]
@@ -169,12 +170,13 @@ class JointSelection:
 
     def grown(self, subset: Subset) -> Subset:
         """A subset to which effects are added one by one as long as the evidence grows."""
-        while True:
+        while len(subset.variants) < MAX_EFFECTS:
             trials = [self.subset([*subset.variants, i], subset) for i in self.additions(subset)[:MAX_ADDITIONS]]
             better = [one for one in trials if one.evidence > subset.evidence and self.takes_part(one)]
-            if not better or len(subset.variants) >= MAX_GROWN:
-                return subset
+            if not better:
+                break
             subset = max(better, key=lambda one: one.evidence)
+        return subset
 
     def temper(self, best: Subset) -> None:
         """Temper the likelihood by what a subset leaves above the noise."""

@@ -11,7 +11,8 @@ from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect
 from calibration.discovery.selection.candidate_columns import CandidateColumns, candidate_columns
 from calibration.discovery.selection.cross_validation import held_out_gain
-from calibration.discovery.selection.joint_search import END, MAX_ROUNDS, JointSearch
+from calibration.discovery.selection.held_out_prediction import superfluous_effects
+from calibration.discovery.selection.joint_search import END, JointSearch
 from calibration.discovery.selection.joint_selection import JointSelection
 from calibration.discovery.selection.subsets import Subset
 
@@ -31,6 +32,7 @@ class VerifiedSearch(JointSearch):
             baseline: The fitted declared model.
             state: The last state of the search.
         """
+        state = self.without_superfluous(baseline, state)
         while state.chosen:
             columns = candidate_columns(self, state.look, state.chosen, ())
             for i, one in zip(self.columns.present(state.chosen), state.chosen, strict=True):
@@ -44,9 +46,31 @@ class VerifiedSearch(JointSearch):
             gone = self.found.pop(least.name)
             self.reject(least, gone.verdict.refused, gone.verdict)
             state = self.refit_all(gone.before) if len(state.chosen) > 1 else baseline
-            self.select(state, MAX_ROUNDS)
         self.reject_others(state)
         return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
+
+    def without_superfluous(self, baseline: FitState, state: FitState) -> FitState:
+        """A state without the effects that held-out tests, as the linear model predicts them, do not ask for.
+
+        Args:
+            baseline: The fitted declared model.
+            state: The last state of the search.
+        """
+        study = self.study
+        if not state.chosen or study.used.all():
+            return state
+        self.say("verification: held-out tests as the linear model predicts them", END)
+        look = study.linearise(state.look.place, self.active(state.chosen), "all")
+        columns = candidate_columns(self, look, state.chosen, ())
+        selection = JointSelection(columns.model, columns.base, columns.variants, columns.series)
+        subset, reasons = superfluous_effects(study, look, selection, range(len(state.chosen)))
+        for i, why in reasons.items():
+            self.reject(self.candidates[columns.variants[i].name], why)
+        if not reasons:
+            return state
+        if not subset.variants:
+            return baseline
+        return self.refit_all(self.fit_subset(state, columns, subset, "verification", END))
 
     def refuse_worsening(self, baseline: FitState, state: FitState) -> None:
         """Refuse the effect that makes a motion of a test be followed worse than in the declared model, if there is one.

@@ -1,0 +1,84 @@
+"""Held-out tests as a linear model predicts them: which effects they do not ask for, before anything is simulated."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from calibration.discovery.acceptance import MIN_HELD_OUT_GAIN, MIN_HELD_OUT_SHARE, HeldOutComparison
+from calibration.discovery.eliminated_least_squares import row_weights
+from calibration.discovery.fit_state import ResidualSummary
+from calibration.discovery.linearisations import Linearisation
+from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
+from calibration.discovery.selection.joint_selection import JointSelection
+from calibration.discovery.selection.subsets import Subset
+from calibration.discovery.study import Study
+
+REWEIGHTINGS = 3  # fits of a held-out decay's own unknowns
+
+
+def predicted_summary(study: Study, look: Linearisation, residual: np.ndarray) -> ResidualSummary:
+    """What a residual leaves, with held-out decays' own unknowns fitted to them.
+
+    Args:
+        study: The study.
+        look: Linearisation of all tests.
+        residual: Residual that the linear model predicts (n,).
+    """
+    residual = residual.copy()
+    for i, (rows, fitted) in enumerate(zip(study.spans, study.fitted_decays, strict=True)):
+        there = look.own[rows].any(axis=0)
+        if fitted or not there.any():
+            continue
+        slopes, prior = look.own[rows][:, there], np.diag(1 / study.own_width[i][there] ** 2)
+        before, value = residual[rows].copy(), look.place.own[i][there]
+        for _ in range(REWEIGHTINGS):
+            weighted = row_weights(study, residual)[rows, None] * slopes
+            own = np.linalg.solve(weighted.T @ slopes + prior, -(weighted.T @ before + prior @ value))
+            residual[rows] = before + slopes @ own
+    return ResidualSummary.of(study, residual)
+
+
+def refusal_by_prediction(study: Study, without: ResidualSummary, with_it: ResidualSummary) -> Refusal | None:
+    """Why held-out tests, as predicted, do not ask for an effect; None where they do, or tell nothing.
+
+    Args:
+        study: The study.
+        without: What the fit without the effect leaves.
+        with_it: What the fit with it leaves.
+    """
+    compared = HeldOutComparison(study, ~study.used, without, with_it, True)
+    share, told = compared.error_reduction()
+    if told and share < MIN_HELD_OUT_SHARE:
+        return Refusal(RefusalKind.HELD_OUT_ERROR, (share,), compared=ComparedData.HELD_OUT)
+    if told and compared.likelihood_gain < MIN_HELD_OUT_GAIN:
+        return Refusal(RefusalKind.HELD_OUT_LIKELIHOOD, (compared.likelihood_gain,), compared=ComparedData.HELD_OUT)
+    return None
+
+
+def superfluous_effects(
+    study: Study, look: Linearisation, selection: JointSelection, present: Sequence[int]
+) -> tuple[Subset, dict[int, Refusal]]:
+    """The effects that held-out tests ask for, as the linear model predicts them, and why others are left out.
+
+    Of those that they do not ask for, the one without which they are followed best goes first; the others are judged anew.
+
+    Args:
+        study: The study.
+        look: Linearisation of all tests.
+        selection: Subsets on the linear model.
+        present: Variants of the effects in the model.
+    """
+    subset, reasons = selection.subset(present), {}
+    while subset.variants:
+        with_it = predicted_summary(study, look, selection.model.residual_after(subset.fit))
+        refused = {}
+        for i in subset.variants:
+            rest = selection.without(subset, i)
+            without = predicted_summary(study, look, selection.model.residual_after(rest.fit))
+            if (why := refusal_by_prediction(study, without, with_it)) is not None:
+                refused[i] = float(without.likelihood.sum()), why, rest
+        if not refused:
+            break
+        least = min(refused, key=lambda i: refused[i][0])
+        _, reasons[least], subset = refused[least]
+    return subset, reasons
