@@ -25,6 +25,7 @@ from benchmarks.evidence import (
     common,
     coverage,
     diagnoses,
+    focal_laboratory,
     global_search,
     hulls,
     identified,
@@ -53,6 +54,7 @@ SECTIONS = (
     "openfast_waves",
     "measured",
     "measured_waves",
+    "focal_laboratory",
     "tuned_seas",
     "classical_bias",
     "starts",
@@ -92,6 +94,8 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return tuned_seas.run(figures, options.processes)
     if name == "numerical_tank":
         return numerical_tank.run(figures, options.processes)
+    if name == "focal_laboratory":
+        return focal_laboratory.run()
     if name == "lacking":
         return lacking.run(figures, options.processes)
     if name == "diagnoses":

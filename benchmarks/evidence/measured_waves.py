@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.evidence.common import SHARED, TRUE, Absent, Section, cached, fingerprint, keep, parallel, say
+from benchmarks.evidence.focal_potential_flow import interpolated, linear_motions
 from benchmarks.evidence.measured_waves_text import (
     AT,
     CASES,
@@ -135,39 +136,11 @@ def spectra(test: Any) -> dict[str, Any]:
 
 def potential() -> dict[str, list[list[float]]]:
     """Amplitude (m, deg per m) and phase (deg) at AT of linear motions by WAMIT, with campaign 2's mass and mooring."""
-    import jax.numpy as jnp
-
-    from jaxhydro.dynamics.statics import equilibrium, linearised
-    from jaxhydro.platform.build import load_model
-    from jaxhydro.waves.dispersion import wavenumber
-
-    model = load_model(FOLDER / "focal-c2" / "platform.yaml")
-    water, body = model.environment, np.asarray(model.body.mass_matrix())
-    rest = np.asarray(equilibrium(model))
-    stiffness = np.asarray(linearised(model, jnp.asarray(rest))[1])
-    added: dict[float, np.ndarray] = {}
-    forces: dict[float, np.ndarray] = {}
-    for line in (FOLDER / "focal-c4" / "wamit" / "semi.1").read_text().splitlines():
-        row = [float(cell) for cell in line.split()]
-        if row[0] > 0:  # zero and infinite frequency are told by a period that is not
-            i, j, omega = int(row[1]) - 1, int(row[2]) - 1, 2 * np.pi / row[0]
-            entry = added.setdefault(row[0], np.zeros((6, 6), complex))
-            entry[i, j] = water.density * (-(omega**2) * row[3] + 1j * omega**2 * row[4])
-    for row in np.loadtxt(FOLDER / "focal-c4" / "wamit" / "semi.3"):
-        if abs(row[1]) < 1e-6:
-            force = forces.setdefault(row[0], np.zeros(6, complex))
-            force[int(row[2]) - 1] = float(water.density * water.gravity) * (row[5] + 1j * row[6])
-    periods = sorted(set(added) & set(forces), reverse=True)
-    motions = []
-    for period in periods:
-        omega = 2 * np.pi / period
-        impedance = added[period] - omega**2 * body + 1j * omega * np.diag(DAMPED) + stiffness
-        k = float(wavenumber(jnp.asarray(omega), water.depth, water.gravity))
-        motions.append(np.linalg.solve(impedance, forces[period]) * np.exp(-1j * k * rest[0]))  # it rests behind the gauge
+    frequency, motions = linear_motions(DAMPED)
     found: dict[str, list[list[float]]] = {}
-    shown = {name: np.array([m[dof] for m in motions]) for name, dof in zip(MOTIONS, (0, 2, 4))}
+    shown = {name: motions[:, dof] for name, dof in zip(MOTIONS, (0, 2, 4))}
     for name, values in {**shown, "keel": shown["surge"] + KEEL * shown["pitch"]}.items():
-        at = np.interp(AT, 1 / np.array(periods), values.real) + 1j * np.interp(AT, 1 / np.array(periods), values.imag)
+        at = interpolated(frequency, values, AT)
         scale = 180 / np.pi if name == "pitch" else 1.0
         found[name] = [[float(scale * abs(x)), float(np.degrees(np.angle(x)))] for x in at]
     return found
