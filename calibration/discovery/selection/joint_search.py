@@ -79,7 +79,8 @@ class JointSearch(Search):
         mine = laboratory.intersection(best.variants)
         if state.chosen or not mine or mine == set(best.variants):
             return best
-        return self.selection(columns, told, sorted(laboratory)).run().best
+        alone = self.selection(columns, told, sorted(laboratory)).run().best
+        return alone if alone.variants else best
 
     def selection(
         self, columns: CandidateColumns, told: Callable[[int], None], among: Sequence[int] | None = None
