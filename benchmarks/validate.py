@@ -94,8 +94,6 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         return tuned_seas.run(figures, options.processes)
     if name == "numerical_tank":
         return numerical_tank.run(figures, options.processes)
-    if name == "focal_laboratory":
-        return focal_laboratory.run()
     if name == "lacking":
         return lacking.run(figures, options.processes)
     if name == "diagnoses":
@@ -106,6 +104,7 @@ def section(name: str, options: argparse.Namespace, figures: Path) -> Section:
         "openfast": openfast,
         "openfast_waves": openfast_waves,
         "measured": measured,
+        "focal_laboratory": focal_laboratory,
         "study": study_text,
     }
     return plain[name].run(figures)

@@ -7,13 +7,11 @@ import numpy as np
 from benchmarks.evidence.common import SHARED
 
 FOLDER = SHARED / "measured"
+DAMPED = (2e5, 2e5, 8e5, 6e8, 6e8, 1e8)  # N s/m, N m s/rad, beside radiation in potential flow: off resonance it is nothing
 
 
-def linear_motions(damping: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+def linear_motions() -> tuple[np.ndarray, np.ndarray]:
     """Motions in a wave of unit amplitude at the gauge, with the mass and mooring of campaign 2.
-
-    Args:
-        damping: Linear damping of the six motions (N s/m, N m s).
 
     Returns:
         Frequencies (Hz; f,), and motions (complex; f, 6), a positive phase leading the wave.
@@ -44,7 +42,7 @@ def linear_motions(damping: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
     motions = []
     for period in periods:
         omega = 2 * np.pi / period
-        impedance = added[period] - omega**2 * body + 1j * omega * np.diag(damping) + stiffness
+        impedance = added[period] - omega**2 * body + 1j * omega * np.diag(DAMPED) + stiffness
         k = float(wavenumber(jnp.asarray(omega), water.depth, water.gravity))
         motions.append(np.linalg.solve(impedance, forces[period]) * np.exp(-1j * k * rest[0]))  # it rests behind the gauge
     return 1 / np.array(periods), np.array(motions)

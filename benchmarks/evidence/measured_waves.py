@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.evidence.common import SHARED, TRUE, Absent, Section, cached, fingerprint, keep, parallel, say
-from benchmarks.evidence.focal_potential_flow import interpolated, linear_motions
+from benchmarks.evidence.common import TRUE, Absent, Section, cached, fingerprint, keep, parallel, say
+from benchmarks.evidence.focal_potential_flow import FOLDER, interpolated, linear_motions
 from benchmarks.evidence.measured_waves_text import (
     AT,
     CASES,
@@ -23,10 +23,8 @@ from benchmarks.evidence.measured_waves_text import (
     words,
 )
 
-FOLDER = SHARED / "measured"
 NAME = "measured_waves"
 SEGMENT = 400.0  # s, of transfer functions: 14 segments in a sea
-DAMPED = (2e5, 2e5, 8e5, 6e8, 6e8, 1e8)  # N s/m, N m s/rad, beside radiation in potential flow: off resonance it is nothing
 HIGHEST = 0.2  # Hz, of the figure
 
 
@@ -136,7 +134,7 @@ def spectra(test: Any) -> dict[str, Any]:
 
 def potential() -> dict[str, list[list[float]]]:
     """Amplitude (m, deg per m) and phase (deg) at AT of linear motions by WAMIT, with campaign 2's mass and mooring."""
-    frequency, motions = linear_motions(DAMPED)
+    frequency, motions = linear_motions()
     found: dict[str, list[list[float]]] = {}
     shown = {name: motions[:, dof] for name, dof in zip(MOTIONS, (0, 2, 4))}
     for name, values in {**shown, "keel": shown["surge"] + KEEL * shown["pitch"]}.items():

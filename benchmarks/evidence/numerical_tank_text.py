@@ -6,7 +6,7 @@ from typing import Any
 from benchmarks.evidence.common import TRUE, table
 from benchmarks.evidence.numerical_tank_runs import DECAYS, EVERY, FITTED, HALF, HELD, REST, SEA, TRANSIENT, setup
 from benchmarks.evidence.numerical_tank_truth import REACH
-from calibration.discovery.acceptance import MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO
+from calibration.discovery.doubts import MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.formatting import listed, number, percent, quantity
 from calibration.report.diagnosis_words import plain_name

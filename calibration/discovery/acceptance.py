@@ -11,7 +11,6 @@ from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.linearisations import RELATIVE_FLOOR, Prior
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.study import Study
-from calibration.formatting import percent
 from calibration.identifiability.information import pseudo_inverse
 
 # thresholds, chosen so that nothing is found in campaigns with nothing missing
@@ -22,8 +21,6 @@ MIN_HELD_OUT_GAIN = 10.0  # decrease of held-out -2 ln L: very strong evidence (
 MIN_SIGNIFICANCE = 3.0  # standard deviations
 MIN_MOTION_SHARE = 0.015  # of a motion: smallest change of its error that matters ...
 MIN_FLOOR_MULTIPLE = 3.0  # ... or this many times the floor, if less
-MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
-MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
 
 
 class HeldOutComparison(NamedTuple):
@@ -200,38 +197,17 @@ def worsened_motion(study: Study, dof: str | None, before: ResidualSummary, afte
 
 
 def worsening(study: Study, before: ResidualSummary, after: ResidualSummary) -> np.ndarray:
-    """How much worse a fit follows each motion than another fit does, over the smallest change that matters and noise (s,).
+    """Growth of each motion's error from one fit to another, over the smallest growth that matters (s,).
 
-    Motions that a test is not about have zero.
+    Growth within the floor does not matter. Motions that a test is not about have zero.
 
     Args:
         study: The study.
-        before: Residual of the other fit.
-        after: Residual of the fit.
+        before: Residual of the first fit.
+        after: Residual of the second fit.
     """
     least = np.array([max(MIN_MOTION_SHARE * one.spread, one.floor_rms) for one in study.series])
     return np.where(study.main, (after.error - before.error) / least, 0.0)
-
-
-def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary) -> list[str]:
-    """Decays that a fit to decays alone follows and a joint fit to decays and seas does not, in words.
-
-    Args:
-        study: The study.
-        alone: Residual of the fit to decays alone.
-        now: Residual of the joint fit.
-    """
-    said = []
-    for i, one in enumerate(study.series):
-        if one.kind == "decay" and study.used[i] and study.main[i] and one.spread > 0:
-            before, after = float(alone.error[i]) / one.spread, float(now.error[i]) / one.spread
-            if after > max(MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO * before):
-                said.append(
-                    f"fitted together with the seas, the decay {one.test} is given up: {percent(after)} of its motion is left, "
-                    f"{percent(before)} where decays are fitted alone. The model cannot follow both, and what is said of "
-                    f"{one.channel} is in doubt"
-                )
-    return said
 
 
 def is_significant(study: Study, label: str, one: Candidate, state: FitState, prior: Prior) -> bool:

@@ -90,6 +90,31 @@ def bounded_step(
     return np.clip(kept, low, high), own
 
 
+class StepTrial(NamedTuple):
+    """Simulation after a step.
+
+    Attributes:
+        place: The point after the step.
+        residual: Residual there, in rows (n,).
+        cost: Cost there; infinite where a simulation diverges.
+        predicted: Cost that the linearisation predicts.
+    """
+
+    place: Point
+    residual: np.ndarray
+    cost: float
+    predicted: float
+
+
+def try_step(study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own: np.ndarray) -> StepTrial:
+    """Simulate after a step along the active directions (q,) and of the decays' own unknowns (r, o)."""
+    place = look.place.moved(study.directions[list(look.active)], step, own)
+    residual = study.residual(place)
+    cost = np.inf if has_diverged(residual) else cost_of(study, look, residual, place, used, prior)
+    predicted = cost_of(study, look, linear_residual(study, look, step, own), place, used, prior)
+    return StepTrial(place, residual, cost, predicted)
+
+
 def far_step(
     study: Study, look: Linearisation, used: np.ndarray, prior: Prior, step: np.ndarray, own: np.ndarray
 ) -> Linearisation:
@@ -108,18 +133,12 @@ def far_step(
     Returns:
         The linearisation there, its slopes updated; the one given where no part gains.
     """
-    directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
     for part in STEP_PARTS:
         stop_if_asked()
-        some, mine = part * step, part * own
-        there = look.place.moved(directions, some, mine)
-        residual = study.residual(there)
-        if has_diverged(residual):
-            continue
-        expected = now - cost_of(study, look, linear_residual(study, look, some, mine), there, used, prior)
-        if now - cost_of(study, look, residual, there, used, prior) > MIN_PREDICTED_SHARE * max(expected, 0.0):
-            return broyden_update(study, look, there, residual, some, mine)
+        trial = try_step(study, look, used, prior, part * step, part * own)
+        if now - trial.cost > MIN_PREDICTED_SHARE * max(now - trial.predicted, 0.0):
+            return broyden_update(study, look, trial.place, trial.residual, part * step, part * own)
     return look
 
 
@@ -157,7 +176,6 @@ def fit(
         report: Called with the iteration and the cost.
     """
     logarithmic = study.logarithmic[list(look.active)]
-    directions = study.directions[list(look.active)]
     now = cost_of(study, look, look.residual, look.place, used, prior)
     if has_diverged(look.residual):
         return FitOutcome(look, 0, False)
@@ -168,15 +186,12 @@ def fit(
         step, own = bounded_step(study, look, used, prior, damping)
         scale = min(1.0, MAX_LOG_STEP / max(np.abs(step[logarithmic]).max(initial=0.0), 1e-300))
         step, own = scale * step, scale * own
-        there = look.place.moved(directions, step, own)
-        residual = study.residual(there)
-        cost = cost_of(study, look, residual, there, used, prior)
-        expected = now - cost_of(study, look, linear_residual(study, look, step, own), there, used, prior)
-        gain = -np.inf if has_diverged(residual) else now - cost
+        trial = try_step(study, look, used, prior, step, own)
+        expected, gain = now - trial.predicted, now - trial.cost
         least = max(tolerance, relative_tolerance * abs(now))  # of the present cost, not of the first one
         known, little = fresh or not left, 0 <= gain < least or expected < least
         if gain > 0:
-            look, now, fresh = broyden_update(study, look, there, residual, step, own), cost, False
+            look, now, fresh = broyden_update(study, look, trial.place, trial.residual, step, own), trial.cost, False
             damping = max(damping * 0.2, 1e-6) if scale == 1.0 else damping
             report(taken, now)
         if gain >= max(least, MIN_PREDICTED_SHARE * expected):

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from calibration.campaign.grouped_findings import group_findings
 from calibration.campaign.load_campaign import Campaign
-from calibration.discovery.acceptance import abandoned_decays
 from calibration.discovery.channel_signs import reversal_note, reversed_channels, with_signs_reversed
 from calibration.discovery.checkpoint import load_checkpoint, save_checkpoint
 from calibration.discovery.diagnosis import Diagnosis
 from calibration.discovery.diagnosis_conclusion import conclude, unexplained_motions
+from calibration.discovery.doubts import abandoned_decays
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.residual_anatomy import anatomy

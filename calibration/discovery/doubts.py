@@ -16,9 +16,12 @@ from jaxhydro.environment import DOFS
 
 if TYPE_CHECKING:
     from calibration.discovery.acceptance import Verdict
-    from calibration.discovery.fit_state import FitState
+    from calibration.discovery.fit_state import FitState, ResidualSummary
     from calibration.discovery.search import Search
+    from calibration.discovery.study import Study
 
+MAX_DECAY_RESIDUAL = 0.1  # of a decay's motion, that a joint fit may leave
+MAX_RESIDUAL_RATIO = 3.0  # of a joint fit's residual to that of a fit to decays alone
 MAX_RELEASE_SPEED = 0.2  # of a decay's first sample, over release times natural frequency
 MEMORY_EFFECTS = ("hidden_oscillator", "radiation_memory", "computed_radiation", "potential_flow", "hysteresis")
 # of the held-out error to that of the declared model. True effects increase it to 1.01 times at most in the campaigns of
@@ -38,6 +41,27 @@ def doubts_of(search: Search, state: FitState, fitted: Calibration, more: Sequen
     """
     beside = [unexplained_note(state.chosen, more)] if state.chosen and more else []
     return [*moving_release_notes(search, state), *beside, *far_coefficient_notes(search, fitted)]
+
+
+def abandoned_decays(study: Study, alone: ResidualSummary, now: ResidualSummary) -> list[str]:
+    """Decays that a fit to decays alone follows and a joint fit to decays and seas does not, in words.
+
+    Args:
+        study: The study.
+        alone: Residual of the fit to decays alone.
+        now: Residual of the joint fit.
+    """
+    said = []
+    for i, one in enumerate(study.series):
+        if one.kind == "decay" and study.used[i] and study.main[i] and one.spread > 0:
+            before, after = float(alone.error[i]) / one.spread, float(now.error[i]) / one.spread
+            if after > max(MAX_DECAY_RESIDUAL, MAX_RESIDUAL_RATIO * before):
+                said.append(
+                    f"fitted together with the seas, the decay {one.test} is given up: {percent(after)} of its motion is left, "
+                    f"{percent(before)} where decays are fitted alone. The model cannot follow both, and what is said of "
+                    f"{one.channel} is in doubt"
+                )
+    return said
 
 
 def outdone_effects(worth: Mapping[str, float], tried: Mapping[str, Verdict]) -> dict[str, str]:

@@ -15,9 +15,10 @@ import jaxhydro as jh
 from calibration import calibrate
 from calibration.campaign.load_campaign import load_campaign
 from calibration.discovery import checkpoint, search
-from calibration.discovery.acceptance import Verdict, abandoned_decays
+from calibration.discovery.acceptance import Verdict
 from calibration.discovery.diagnose import diagnose
 from calibration.discovery.diagnosis import IMPLAUSIBLE_SIZE
+from calibration.discovery.doubts import abandoned_decays
 from calibration.discovery.effects.candidates import Candidate, with_effects
 from calibration.discovery.effects.catalogue import catalogue
 from calibration.discovery.effects.catalogue_builder import noticeable_scales

@@ -152,7 +152,6 @@ def test_an_effect_that_hardly_matters_is_not_selected() -> None:
 
         chosen = JointSelection(model, range(2), selection(model).variants, np.arange(POOLS), matters=matters)
         found = chosen.run()
-        assert max(found.probability().get("effect 5", 0.0), 0.0) < 0.01 or "effect 5" in found.names(found.best)
         return tuple(sorted(found.names(found.best)))
 
     both, free = ("effect 3", "effect 5"), selection(model).run()

@@ -1,4 +1,4 @@
-"""Columns of all candidate effects at a fitted point, and the linear model made of them."""
+"""Columns of all candidate effects at a fitted point."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,12 +11,10 @@ from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.phase_shift_start import phase_shift_factor, phase_shift_start
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.linearisations import Linearisation
-from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
+from calibration.discovery.selection.linear_model import LinearModel
+from calibration.discovery.selection.study_linear_model import linear_model
 from calibration.discovery.selection.subsets import Variant
-from calibration.discovery.study import Study
 
-MAX_COEFFICIENT_STEP = 1.0  # of a logarithm in one linearisation
-MAX_NUISANCE = 3.0  # standard deviations of nearly known quantities
 CandidateValues = tuple[Candidate, Mapping[str, float]]  # a candidate at values of its shapes
 LABORATORY_EFFECTS = ("sensor_reference", "sensor_lag", "wave_gauge_position", "static_offset")
 LABORATORY_LOG_ODDS, PHYSICS_LOG_ODDS = math.log(0.05), math.log(0.02)  # one effect is expected, among some forty
@@ -47,7 +45,7 @@ class CandidateColumns:
     @property
     def laboratory(self) -> frozenset[int]:
         """Variants that are mistakes of the laboratory."""
-        return frozenset(i for i, one in enumerate(self.variants) if one.name.split(" ")[0] in LABORATORY_EFFECTS)
+        return frozenset(i for i, one in enumerate(self.variants) if one.laboratory)
 
     def present(self, chosen: Sequence[Candidate]) -> tuple[int, ...]:
         """Variants of the effects in the model: each effect's first."""
@@ -88,13 +86,12 @@ def candidate_columns(
             gathered.add(one, [look.active.index(i) for i in fits.study.index(one.labels)], {})
         else:
             others.append(one)
-    # shapes that are found from slopes are tried last, beside what has had no room before
-    every = [(one, at) for one in others for at in one.grid or ({},)]
-    passes = packed(sorted(every, key=lambda pair: pair[0].shape_finder is None), fits.study.width)
-    seeking = [some for some in passes if any(one.shape_finder is not None for one, _ in some)]
-    found = gathered.linearise(seeking)
-    later = [pair for some in passes[len(seeking) :] for pair in some]
-    gathered.linearise(packed([*found, *later], fits.study.width))
+    # the finders of further shapes need slopes first; what those passes have no room for goes with what is found
+    declared = [(one, at) for one in others for at in one.grid or ({},)]
+    passes = packed(sorted(declared, key=lambda pair: pair[0].shape_finder is None), fits.study.width)
+    first = [some for some in passes if any(one.shape_finder is not None for one, _ in some)]
+    later = [pair for some in passes[len(first) :] for pair in some]
+    gathered.linearise(packed([*gathered.linearise(first), *later], fits.study.width))
     return CandidateColumns(
         linear_model(fits, look, np.hstack(gathered.slopes), gathered.directions),
         tuple(range(len(fits.base))),
@@ -152,8 +149,9 @@ class _Columns:
 
     def add(self, one: Candidate, columns: Sequence[int], values: Mapping[str, float]) -> None:
         """Add a candidate at values of its shapes."""
-        odds = LABORATORY_LOG_ODDS if one.effect in LABORATORY_EFFECTS else PHYSICS_LOG_ODDS
-        self.variants.append(Variant(one.name, tuple(columns), odds))
+        laboratory = one.effect in LABORATORY_EFFECTS
+        odds = LABORATORY_LOG_ODDS if laboratory else PHYSICS_LOG_ODDS
+        self.variants.append(Variant(one.name, tuple(columns), odds, laboratory))
         self.values.append(values)
 
     def add_nearly_known(self, one: Candidate) -> None:
@@ -205,66 +203,3 @@ class _Columns:
             lines = (look.slopes[:, -1].reshape(-1, 2) @ [1, 1j]) * factor
             secant = np.stack([lines.real, lines.imag], axis=1).reshape(-1, 1)
             self.add(one, self.append(secant, look.active[-1:]), far.values)
-
-
-def linear_model(fits: EffectFits, look: Linearisation, slopes: np.ndarray, directions: Sequence[int]) -> LinearModel:
-    """The linear model of some columns at a linearisation's point.
-
-    Args:
-        fits: Study, candidates, priors.
-        look: The linearisation.
-        slopes: The columns (n, k).
-        directions: Their directions (k,).
-    """
-    study, prior = fits.study, fits.setup.prior
-    directions, names = list(directions), np.array(study.names)[list(directions)]
-    now = study.steps(look.place.x)[directions]
-    low, high = (study.limits[directions] - now[:, None]).T
-    base = np.arange(len(directions)) < len(fits.base)
-    further = ~base & np.isin(directions, fits.base)  # of nearly known properties, beside the base's column
-    width = np.array([fits.setup.size_width(n) if more else w for n, more, w in zip(names, further, prior.width[directions])])
-    step = np.where(study.logarithmic[directions], MAX_COEFFICIENT_STEP, np.inf)
-    low, high = np.maximum(low, -step), np.minimum(high, step)
-    nuisance = base & np.isin(directions, study.index(fits.setup.nuisances))
-    low = np.where(nuisance, np.minimum(np.maximum(low, -MAX_NUISANCE * width - now), 0.0), low)
-    high = np.where(nuisance, np.maximum(np.minimum(high, MAX_NUISANCE * width - now), 0.0), high)
-    positive = {label for one in fits.setup.candidates for label in one.positive}
-    signed = ~base & np.isin(names, sorted(positive))
-    low = np.where(signed, np.maximum(low, -now), low)
-    amplitudes = {label for one in fits.setup.candidates for label in one.amplitudes}
-    sized = ~base & ~further & np.isin(names, sorted(amplitudes))
-    used = study.used[study.row_series]
-    return LinearModel(
-        slopes,
-        look.residual,
-        own_unknowns(study, look),
-        study.pool,
-        study.share * used,
-        (study.pooled * study.used[:, None]).ravel(),
-        np.where(further, 0.0, np.where(sized, -now, prior.mean[directions] - now)),
-        width,
-        low,
-        high,
-        np.where(sized, -now, 0.0),
-        sized | further,
-    )
-
-
-def own_unknowns(study: Study, look: Linearisation) -> tuple[OwnUnknowns, ...]:
-    """The fitted decays' own unknowns."""
-    found = []
-    for i, (rows, fitted) in enumerate(zip(study.spans, study.fitted_decays, strict=True)):
-        there = look.own[rows].any(axis=0)
-        if fitted and there.any():
-            found.append(OwnUnknowns(rows, look.own[rows][:, there], study.own_width[i][there], look.place.own[i][there]))
-    return tuple(found)
-
-
-def step_of_decays(study: Study, look: Linearisation, own: Sequence[np.ndarray]) -> np.ndarray:
-    """Steps of all decays' own unknowns (r, o), from those of a fit."""
-    found, parts = np.zeros_like(look.place.own), iter(own)
-    for i, (rows, fitted) in enumerate(zip(study.spans, study.fitted_decays, strict=True)):
-        there = look.own[rows].any(axis=0)
-        if fitted and there.any():
-            found[i, there] = next(parts)
-    return found

@@ -1,4 +1,4 @@
-"""Held-out tests as a linear model predicts them: which effects they do not ask for, before anything is simulated."""
+"""Which effects the held-out tests support, as a linear model predicts them."""
 
 from collections.abc import Sequence
 
@@ -10,6 +10,7 @@ from calibration.discovery.fit_state import ResidualSummary
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.refusal import ComparedData, Refusal, RefusalKind
 from calibration.discovery.selection.joint_selection import JointSelection
+from calibration.discovery.selection.study_linear_model import decays_with_unknowns
 from calibration.discovery.selection.subsets import Subset
 from calibration.discovery.study import Study
 
@@ -25,21 +26,17 @@ def predicted_summary(study: Study, look: Linearisation, residual: np.ndarray) -
         residual: Residual that the linear model predicts (n,).
     """
     residual = residual.copy()
-    for i, (rows, fitted) in enumerate(zip(study.spans, study.fitted_decays, strict=True)):
-        there = look.own[rows].any(axis=0)
-        if fitted or not there.any():
-            continue
-        slopes, prior = look.own[rows][:, there], np.diag(1 / study.own_width[i][there] ** 2)
-        before, value = residual[rows].copy(), look.place.own[i][there]
+    for _, own, _ in decays_with_unknowns(study, look, fitted=False):
+        before, prior = residual[own.rows].copy(), np.diag(1 / own.width**2)
         for _ in range(REWEIGHTINGS):
-            weighted = row_weights(study, residual)[rows, None] * slopes
-            own = np.linalg.solve(weighted.T @ slopes + prior, -(weighted.T @ before + prior @ value))
-            residual[rows] = before + slopes @ own
+            weighted = row_weights(study, residual)[own.rows, None] * own.slopes
+            step = np.linalg.solve(weighted.T @ own.slopes + prior, -(weighted.T @ before + prior @ own.value))
+            residual[own.rows] = before + own.slopes @ step
     return ResidualSummary.of(study, residual)
 
 
 def refusal_by_prediction(study: Study, without: ResidualSummary, with_it: ResidualSummary) -> Refusal | None:
-    """Why held-out tests, as predicted, do not ask for an effect; None where they do, or tell nothing.
+    """Why predicted held-out tests speak against an effect; None where they do not.
 
     Args:
         study: The study.
@@ -55,12 +52,12 @@ def refusal_by_prediction(study: Study, without: ResidualSummary, with_it: Resid
     return None
 
 
-def superfluous_effects(
+def supported_effects(
     study: Study, look: Linearisation, selection: JointSelection, present: Sequence[int]
 ) -> tuple[Subset, dict[int, Refusal]]:
-    """The effects that held-out tests ask for, as the linear model predicts them, and why others are left out.
+    """The effects that predicted held-out tests support, and why the others are left out.
 
-    Of those that they do not ask for, the one without which they are followed best goes first; the others are judged anew.
+    One unsupported effect goes at a time: the one without which the tests are followed best. The others are judged anew.
 
     Args:
         study: The study.

@@ -18,8 +18,9 @@ from calibration.discovery.eliminated_least_squares import minus_two_log_likelih
 from calibration.discovery.fit_state import FitState, ResidualSummary
 from calibration.discovery.linearisations import Linearisation
 from calibration.discovery.search import Search
-from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates, step_of_decays
+from calibration.discovery.selection.candidate_columns import CandidateColumns, linearise_candidates
 from calibration.discovery.selection.joint_selection import JointSelection
+from calibration.discovery.selection.study_linear_model import step_of_decays
 from calibration.discovery.selection.subsets import Subset
 from calibration.discovery.set_up import StudySetup
 from calibration.formatting import listed

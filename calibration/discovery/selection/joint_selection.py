@@ -164,8 +164,7 @@ class JointSelection:
             self.neighbours(todo)
             self.told(len(self.fitted))
         (best,) = self.best(1)
-        near = takewhile(lambda one: one.evidence > best.evidence + MIN_LOG_POSTERIOR, self.best())
-        subsets = tuple(near)
+        subsets = tuple(takewhile(lambda one: one.evidence > best.evidence + MIN_LOG_POSTERIOR, self.best()))
         return Selection(subsets, self.variants, bagged_posterior(subsets, self.series, self.model.used))
 
     def grown(self, subset: Subset) -> Subset:

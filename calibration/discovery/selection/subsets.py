@@ -30,11 +30,13 @@ class Variant(NamedTuple):
         name: Name of the candidate.
         columns: Its columns of the linear model.
         log_odds: Logarithm of its prior odds.
+        laboratory: Whether it is a mistake of the laboratory.
     """
 
     name: str
     columns: tuple[int, ...]
     log_odds: float
+    laboratory: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ class Selection:
 
     @property
     def best(self) -> Subset:
-        """The subset with the fewest parameters, of those whose evidence is not far below the highest."""
+        """The subset with the fewest parameters, unless the evidence against it is strong."""
         near = [one for one in self.subsets if one.evidence > self.subsets[0].evidence - STRONG_EVIDENCE]
         return min(near, key=lambda one: (len(one.fit.columns), -one.evidence))
 

@@ -11,7 +11,7 @@ from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect
 from calibration.discovery.selection.candidate_columns import CandidateColumns, candidate_columns
 from calibration.discovery.selection.cross_validation import held_out_gain
-from calibration.discovery.selection.held_out_prediction import superfluous_effects
+from calibration.discovery.selection.held_out_prediction import supported_effects
 from calibration.discovery.selection.joint_search import END, JointSearch
 from calibration.discovery.selection.joint_selection import JointSelection
 from calibration.discovery.selection.subsets import Subset
@@ -32,7 +32,7 @@ class VerifiedSearch(JointSearch):
             baseline: The fitted declared model.
             state: The last state of the search.
         """
-        state = self.without_superfluous(baseline, state)
+        state = self.without_unsupported(baseline, state)
         while state.chosen:
             columns = candidate_columns(self, state.look, state.chosen, ())
             for i, one in zip(self.columns.present(state.chosen), state.chosen, strict=True):
@@ -49,8 +49,8 @@ class VerifiedSearch(JointSearch):
         self.reject_others(state)
         return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
 
-    def without_superfluous(self, baseline: FitState, state: FitState) -> FitState:
-        """A state without the effects that held-out tests, as the linear model predicts them, do not ask for.
+    def without_unsupported(self, baseline: FitState, state: FitState) -> FitState:
+        """A state without the effects that held-out tests, as the linear model predicts them, do not support.
 
         Args:
             baseline: The fitted declared model.
@@ -63,7 +63,7 @@ class VerifiedSearch(JointSearch):
         look = study.linearise(state.look.place, self.active(state.chosen), "all")
         columns = candidate_columns(self, look, state.chosen, ())
         selection = JointSelection(columns.model, columns.base, columns.variants, columns.series)
-        subset, reasons = superfluous_effects(study, look, selection, range(len(state.chosen)))
+        subset, reasons = supported_effects(study, look, selection, range(len(state.chosen)))
         for i, why in reasons.items():
             self.reject(self.candidates[columns.variants[i].name], why)
         if not reasons:
@@ -103,7 +103,7 @@ class VerifiedSearch(JointSearch):
         one = self.candidates[self.columns.variants[out].name]
         last = JointSelection(columns.model, columns.base, columns.variants, columns.series)
         whole = last.subset(range(len(state.chosen)))
-        rest = last.subset([i for i in whole.variants if columns.variants[i].name != one.name], whole)
+        rest = last.without(whole, state.chosen.index(one))
         held = held_out_gain(columns.model, whole.fit, rest.fit, self.test_of_pool)
         without = self.fit_subset(state, columns, rest, "verification", END) if rest.variants else baseline
         verdict = self.assess(without, state, one, last=True)
@@ -127,7 +127,7 @@ class VerifiedSearch(JointSearch):
             whole: The subset.
             out: Variant of the effect that is exchanged.
         """
-        rest = self.selector.subset([i for i in whole.variants if i != out], whole)
+        rest = self.selector.without(whole, out)
         mine = self.columns.variants[out].name
         best: dict[str, float] = {}
         for i in self.selector.additions(rest):
