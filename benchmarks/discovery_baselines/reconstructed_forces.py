@@ -113,7 +113,7 @@ def reconstruct(folder: Path) -> Reconstruction:
     """Fit the declared model of a campaign as `diagnose` does, and reconstruct the forces that it lacks."""
     begun = time.monotonic()
     campaign = load_campaign(folder)
-    search = Search(campaign, set_up_study(campaign, options_of(campaign)), lambda stage, fraction: None)
+    search = Search(campaign, set_up_study(campaign, options_of(campaign)), lambda *_: None)
     fitted = calibration_of(campaign, search, search.fit_baseline(), None)
     model = fitted.model
     rest = equilibrium(model)

@@ -61,9 +61,9 @@ def diagnose(
     """
     begun, campaign = clock.monotonic(), campaign.with_model(model)
 
-    def say(stage: str, fraction: float) -> None:
+    def say(stage: str, fraction: float, iteration: int = 0, cost: float = math.nan) -> None:
         if progress is not None:
-            progress(Progress(stage, 0, math.nan, fraction, "-2 ln L"))
+            progress(Progress(stage, iteration, cost, fraction, "-2 ln L"))
 
     states: list[FitState] = []
     unusable: list[str] = []  # why what an earlier run reached is left alone
@@ -89,7 +89,7 @@ def diagnose(
     if wrong:
         search = begun_with(campaign := with_signs_reversed(campaign, list(wrong)))
     if states:
-        say(f"going on from what was reached before: round {len(states)}", 0.15)
+        say(f"going on from what was reached before: round {len(states)}", 0.2)
     else:
         if unusable:
             warnings.warn(unusable[-1], CheckpointWarning, stacklevel=2)

@@ -1,9 +1,10 @@
 """Fits of a campaign's study with a given set of effects."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -25,6 +26,20 @@ MAX_RELINEARISATIONS = 8  # new slopes in a full refit
 REFIT_TOLERANCE = 3e-3  # of the cost: a step of a full refit that gains less ends it
 
 
+class ReportStage(Protocol):
+    """Report of the present stage of a diagnosis."""
+
+    def __call__(self, stage: str, fraction: float, iteration: int = 0, cost: float = math.nan) -> None:
+        """Report a stage.
+
+        Args:
+            stage: What is done.
+            fraction: Estimated fraction of the diagnosis that is done (0 to 1).
+            iteration: Iteration of a fit.
+            cost: -2 ln L that the fit has reached.
+        """
+
+
 class EffectFits:
     """Fits of a campaign with some effects in the model, and their assessment.
 
@@ -32,13 +47,13 @@ class EffectFits:
         campaign: The campaign.
         setup: Study, candidates, priors.
         study: The study, with the current weights.
-        say: Called with the stage and its progress (0 to 1).
+        say: Called with every stage.
         begun: Parameter coordinates where the search began (p,).
         base: Directions that are free without any effect.
         count: Number of independent observations, for BIC.
     """
 
-    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: ReportStage) -> None:
         self.campaign, self.setup, self.study, self.say = campaign, setup, setup.study, say
         self.begun = np.asarray(self.study.space.start)  # coordinates where the search begins: of a calibration to the decays
         self.base = self.study.index([*setup.base, *setup.nuisances])
@@ -111,7 +126,7 @@ class EffectFits:
         """Fit all directions of a linearisation for some iterations, reporting progress."""
 
         def report(i: int, cost: float) -> None:
-            self.say(f"{name}: iteration {i}, -2 ln L {cost:.0f}", fraction)
+            self.say(name, fraction, i, cost)
 
         prior = self.prior(chosen)
         return fit(

@@ -1,7 +1,6 @@
 """Search for missing effects: what it has found so far, the declared model's fit, mass properties."""
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 from calibration.campaign.load_campaign import Campaign
 from calibration.discovery.acceptance import MIN_BIC_GAIN, MIN_HELD_OUT_GAIN, MIN_SIGNIFICANCE, Verdict
 from calibration.discovery.diagnosis import Rejected, Score
-from calibration.discovery.effect_fits import EffectFits
+from calibration.discovery.effect_fits import EffectFits, ReportStage
 from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.eliminated_least_squares import predict_gain, prior_residuals
 from calibration.discovery.fit_state import FitState, ResidualSummary
@@ -53,7 +52,7 @@ class Search(EffectFits):
         found: Evidence of the accepted effects by name.
     """
 
-    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: ReportStage) -> None:
         super().__init__(campaign, setup, say)
         self.scores: list[Score] = []
         self.rejected: dict[str, Rejected] = {}
@@ -71,8 +70,8 @@ class Search(EffectFits):
             self.alone = ResidualSummary.of(self.study, self.study.residual(place))
         if self.study.seas:
             self.weigh_by_expected(place)
-        self.say("declared model: slopes", 0.08)
-        return self.refit(self.study.linearise(place, self.base), (), "declared model", 0.1)
+        self.say("declared model: slopes", 0.1)
+        return self.refit(self.study.linearise(place, self.base), (), "declared model", 0.15)
 
     def likelihood_gain(self, before: FitState, after: FitState) -> float:
         """Decrease of -2 ln L of the fitted tests from one state to another."""

@@ -116,15 +116,26 @@ def progress() -> Iterator[Callable[[Any], None]]:
 
     Without a terminal it is one line per stage.
     """
-    shown = console(stderr=True)
+    shown, begun, furthest = console(stderr=True), clock.monotonic(), 0.0
+
+    def left(fraction: float) -> str:
+        """Time left, from the time gone and the fraction done."""
+        gone = clock.monotonic() - begun
+        if gone < PROGRESS_INTERVAL or not 0 < fraction < 1:
+            return ""
+        return f"about {_span(gone * (1 - fraction) / fraction)} left"
+
     if not shown.is_terminal:
         stages: list[str] = []
 
         def note(now: Any) -> None:
+            nonlocal furthest
             stop_if_asked()
+            furthest = max(furthest, now.fraction)
             if now.stage not in stages:
                 stages.append(now.stage)
-                shown.print(Text(": ".join(filter(None, (now.stage, _reached(now))))), soft_wrap=True)
+                said = ": ".join(filter(None, (now.stage, _reached(now))))
+                shown.print(Text("; ".join(filter(None, (said, left(furthest))))), soft_wrap=True)
 
         yield note
         return
@@ -133,18 +144,16 @@ def progress() -> Iterator[Callable[[Any], None]]:
         BarColumn(bar_width=24),
         TextColumn("{task.fields[state]}"),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        TextColumn("{task.fields[left]}"),
     )
     with Progress(*columns, console=shown, transient=True) as bar:
-        task = bar.add_task("preparing", total=1.0, state="")
-        furthest = 0.0
+        task = bar.add_task("preparing", total=1.0, state="", left="")
 
         def update(now: Any) -> None:
             nonlocal furthest
             stop_if_asked()
             furthest = max(furthest, now.fraction)
-            bar.update(task, description=str(now.stage), completed=furthest, state=_reached(now))
+            bar.update(task, description=str(now.stage), completed=furthest, state=_reached(now), left=left(furthest))
 
         yield update
 

@@ -13,6 +13,7 @@ from calibration.discovery.acceptance import (
 )
 from calibration.discovery.broyden_fit import far_step
 from calibration.discovery.diagnosis import Score
+from calibration.discovery.effect_fits import ReportStage
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.eliminated_least_squares import minus_two_log_likelihood
 from calibration.discovery.fit_state import FitState, ResidualSummary
@@ -27,7 +28,8 @@ from calibration.formatting import listed
 
 MAX_ROUNDS = 6  # linearisations along all candidates
 STEP_ITERATIONS = 15  # iterations of a fit with the slopes at hand
-BEGIN, END = 0.2, 0.9  # progress of the rounds
+USUAL_ROUNDS = 3  # for progress
+BEGIN, END = 0.25, 0.65  # progress of the rounds
 
 
 class JointSearch(Search):
@@ -39,7 +41,7 @@ class JointSearch(Search):
         probability: Posterior probability of every effect in the last selection.
     """
 
-    def __init__(self, campaign: Campaign, setup: StudySetup, say: Callable[[str, float], None]) -> None:
+    def __init__(self, campaign: Campaign, setup: StudySetup, say: ReportStage) -> None:
         super().__init__(campaign, setup, say)
         self.candidates = {one.name: one for one in setup.candidates}
         self.columns: CandidateColumns
@@ -48,7 +50,7 @@ class JointSearch(Search):
 
     def share(self, number: float) -> float:
         """Progress after so many rounds."""
-        return BEGIN + (END - BEGIN) * number / MAX_ROUNDS
+        return BEGIN + (END - BEGIN) * min(number / USUAL_ROUNDS, 1.0)
 
     def select(self, state: FitState, number: int) -> Subset:
         """Linearise a state along all candidates, and select.
@@ -63,12 +65,11 @@ class JointSearch(Search):
         Returns:
             The most probable subset.
         """
-        name = f"round {number}: comparing sets of effects"
         self.say(f"round {number}: linearising along {len(self.setup.candidates)} effects", self.share(number - 1))
         self.columns = columns = linearise_candidates(self, state)
 
         def told(count: int) -> None:
-            self.say(f"{name} ({count})", self.share(number - 0.6))
+            self.say(f"round {number}: comparing sets of effects", self.share(number - 0.6), count)
 
         told(0)
         self.selector = self.selection(columns, told)

@@ -1,22 +1,26 @@
 """Verification of a joint search by simulation: every effect is taken out in turn."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from calibration.discovery.acceptance import worsening
+from calibration.discovery.effects.candidates import Candidate
 from calibration.discovery.effects.effect_names import effect_in_words
 from calibration.discovery.fit_state import FitState
 from calibration.discovery.refusal import Refusal, RefusalKind
 from calibration.discovery.search import AcceptedEffect
-from calibration.discovery.selection.candidate_columns import CandidateColumns, candidate_columns
+from calibration.discovery.selection.candidate_columns import candidate_columns
 from calibration.discovery.selection.cross_validation import held_out_gain
 from calibration.discovery.selection.held_out_prediction import supported_effects
 from calibration.discovery.selection.joint_search import END, JointSearch
 from calibration.discovery.selection.joint_selection import JointSelection
-from calibration.discovery.selection.subsets import Subset
+from calibration.fitting.cores import cores
+from jaxhydro.interrupts import stoppable_threads
 
 INDISTINGUISHABLE_SHARE = 0.1  # of an effect's log evidence: another that has all but this much is not told from it
+LAST = 0.95  # progress when every effect has been taken out once
 MIN_PROBABILITY = 0.5  # of an effect and those that the records cannot tell from it
 
 
@@ -26,26 +30,31 @@ class VerifiedSearch(JointSearch):
     def verify(self, baseline: FitState, state: FitState) -> FitState:
         """Take every effect out in turn, simulate, and keep those that the records ask for.
 
-        The model that is kept follows no motion worse than the declared one, if an effect is the reason.
+        After an effect has gone, the others that were refused are tried again, and at the end all that are left, from a fit to
+        convergence. The model that is kept follows no motion worse than the declared one, if an effect is the reason.
 
         Args:
             baseline: The fitted declared model.
             state: The last state of the search.
         """
         state = self.without_unsupported(baseline, state)
-        while state.chosen:
-            columns = candidate_columns(self, state.look, state.chosen, ())
-            for i, one in zip(self.columns.present(state.chosen), state.chosen, strict=True):
-                self.say(f"verification: the model without {effect_in_words(one.name)}", END)
-                self.found[one.name] = self.evidence(baseline, state, columns, i)
-            self.refuse_worsening(baseline, state)
-            refused = [one for one in state.chosen if self.found[one.name].verdict.refused]
-            if not refused:
+        tried, converged = state.chosen, True
+        while tried:
+            self.found.update(self.evidence(baseline, state, tried))
+            if converged:
+                self.refuse_worsening(baseline, state)
+            refused = [one for one in tried if self.found[one.name].verdict.refused]
+            if refused:
+                least = min(refused, key=lambda one: self.found[one.name].verdict.worth)
+                gone = self.found.pop(least.name)
+                self.reject(least, gone.verdict.refused, gone.verdict)
+                state, converged = gone.before, False
+                tried = tuple(one for one in refused if one is not least)
+            elif converged:
                 break
-            least = min(refused, key=lambda one: self.found[one.name].verdict.worth)
-            gone = self.found.pop(least.name)
-            self.reject(least, gone.verdict.refused, gone.verdict)
-            state = self.refit_all(gone.before) if len(state.chosen) > 1 else baseline
+            if not tried and state.chosen:
+                state, converged = self.refit_all(state), True
+                tried = state.chosen
         self.reject_others(state)
         return replace(state, chosen=tuple(sorted(state.chosen, key=lambda one: -self.found[one.name].verdict.worth)))
 
@@ -91,28 +100,45 @@ class VerifiedSearch(JointSearch):
         refused = Refusal(RefusalKind.WORSE_TEST, tuple(error), f"{series.channel} of {series.test}")
         self.found[name] = found._replace(verdict=found.verdict._replace(refused=refused))
 
-    def evidence(self, baseline: FitState, state: FitState, columns: CandidateColumns, out: int) -> AcceptedEffect:
-        """Evidence of one effect in a model: by simulation without it, and tests left out in turn in the linear model.
+    def evidence(self, baseline: FitState, state: FitState, tried: Sequence[Candidate]) -> dict[str, AcceptedEffect]:
+        """Evidence of effects in a model: by simulation without each, and tests left out in turn in the linear model.
 
         Args:
             baseline: The fitted declared model.
             state: The fitted model.
-            columns: Linear model of its effects alone, at the fitted point.
-            out: Variant of the effect in the last selection.
+            tried: The effects.
+
+        Returns:
+            The evidence by name.
         """
-        one = self.candidates[self.columns.variants[out].name]
+        columns = candidate_columns(self, state.look, state.chosen, ())
         last = JointSelection(columns.model, columns.base, columns.variants, columns.series)
         whole = last.subset(range(len(state.chosen)))
-        rest = last.without(whole, state.chosen.index(one))
-        held = held_out_gain(columns.model, whole.fit, rest.fit, self.test_of_pool)
-        without = self.fit_subset(state, columns, rest, "verification", END) if rest.variants else baseline
-        verdict = self.assess(without, state, one, last=True)
-        gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
-        alike = self.look_alikes(self.selector.subset(self.columns.present(state.chosen)), out)
-        probability = self.probability.get(one.name, 0.0)
-        if verdict.refused is None and probability + sum(self.probability.get(name, 0.0) for name in alike) < MIN_PROBABILITY:
-            verdict = verdict._replace(refused=Refusal(RefusalKind.IMPROBABLE, (probability,)))
-        return AcceptedEffect(max(gains, default=0.0), without, state, verdict, alike, probability, held)
+        rest = {one.name: last.without(whole, state.chosen.index(one)) for one in tried}
+
+        def without(one: Candidate) -> FitState:
+            if not rest[one.name].variants:
+                return baseline
+            stage = f"verification: the model without {effect_in_words(one.name)}"
+            share = END + (LAST - END) * (1 + tried.index(one)) / (1 + len(tried))
+            return self.fit_subset(state, columns, rest[one.name], stage, share)
+
+        with stoppable_threads(cores()) as pool:
+            before = list(pool.map(without, tried))
+        found = {}
+        for one, fitted in zip(tried, before, strict=True):
+            verdict = self.assess(fitted, state, one, last=True)
+            alike = self.look_alikes(state, one)
+            probability = self.probability.get(one.name, 0.0)
+            if (
+                verdict.refused is None
+                and probability + sum(self.probability.get(name, 0.0) for name in alike) < MIN_PROBABILITY
+            ):
+                verdict = verdict._replace(refused=Refusal(RefusalKind.IMPROBABLE, (probability,)))
+            gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
+            held = held_out_gain(columns.model, whole.fit, rest[one.name].fit, self.test_of_pool)
+            found[one.name] = AcceptedEffect(max(gains, default=0.0), fitted, state, verdict, alike, probability, held)
+        return found
 
     @property
     def test_of_pool(self) -> np.ndarray:
@@ -120,20 +146,20 @@ class VerifiedSearch(JointSearch):
         tests = list(dict.fromkeys(one.test for one in self.study.series))
         return np.repeat([tests.index(one.test) for one in self.study.series], self.study.dof.shape[1])
 
-    def look_alikes(self, whole: Subset, out: int) -> tuple[str, ...]:
-        """Effects that would do nearly as well in the place of one of a subset.
+    def look_alikes(self, state: FitState, one: Candidate) -> tuple[str, ...]:
+        """Effects that would do nearly as well in the place of one, in the last selection.
 
         Args:
-            whole: The subset.
-            out: Variant of the effect that is exchanged.
+            state: The fitted model.
+            one: The effect that is exchanged.
         """
-        rest = self.selector.without(whole, out)
-        mine = self.columns.variants[out].name
+        whole = self.selector.subset(self.columns.present(state.chosen))
+        rest = self.selector.without(whole, *self.columns.present([one]))
         best: dict[str, float] = {}
         for i in self.selector.additions(rest):
             name = self.columns.variants[i].name
             other = self.selector.fitted.get(tuple(sorted((*rest.variants, i))))
-            if name != mine and other is not None and other.plausible:
+            if name != one.name and other is not None and other.plausible:
                 best[name] = max(best.get(name, -np.inf), other.evidence)
         asked = whole.evidence - INDISTINGUISHABLE_SHARE * (whole.evidence - rest.evidence)
         return tuple(name for name, evidence in best.items() if evidence > asked)
