@@ -200,16 +200,28 @@ def diagnose(
 ) -> None:
     """Fit a platform's coefficients, then find what the model lacks: an effect with its name, its size and the evidence.
 
-    The declared model is fitted to the tests marked `fit`. What is left is compared with the noise; effects that could be
-    missing are scored, the best of them fitted with all coefficients free again, and kept only where the tests marked
-    `holdout` gain by it, or where there are none blocks of the fitted ones, left out in turn. Nothing in the campaign has to
-    name an effect. The answer may be that nothing is missing, or that something is and none of the known effects explains it.
+    The declared model is fitted to the tests marked `fit`. All effects that could be missing are then compared, alone and
+    together. Each effect of the most probable set is taken out in turn. It stays only where the tests marked `holdout` ask for
+    it; where there are none, blocks of the fitted ones are left out in turn. Nothing in the campaign has to name an effect. The
+    answer may be that nothing is missing, or that something is and none of the known effects explains it.
     """
     out = options.results_folder(out, "diagnosis.json")
     from calibration.commands.diagnose_command import diagnose_campaign
 
     if not diagnose_campaign(campaign, out, figures):
         raise typer.Exit(NOT_CONVERGED)
+
+
+@app.command()
+def check(
+    campaign: arguments.Campaign,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for figures of the hull and of every record.")] = None,
+) -> None:
+    """Read a campaign and show what it holds: tests, natural periods beside the model's, warnings. Nothing is fitted."""
+    drawn = None if out is None else options.check_folder(out)
+    from calibration.commands.check_command import check_campaign
+
+    check_campaign(campaign, drawn)
 
 
 @app.command(epilog=arguments.QUANTIFYING)

@@ -25,13 +25,15 @@ def moving(channels: Mapping[str, np.ndarray]) -> list[str]:
     return [name for name in channels if size[name] > max(1e-6, 1e-3 * largest[unit_of(name)])] or list(channels)[:1]
 
 
-def record_figure(time: np.ndarray, channels: Mapping[str, np.ndarray], start: float, title: str) -> Figure:
-    """All of the record; what statistics leave out, until `start` (s), is grey."""
+def record_figure(
+    time: np.ndarray, channels: Mapping[str, np.ndarray], start: float, title: str, colour: str = SIMULATED
+) -> Figure:
+    """All of the record, motions in a colour; what statistics leave out, until `start` (s), is grey."""
     names = moving(channels)
     figure, axes = stack([PANEL_HEIGHT] * len(names))
     artists = {}
     for ax, name in zip(axes, names, strict=True):
-        ax.plot(time, channels[name], color=_colour(name), lw=0.35)
+        ax.plot(time, channels[name], color=WAVE if name == "wave" else colour, lw=0.35)
         ax.set_ylabel(f"{name.capitalize()} ({unit_of(name)})")
         if start > time[0]:
             artists["left out of statistics"] = ax.axvspan(time[0], start, color="#dfe2e7", lw=0, zorder=0.5)

@@ -1,0 +1,38 @@
+"""Command `check`: what a campaign holds, and whether its records and its model fit together. Nothing is fitted."""
+
+from pathlib import Path
+
+from calibration.campaign.load_campaign import load_campaign
+from calibration.plots.check_figures import figures
+from calibration.report import check_tables
+from calibration.report.tables import findings
+from jaxhydro.cli.console import say, table
+from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.files import staged
+from jaxhydro.plots.style import save, style
+
+
+def check_campaign(path: Path, out: Path | None) -> None:
+    """Read a campaign and print what it holds; draw its hull and records.
+
+    Args:
+        path: The campaign's folder, or its campaign.yaml.
+        out: Folder of the figures; None: none are drawn.
+
+    Raises:
+        InputError: If the campaign cannot be read.
+    """
+    campaign = load_campaign(path)
+    compared = check_tables.compare_periods(campaign.records, natural_modes(campaign.model))
+    table(campaign.manifest.name, *check_tables.tests(campaign), left=5)
+    if compared:
+        table("Natural periods", *check_tables.periods(compared))
+    if campaign.findings:
+        table("Warnings", *findings(campaign.findings), left=4)
+    if out is not None:
+        with style(), staged(out) as temporary:
+            for name, figure in figures(campaign):
+                save(figure, temporary / name)
+        say(f"The hull and every record are drawn in {out}")
+    say(check_tables.verdict(campaign, compared))
+    say(f"To fit it: jaxhydro calibrate {path} --out fit")

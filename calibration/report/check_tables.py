@@ -1,0 +1,116 @@
+"""Tables and verdict of `jaxhydro check`: what a campaign's records hold, and whether the declared model fits them."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from calibration.campaign.grouped_findings import group_findings
+from calibration.campaign.load_campaign import Campaign
+from calibration.campaign.manifest import IN_WAVES
+from calibration.campaign.records import Record
+from calibration.campaign.signals import dominant_period, wave_height
+from calibration.formatting import counted, listed, number, percent
+from calibration.vocabulary import KINDS, USE, Rows
+from jaxhydro.analysis.sea_statistics import record_peak_period
+from jaxhydro.dynamics.statics import Modes
+from jaxhydro.units import unit_of
+
+MAX_PERIOD_DIFFERENCE = 0.2  # of the measured period: a fit of added mass seldom mends more
+
+
+class PeriodComparison(NamedTuple):
+    """Natural period of one motion, measured in decays and of the declared model.
+
+    Attributes:
+        motion: The motion.
+        tests: Number of decays with a clear period.
+        measured: Their median period (s).
+        declared: Period of the declared model (s).
+    """
+
+    motion: str
+    tests: int
+    measured: float
+    declared: float
+
+    @property
+    def difference(self) -> float:
+        """Declared less measured period, over the measured one."""
+        return self.declared / self.measured - 1
+
+
+def compare_periods(records: Sequence[Record], modes: Modes) -> list[PeriodComparison]:
+    """Natural periods of all motions that have a decay with a clear period.
+
+    Args:
+        records: The records.
+        modes: Natural modes of the declared model.
+    """
+    found: dict[str, list[float]] = {}
+    for record in records:
+        if record.kind == "decay" and record.use != "ignore" and record.degree_of_freedom is not None:
+            period = dominant_period(record.time, record.values[record.degree_of_freedom])
+            if period is not None:
+                found.setdefault(record.degree_of_freedom, []).append(period)
+    return [PeriodComparison(motion, len(some), float(np.median(some)), modes.of(motion)) for motion, some in found.items()]
+
+
+def tests(campaign: Campaign) -> Rows:
+    """Kind, use, length, step and content of every record."""
+    rows = []
+    for record in campaign.records:
+        step = float(np.median(np.diff(record.time)))
+        about = (record.id, KINDS.get(record.kind, record.kind), USE[record.use], record.file)
+        rows.append((*about, _content(record, step), number(record.time[-1] - record.time[0], 4), number(step, 3)))
+    return ("Test", "Kind", "Use", "File", "Content", "Length (s)", "Step (s)"), rows
+
+
+def _content(record: Record, step: float) -> str:
+    """Release of a decay, height and period of waves."""
+    if record.kind == "decay" and record.degree_of_freedom is not None:
+        unit = unit_of(record.degree_of_freedom)
+        start = float(record.values[record.degree_of_freedom][0])
+        return f"{record.degree_of_freedom} from {number(np.degrees(start) if unit == 'deg' else start, 3)} {unit}"
+    if record.kind in IN_WAVES and record.wave is not None:
+        sea = record.kind == "irregular"
+        later = record.wave[record.time - record.time[0] >= record.transient]
+        height, period = ("Hs", "Tp") if sea else ("H", "T")
+        return f"{height} {number(wave_height(later, sea), 2)} m, {period} {number(record_peak_period(later, step), 3)} s"
+    return listed(list(record.values))
+
+
+def periods(compared: Sequence[PeriodComparison]) -> Rows:
+    """Natural periods, measured and declared."""
+    rows = [
+        (one.motion, str(one.tests), number(one.measured, 3), number(one.declared, 3), _signed(one.difference))
+        for one in compared
+    ]
+    return ("Motion", "Decays", "Measured (s)", "Declared model (s)", "Difference"), rows
+
+
+def _signed(ratio: float) -> str:
+    return f"{'+' if ratio > 0 else ''}{percent(ratio)}"
+
+
+def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator[str]:
+    """What to look at before a fit, in sentences."""
+    warnings = len(group_findings(campaign.findings))
+    if warnings:
+        yield f"{counted(warnings, 'warning')} above"
+    for one in compared:
+        if math.isnan(one.declared):
+            yield f"{one.motion}: the declared model has no natural period in it, measured {number(one.measured, 3)} s"
+        elif abs(one.difference) > MAX_PERIOD_DIFFERENCE:
+            yield (
+                f"{one.motion}: the declared model's natural period is {number(one.declared, 3)} s, measured "
+                f"{number(one.measured, 3)} s (mass, mooring, unit or `scale`)"
+            )
+
+
+def verdict(campaign: Campaign, compared: Sequence[PeriodComparison]) -> str:
+    """The answer in one sentence."""
+    read = f"{counted(len(campaign.records), 'test')} read"
+    said = list(doubts(campaign, compared))
+    return f"{read}. Look at this first: {'; '.join(said)}." if said else f"{read}: nothing looks wrong."

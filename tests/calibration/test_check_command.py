@@ -1,0 +1,85 @@
+"""`jaxhydro check`: what a campaign holds, its natural periods beside the model's, and what to look at first."""
+
+import math
+import shutil
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+from calibration.campaign.load_campaign import load_campaign
+from calibration.report.check_tables import PeriodComparison, compare_periods, doubts, verdict
+from jaxhydro.cli import app as cli
+from jaxhydro.dynamics.statics import natural_modes
+from jaxhydro.hull.strips import Member
+from jaxhydro.plots.hull import hull_figure, outline
+from jaxhydro.plots.style import style
+
+RUNNER = CliRunner()
+DEMO = Path(str(resources.files("jaxhydro") / "campaigns" / "volturnus-s-decays"))
+
+
+@pytest.fixture(scope="module")
+def demo():
+    return load_campaign(DEMO)
+
+
+def test_periods_are_those_of_the_records(demo):
+    found = {one.motion: one for one in compare_periods(demo.records, natural_modes(demo.model))}
+    assert {name: one.tests for name, one in found.items()} == {"surge": 3, "heave": 3, "pitch": 3}
+    # the records were made with periods of 133, 18.8 and 26.4 s
+    np.testing.assert_allclose([found[name].measured for name in ("surge", "heave", "pitch")], [133, 18.8, 26.4], rtol=0.02)
+    assert all(abs(one.difference) < 0.05 for one in found.values())
+
+
+def test_a_sound_campaign_is_said_to_be_sound(demo):
+    compared = compare_periods(demo.records, natural_modes(demo.model))
+    assert verdict(demo, compared) == "9 tests read: nothing looks wrong."
+
+
+def test_a_period_far_off_is_named(demo):
+    said = list(doubts(demo, [PeriodComparison("pitch", 3, 26.4, 37.0), PeriodComparison("heave", 3, 18.8, 18.1)]))
+    assert len(said) == 1 and said[0].startswith("pitch: the declared model's natural period is 37.0 s, measured 26.4 s")
+    assert "no natural period" in next(doubts(demo, [PeriodComparison("sway", 1, 130.0, math.nan)]))
+
+
+def test_command_draws_the_hull_and_every_record(tmp_path):
+    out = tmp_path / "check"
+    result = RUNNER.invoke(cli.app, ["check", str(DEMO), "--out", str(out)], env={"COLUMNS": "160"})
+    assert result.exit_code == 0, result.output
+    assert "surge from 3.01 m" in result.output and "nothing looks wrong" in result.output
+    assert {path.name for path in out.iterdir()} == {"hull.png", *(f"record-{p.stem}.png" for p in DEMO.glob("*.csv"))}
+    with Image.open(out / "hull.png") as image:
+        assert min(image.size) > 500
+
+
+def test_command_says_that_periods_are_off(tmp_path):
+    folder = tmp_path / "wrong"
+    shutil.copytree(DEMO, folder)
+    text = (folder / "platform.yaml").read_text()
+    assert text.count("stiffness: 45000.0") == 3
+    (folder / "platform.yaml").write_text(text.replace("stiffness: 45000.0", "stiffness: 20000.0"))
+    result = RUNNER.invoke(cli.app, ["check", str(folder)], env={"COLUMNS": "160"})
+    assert result.exit_code == 0, result.output
+    assert "surge: the declared model's natural period is" in " ".join(result.output.split())
+
+
+def test_command_refuses_what_cannot_be_read(tmp_path):
+    result = RUNNER.invoke(cli.app, ["check", str(tmp_path), "--out", str(tmp_path / "out")])
+    assert result.exit_code == 2 and not (tmp_path / "out").exists()
+
+
+def test_outline_has_the_member_s_size():
+    box = Member(
+        "box", "hull", False, np.array([-10.0, 0, -3]), np.array([10.0, 0, -3]), np.array([0.0, 1]), np.array([[4.0, 6]] * 2)
+    )
+    points = outline(box).reshape(-1, 3)
+    np.testing.assert_allclose(np.ptp(points, axis=0), [20, 4, 6], atol=1e-12)
+    pole = Member(
+        "pole", "hull", True, np.array([0.0, 0, -120]), np.array([0.0, 0, 10]), np.array([0.0, 1]), np.full((2, 2), 9.0)
+    )
+    with style():
+        assert hull_figure([pole], "a spar").get_figheight() < 7  # a slender hull does not make an endless page
