@@ -1,5 +1,6 @@
 """Command-line application; each command imports what it needs."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -31,6 +32,13 @@ TRUTH = {  # what the records of the demo were made with: Table 1 of the paper t
     "linear_damping.B33": 1.6e5,
     "linear_damping.B55": 3.63e8,
 }
+
+
+class SchemaFile(StrEnum):
+    """Input file that has a schema."""
+
+    CAMPAIGN = "campaign"
+    PLATFORM = "platform"
 
 
 class Guarded(TyperGroup):
@@ -295,6 +303,20 @@ def sweep(
     except command.Stopped as error:
         complain(str(error))
         raise typer.Exit(STOPPED) from None
+
+
+@app.command()
+def schema(
+    file: Annotated[SchemaFile, typer.Argument(help="Which file.", show_default=False)],
+) -> None:
+    """Print the JSON Schema of campaign.yaml or platform.yaml: editors complete keys by it and mark mistakes."""
+    import json
+
+    from calibration.campaign.manifest import Manifest
+    from jaxhydro.platform.schema import Platform
+
+    kind = Manifest if file == SchemaFile.CAMPAIGN else Platform
+    typer.echo(json.dumps(kind.model_json_schema(), indent=2, ensure_ascii=False))
 
 
 @app.command()

@@ -55,7 +55,7 @@ def test_help_and_version() -> None:
     text = run("--help")
     for words in ("jaxhydro demo --out demo", "jaxhydro simulate volturnus-s", "jaxhydro calibrate my-campaign"):
         assert words in text
-    for command in ("simulate", "check", "calibrate", "diagnose", "report", "demo", "platforms"):
+    for command in ("simulate", "check", "calibrate", "diagnose", "report", "demo", "platforms", "schema"):
         assert command in text and "--help" in run(command, "--help")
     assert run("--version") == f"jaxhydro {jaxhydro.__version__}"
     assert "Usage" in run(status=2)
