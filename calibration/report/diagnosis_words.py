@@ -144,7 +144,8 @@ def describe_certainty(saved: DiagnosisFile, one: FoundEffect) -> list[str]:
         said.append(f"The squared error of {validation_tests(saved)} falls by {percent(gain)} {WHERE}.")
     else:
         said.append(f"The squared error of {validation_tests(saved)} grows by {percent(-gain)}.")
-    if evidence.left_out is not None and evidence.left_out_better is not None:
+    several = sum(row.use == "fit" for row in saved.augmented.error.values()) > 1  # else nothing is left to fit
+    if several and evidence.left_out is not None and evidence.left_out_better is not None:
         better = f"{percent(evidence.left_out_better)} are predicted better with it"
         fell = f"−2 ln L falls by {number(evidence.left_out, 3)}"
         said.append(f"Of whole fitted tests left out in turn (linearised model), {better}; {fell}.")
