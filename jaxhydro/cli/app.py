@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from jaxhydro.dynamics.model import Model
 
 BAD_INPUT, NOT_CONVERGED, STOPPED = 2, 3, 130
+MAX_SCALE = 1e5  # that a campaign takes
 STOPPED_MESSAGE = "stopped; nothing was written"
 DEMO = "volturnus-s-decays"
 TRUTH = {  # what the records of the demo were made with: Table 1 of the paper this package started from
@@ -173,6 +174,34 @@ def simulate(
     stretch = sea_options.stretching(given)
     if not (command.run(model, job, regular, heading, stretch) if sea is None else sea_command.run(model, job, sea)):
         raise typer.Exit(NOT_CONVERGED)
+
+
+@app.command(epilog=arguments.STARTING)
+def init(
+    folder: Annotated[Path, typer.Argument(help="The campaign's folder: a new or an empty one.", metavar="FOLDER")],
+    files: Annotated[
+        list[Path] | None, typer.Argument(help="Data files, one per test; they are copied.", metavar="DATA_FILE")
+    ] = None,
+    platform: Annotated[
+        str,
+        typer.Option(
+            help="A built-in name (see `jaxhydro platforms`), or a platform file.", autocompletion=options.platforms_like
+        ),
+    ] = "volturnus-s",
+    scale: Annotated[
+        float | None, typer.Option(help="Froude length scale of the records: 70 for a model at 1:70.", show_default="1")
+    ] = None,
+) -> None:
+    """Make a campaign folder to calibrate to: platform.yaml, a commented campaign.yaml, and your data files.
+
+    Columns, units, kinds of tests and released motions are guessed from the data files. Each guess is marked CHECK in
+    campaign.yaml. Without data files, campaign.yaml is an example to edit.
+    """
+    if scale is not None and not options.positive(scale, "--scale") <= MAX_SCALE:
+        raise options.wrong("--scale", f"a number up to {MAX_SCALE:g} expected, found {scale:g}")
+    from calibration.commands.init_command import init_campaign
+
+    init_campaign(folder, platform, scale, files or [])
 
 
 @app.command(epilog=arguments.FITTING)

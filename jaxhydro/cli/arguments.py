@@ -24,12 +24,13 @@ EPILOG = "\n\n".join(
         "jaxhydro simulate volturnus-s --hs 3.1 --tp 8.96 --out sea",
         "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
         "jaxhydro sweep sweep.yaml --out life",
+        "jaxhydro init my-campaign decays/*.csv --scale 70",
         "jaxhydro calibrate my-campaign --out results",
         "jaxhydro uncertainty my-campaign --calibration results/calibration.json --out uncertainty",
         "jaxhydro diagnose my-campaign --out diagnosis",
         "[bold]Formats[/bold]",
-        "docs/formats.md describes every key of platform and campaign files, and of the results. The demo's own files are the "
-        "example to copy: `jaxhydro demo` prints where they are.",
+        "docs/formats.md describes every key of platform and campaign files, and of the results. `jaxhydro init` makes a "
+        "campaign to fill in; `jaxhydro demo` prints where a complete one is.",
         "Exit status: 0 done; 2 the input is wrong; 3 not converged, or runs of a sweep failed, with what "
         "was reached written and "
         "marked so, or a motion that grew beyond all bounds, with nothing written; 130 stopped.",
@@ -43,6 +44,18 @@ EXAMPLES = "\n\n".join(
         "jaxhydro simulate volturnus-s --wave-height 4 --wave-period 10 --out wave",
         "jaxhydro simulate volturnus-s --release surge=5 --release pitch=3 --out decay",
         "jaxhydro simulate my-campaign --calibration results/calibration.json --out seas",
+    )
+)
+
+STARTING = "\n\n".join(
+    (
+        "[bold]Examples[/bold]",
+        "jaxhydro init my-campaign",
+        "jaxhydro init my-campaign decays/*.csv --scale 70",
+        "jaxhydro init my-campaign roll.xlsx --platform my-platform.yaml",
+        "[bold]What it writes[/bold]",
+        "campaign.yaml, platform.yaml and copies of the data files (docs/formats.md). A folder that is not empty is refused. "
+        "Exit status: 0 done; 2 the input is wrong, and nothing was written.",
     )
 )
 

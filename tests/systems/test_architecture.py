@@ -32,7 +32,10 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "PIL": {"jaxhydro.plots"},
     "ruamel": {"jaxhydro.errors"},
     "yaml": set(),
-    "pandas": {"jaxhydro.interop", "calibration.campaign.records", "calibration.campaign.signals"},
+    "pandas": {
+        *("jaxhydro.interop", "calibration.campaign.records", "calibration.campaign.signals"),
+        *("calibration.campaign.column_guesses", "calibration.campaign.draft_of_files"),
+    },
     "xarray": {"jaxhydro.interop", "jaxhydro.sweep", "jaxhydro.cli.simulation_files", "calibration.results"},
     "typer": {"jaxhydro.cli"},
     "rich": {"jaxhydro.cli.console"},
