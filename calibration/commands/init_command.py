@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from importlib import resources
 from pathlib import Path
 
-from calibration.campaign.campaign_draft import CampaignDraft, TestDraft, example_draft
-from calibration.campaign.column_guesses import ColumnGuess
-from calibration.campaign.draft_of_files import draft_of_files
-from calibration.campaign.draft_text import campaign_text
 from calibration.campaign.manifest import WAVE
+from calibration.new_campaign.campaign_draft import CampaignDraft, TestDraft, example_draft
+from calibration.new_campaign.column_guesses import ColumnGuess
+from calibration.new_campaign.draft_of_files import draft_of_files
+from calibration.new_campaign.draft_text import campaign_text
 from jaxhydro.cli.console import say, table
 from jaxhydro.errors import InputError, Problem, read_yaml
 from jaxhydro.files import MANIFEST, check_folder, is_there, staged
@@ -112,7 +112,7 @@ def _print(draft: CampaignDraft, folder: Path) -> None:
         say(f"1. Put one data file per test into {folder}, such as {', '.join(test.file for test in draft.tests)}.")
         say(f"2. Edit {manifest}: columns, units and tests are examples, marked CHECK.")
         say(f"3. {_about_platform(draft, folder)}")
-        say(f"4. Run: jaxhydro calibrate {folder} --out fit")
+        say(f"4. Run: jaxhydro check {folder}")
         return
     used = sum(test.use != "ignore" for test in draft.tests)
     say(f"{folder} is made: {used} of {count} {'file' if count == 1 else 'files'} can be used as guessed.", "bold")
@@ -125,7 +125,7 @@ def _print(draft: CampaignDraft, folder: Path) -> None:
         say(f"Left out, since angles are beyond 90 deg: {', '.join(out)}.")
     say(f"1. Check what is marked CHECK in {manifest}.")
     say(f"2. {_about_platform(draft, folder)}")
-    say(f"3. Run: jaxhydro calibrate {folder} --out fit")
+    say(f"3. Run: jaxhydro check {folder}")
 
 
 def _about_platform(draft: CampaignDraft, folder: Path) -> str:

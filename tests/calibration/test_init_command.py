@@ -11,11 +11,11 @@ from fake_calibration import DEMO
 from scipy.io import savemat
 from test_cli import run
 
-from calibration.campaign.column_names import channel_of, motion_in
-from calibration.campaign.draft_text import yaml_scalar
 from calibration.campaign.load_campaign import Campaign, load_campaign
 from calibration.campaign.manifest import read_manifest
 from calibration.commands.init_command import init_campaign
+from calibration.new_campaign.column_names import channel_of, motion_in
+from calibration.new_campaign.draft_text import yaml_scalar
 from jaxhydro.errors import InputError
 
 MEASURED = Path("/work/shared/measured")

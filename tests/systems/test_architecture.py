@@ -34,7 +34,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "yaml": set(),
     "pandas": {
         *("jaxhydro.interop", "calibration.campaign.records", "calibration.campaign.signals"),
-        *("calibration.campaign.column_guesses", "calibration.campaign.draft_of_files"),
+        *("calibration.new_campaign.column_guesses", "calibration.new_campaign.draft_of_files"),
     },
     "xarray": {"jaxhydro.interop", "jaxhydro.sweep", "jaxhydro.cli.simulation_files", "calibration.results"},
     "typer": {"jaxhydro.cli"},

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from calibration.campaign.campaign_draft import CampaignDraft, Columns, TestDraft
-from calibration.campaign.column_guesses import (
+from calibration.campaign.manifest import DOFS, IN_WAVES, WAVE, Use
+from calibration.new_campaign.campaign_draft import CampaignDraft, Columns, TestDraft
+from calibration.new_campaign.column_guesses import (
     ColumnGuess,
     are_radians,
     guess_columns,
@@ -19,9 +20,8 @@ from calibration.campaign.column_guesses import (
     ranges_without_unit,
     values_of,
 )
-from calibration.campaign.column_names import motion_in
-from calibration.campaign.kind_guesses import guess_kind
-from calibration.campaign.manifest import DOFS, IN_WAVES, WAVE, Use
+from calibration.new_campaign.column_names import motion_in
+from calibration.new_campaign.kind_guesses import guess_kind
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.interop.data_files import read_table
 

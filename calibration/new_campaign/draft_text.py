@@ -6,15 +6,15 @@ import json
 import re
 from collections.abc import Iterable, Iterator
 
-from calibration.campaign.campaign_draft import CampaignDraft, TestDraft
-from calibration.campaign.column_guesses import MAX_RADIAN_RANGE, ColumnGuess
 from calibration.campaign.manifest import IN_WAVES, WAVE
+from calibration.new_campaign.campaign_draft import CampaignDraft, TestDraft
+from calibration.new_campaign.column_guesses import MAX_RADIAN_RANGE, ColumnGuess
 
 MAX_COMMENT_COLUMN = 88  # comments of a block are aligned up to here
 
 _HEAD = """\
 # Campaign made by `jaxhydro init`. {mark}
-# Then: jaxhydro calibrate FOLDER --out fit. All keys are described in docs/formats.md.
+# Then: jaxhydro check FOLDER, and jaxhydro calibrate FOLDER --out fit. All keys are described in docs/formats.md.
 # Sizes and times are as the files have them, also where `scale` is not 1.
 """
 _MARKS = {

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from calibration.campaign.column_guesses import ColumnGuess
-from calibration.campaign.kind_guesses import KindGuess
 from calibration.campaign.manifest import Use
+from calibration.new_campaign.column_guesses import ColumnGuess
+from calibration.new_campaign.kind_guesses import KindGuess
 
 Columns = Mapping[str, ColumnGuess]
 
