@@ -94,7 +94,7 @@ def test_names_are_written_as_yaml(value: str | int, text: str) -> None:
 def test_the_example_is_read_once_its_records_are_there(tmp_path: Path) -> None:
     folder = tmp_path / "new"
     text = run("init", folder, "--scale", 70)
-    assert "is ready for your records" in text and f"jaxhydro calibrate {folder} --out fit" in text
+    assert "is ready for your records" in text and f"jaxhydro check {folder}" in text
     with pytest.raises(InputError, match=re.escape("no such file: 'surge-1.csv'")):
         load_campaign(folder)
     for name in ("surge-1.csv", "heave-1.csv", "pitch-1.csv"):
@@ -211,7 +211,7 @@ def test_what_is_printed(tmp_path: Path) -> None:
     record("heave-1").rename(columns={"pitch_deg": "pitch"}).to_csv(file, index=False)
     text = run("init", tmp_path / "new", file)
     assert "1 of 1 file can be used as guessed" in text and "pitch: pitch, deg?" in text and "heave: heave_m;" in text
-    assert f"jaxhydro calibrate {tmp_path / 'new'} --out fit" in text
+    assert f"jaxhydro check {tmp_path / 'new'}" in text
 
 
 def test_files_of_a_platform_are_copied_with_it(tmp_path: Path) -> None:
