@@ -2,9 +2,9 @@
 
 import json
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -309,6 +309,69 @@ def test_an_effect_that_makes_a_test_worse_than_declared_is_refused(worse, refus
         reason = describe_refusal(search.found["drift"].verdict.refused)
         left_over = "50.0 % of the motion is left with it, 10.0 % in the declared model"
         assert reason == f"surge of t is followed worse with it ({left_over})"
+
+
+@pytest.mark.parametrize(
+    ("refused", "passes", "kept"),
+    [
+        ([set()], ["abc"], "abc"),
+        ([{"a"}, set()], ["abc", "bc"], "bc"),
+        ([{"a", "b"}, set(), set()], ["abc", "b", "bc"], "bc"),  # b is no longer in doubt, and all are tried at the end
+        ([{"a", "b"}, {"b"}, set()], ["abc", "b", "c"], "c"),
+        ([{"a", "b"}, set(), {"c"}, set()], ["abc", "b", "bc", "b"], "b"),
+        ([{"a", "b", "c"}, {"b", "c"}, {"c"}], ["abc", "bc", "c"], ""),
+    ],
+)
+def test_effects_in_doubt_are_tried_again_and_all_at_the_end(refused, passes, kept):
+    """After an effect has gone only those that were refused beside it are tried; then all, from a fit to convergence."""
+    tried: list[str] = []
+
+    class Effect(NamedTuple):
+        name: str
+
+    @dataclass(frozen=True)
+    class State:
+        chosen: tuple[Effect, ...]
+
+    def state(names: str) -> Any:
+        return State(tuple(Effect(name) for name in names))
+
+    def verdict(one: Effect, refused: bool) -> Verdict:
+        reason = Refusal(RefusalKind.IMPROBABLE, (0.1,)) if refused else None
+        return Verdict(float(ord(one.name)), 0.5, True, 50.0, 9.0, 9.0, reason)
+
+    class Scripted(VerifiedSearch):
+        def __init__(self) -> None:
+            self.found, self.rejected = {}, {}
+
+        def without_unsupported(self, baseline, reached):
+            return reached
+
+        def refuse_worsening(self, baseline, reached):
+            assert {one.after.chosen for one in self.found.values()} == {reached.chosen}
+
+        def refit_all(self, reached):
+            return reached
+
+        def reject_others(self, reached):
+            pass
+
+        def reject(self, one, why, taken_out=None):
+            self.rejected[one.name] = why
+
+        def evidence(self, baseline, reached, some):
+            tried.append("".join(one.name for one in some))
+            now = refused[len(tried) - 1]
+            found = {}
+            for one in some:
+                without = State(tuple(other for other in reached.chosen if other != one))
+                found[one.name] = AcceptedEffect(1.0, without, reached, verdict(one, one.name in now), (), 1.0, np.zeros(2))
+            return found
+
+    search = Scripted()
+    found = search.verify(state(""), state("abc"))
+    assert "".join(sorted(one.name for one in found.chosen)) == kept
+    assert tried == passes and set(search.rejected) == set("abc") - set(kept)
 
 
 def test_gain_in_waves_is_where_an_effect_acts():

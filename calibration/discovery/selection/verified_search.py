@@ -50,8 +50,10 @@ class VerifiedSearch(JointSearch):
                 self.reject(least, gone.verdict.refused, gone.verdict)
                 state, converged = gone.before, False
                 tried = tuple(one for one in refused if one is not least)
-            elif converged:
-                break
+            else:
+                tried = ()
+                if converged:
+                    break
             if not tried and state.chosen:
                 state, converged = self.refit_all(state), True
                 tried = state.chosen
