@@ -24,9 +24,10 @@ def check_campaign(path: Path, out: Path | None) -> None:
     """
     campaign = load_campaign(path)
     compared = check_tables.compare_periods(campaign.records, natural_modes(campaign.model))
-    table(campaign.manifest.name, *check_tables.tests(campaign), left=5)
+    scaled = "" if campaign.manifest.scale == 1 else ", at the scale of platform.yaml"
+    table(f"{campaign.manifest.name}{scaled}", *check_tables.tests(campaign), left=5)
     if compared:
-        table("Natural periods", *check_tables.periods(compared))
+        table(f"Natural periods{scaled}", *check_tables.periods(compared))
     if campaign.findings:
         table("Warnings", *findings(campaign.findings), left=4)
     if out is not None:

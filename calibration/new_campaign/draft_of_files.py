@@ -118,7 +118,14 @@ def _check_columns(files: Sequence[Path], tables: Sequence[pd.DataFrame], guesse
             problems.append(Problem(str(file), "a time column, such as time_s", found))
         if not set(columns) & set(DOFS):
             expected = f"a column of a motion ({', '.join(DOFS)}), such as surge_m, PtfmPitch_deg or phi"
-            problems.append(Problem(str(file), expected, found, "Name the columns in the first row of the file."))
+            problems.append(
+                Problem(
+                    str(file),
+                    expected,
+                    found,
+                    "Name the columns in the first row of the file, or number them from 0 in campaign.yaml.",
+                )
+            )
     if problems:
         raise InputError("data files", problems)
 

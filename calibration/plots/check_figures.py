@@ -21,12 +21,13 @@ def figures(campaign: Campaign) -> Iterator[tuple[str, Figure]]:
     if members:
         yield "hull.png", hull_figure(members, campaign.platform.name)
     for record in campaign.records:
-        yield f"record-{safe_name(record.id)}.png", _record(record)
+        yield f"record-{safe_name(record.id)}.png", _record(record, campaign.manifest.scale)
 
 
-def _record(record: Record) -> Figure:
+def _record(record: Record, scale: float) -> Figure:
     shown = {name: np.degrees(x) if unit_of(name) == "deg" else x for name, x in record.values.items()}
     if record.wave is not None:
         shown = {"wave": record.wave, **shown}
-    title, start = f"Test {record.id}, as read from {record.file}", float(record.time[0]) + record.transient
+    scaled = "" if scale == 1 else f", times {scale:g} by Froude"
+    title, start = f"Test {record.id} of {record.file}{scaled}", float(record.time[0]) + record.transient
     return record_figure(record.time, shown, start, title, MEASURED)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from importlib import resources
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +15,12 @@ from calibration.campaign.signals import dominant_period, wave_height
 from calibration.formatting import counted, listed, number, percent
 from calibration.vocabulary import KINDS, USE, Rows
 from jaxhydro.analysis.sea_statistics import record_peak_period
-from jaxhydro.dynamics.statics import Modes
+from jaxhydro.dynamics.statics import Modes, equilibrium
+from jaxhydro.platform.schema import builtin_platforms
 from jaxhydro.units import unit_of
 
+MAX_HEAVE = 0.02  # of the draught: a platform that rests further off is not in balance as declared
+MAX_LEAN = 1.0  # deg
 MAX_PERIOD_DIFFERENCE = 0.2  # of the measured period: a fit of added mass seldom mends more
 
 
@@ -96,9 +100,14 @@ def _signed(ratio: float) -> str:
 
 def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator[str]:
     """What to look at before a fit, in sentences."""
+    own = campaign.folder / campaign.manifest.platform
+    for name in builtin_platforms() if own.is_file() else ():
+        if own.read_bytes() == (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_bytes():
+            yield f"{campaign.manifest.platform} is still the built-in {name}: put your platform in"
     warnings = len(group_findings(campaign.findings))
     if warnings:
         yield f"{counted(warnings, 'warning')} above"
+    yield from _at_rest(campaign)
     for one in compared:
         if math.isnan(one.declared):
             yield f"{one.motion}: the declared model has no natural period in it, measured {number(one.measured, 3)} s"
@@ -107,6 +116,22 @@ def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator
                 f"{one.motion}: the declared model's natural period is {number(one.declared, 3)} s, measured "
                 f"{number(one.measured, 3)} s (mass, mooring, unit or `scale`)"
             )
+
+
+def _at_rest(campaign: Campaign) -> Iterator[str]:
+    """Whether the declared platform rests where it is declared."""
+    model = campaign.model
+    rest = np.asarray(equilibrium(model))
+    draught = float(np.abs(np.asarray(model.hull.elements.start)[2]).max(initial=0.0))
+    if abs(rest[2]) > MAX_HEAVE * draught > 0:
+        side = "high" if rest[2] > 0 else "low"
+        yield (
+            f"the declared platform floats {number(abs(rest[2]), 2)} m too {side}, draught {number(draught, 3)} m "
+            "(mass against displaced volume and mooring)"
+        )
+    for name, angle in zip(("roll", "pitch"), np.degrees(rest[3:5]), strict=True):
+        if abs(angle) > MAX_LEAN:
+            yield f"the declared platform rests at {number(angle, 2)} deg of {name} (centre of mass, mooring)"
 
 
 def verdict(campaign: Campaign, compared: Sequence[PeriodComparison]) -> str:

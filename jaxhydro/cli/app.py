@@ -199,6 +199,8 @@ def init(
     """
     if scale is not None and not options.positive(scale, "--scale") <= MAX_SCALE:
         raise options.wrong("--scale", f"a number up to {MAX_SCALE:g} expected, found {scale:g}")
+    if scale is not None and scale < 1:
+        raise options.wrong("--scale", f"full-scale length over model length expected, 70 for 1:70; found {scale:g}")
     from calibration.commands.init_command import init_campaign
 
     init_campaign(folder, platform, scale, files or [])

@@ -67,6 +67,18 @@ def test_command_says_that_periods_are_off(tmp_path):
     assert "surge: the declared model's natural period is" in " ".join(result.output.split())
 
 
+def test_a_platform_out_of_balance_or_not_one_s_own_is_named(tmp_path):
+    folder = tmp_path / "new"
+    shutil.copytree(DEMO, folder)
+    text = (folder / "platform.yaml").read_text()
+    assert "mass: 20054283" in text
+    (folder / "platform.yaml").write_text(text.replace("mass: 20054283", "mass: 20554283"))
+    heavy = " ".join(doubts(load_campaign(folder), []))
+    assert "m too low, draught 20" in heavy
+    (folder / "platform.yaml").write_bytes((DEMO.parents[1] / "platforms" / "volturnus-s.yaml").read_bytes())
+    assert "platform.yaml is still the built-in volturnus-s: put your platform in" in list(doubts(load_campaign(folder), []))
+
+
 def test_command_refuses_what_cannot_be_read(tmp_path):
     result = RUNNER.invoke(cli.app, ["check", str(tmp_path), "--out", str(tmp_path / "out")])
     assert result.exit_code == 2 and not (tmp_path / "out").exists()
