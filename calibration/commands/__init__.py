@@ -1,1 +1,1 @@
-"""Commands on campaigns: init, calibrate, simulate, diagnose, uncertainty."""
+"""Commands on campaigns: init, check, calibrate, simulate, diagnose, uncertainty."""

@@ -3,10 +3,10 @@
 import re
 import shutil
 from collections.abc import Iterator, Sequence
-from importlib import resources
 from pathlib import Path
 
 from calibration.campaign.manifest import WAVE
+from calibration.formatting import counted
 from calibration.new_campaign.campaign_draft import CampaignDraft, TestDraft, example_draft
 from calibration.new_campaign.column_guesses import ColumnGuess
 from calibration.new_campaign.draft_of_files import draft_of_files
@@ -14,7 +14,7 @@ from calibration.new_campaign.draft_text import campaign_text
 from jaxhydro.cli.console import say, table
 from jaxhydro.errors import InputError, Problem, read_yaml
 from jaxhydro.files import MANIFEST, check_folder, is_there, staged
-from jaxhydro.platform.schema import Platform, builtin_platforms, load_platform
+from jaxhydro.platform.schema import Platform, builtin_platforms, builtin_text, load_platform
 
 PLATFORM_FILE = "platform.yaml"
 GUESSED_UNIT = "?"  # behind a unit that no file states
@@ -54,10 +54,9 @@ def init_campaign(folder: Path, platform: str, scale: float | None, files: Seque
 
 def _check_new(folder: Path) -> None:
     check_folder(folder, "FOLDER")
-    if is_there(folder) and (count := sum(1 for _ in folder.iterdir())):
-        found = f"a folder with {count} {'entry' if count == 1 else 'entries'}"
+    if is_there(folder) and any(folder.iterdir()):
         hint = "Name a new folder; data files are copied into it."
-        raise InputError(str(folder), [Problem("", "a folder that is new or empty", found, hint)])
+        raise InputError(str(folder), [Problem("", "a folder that is new or empty", "a folder that is not empty", hint)])
 
 
 def _is_builtin(platform: str) -> bool:
@@ -66,7 +65,7 @@ def _is_builtin(platform: str) -> bool:
 
 def _platform_text(platform: str) -> str:
     if _is_builtin(platform):
-        return (resources.files("jaxhydro") / "platforms" / f"{platform.lower()}.yaml").read_text(encoding="utf-8")
+        return builtin_text(platform.lower())
     return Path(platform).read_bytes().decode("utf-8-sig")
 
 
@@ -106,7 +105,7 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def _print(draft: CampaignDraft, folder: Path) -> None:
-    manifest, count = folder / MANIFEST, len(draft.tests)
+    manifest = folder / MANIFEST
     if not draft.from_files:
         say(f"{folder} is ready for your records.", "bold")
         say(f"1. Put one data file per test into {folder}, such as {', '.join(test.file for test in draft.tests)}.")
@@ -115,7 +114,7 @@ def _print(draft: CampaignDraft, folder: Path) -> None:
         say(f"4. Run: jaxhydro check {folder}")
         return
     used = sum(test.use != "ignore" for test in draft.tests)
-    say(f"{folder} is made: {used} of {count} {'file' if count == 1 else 'files'} can be used as guessed.", "bold")
+    say(f"{folder} is made: {used} of {counted(len(draft.tests), 'file')} can be used as guessed.", "bold")
     rows = [_row(test) for test in draft.tests]
     rows = [(*row[:-1], SAME) if i and row[-1] == rows[i - 1][-1] else row for i, row in enumerate(rows)]
     table("What was guessed", ("File", "Kind", "Motion", "Use", "Columns"), rows, left=5)

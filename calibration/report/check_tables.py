@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from importlib import resources
 from typing import NamedTuple
 
 import numpy as np
@@ -12,11 +11,12 @@ from calibration.campaign.load_campaign import Campaign
 from calibration.campaign.manifest import IN_WAVES
 from calibration.campaign.records import Record
 from calibration.campaign.signals import dominant_period, wave_height
-from calibration.formatting import counted, listed, number, percent
+from calibration.formatting import counted, listed, number
+from calibration.report.tables import signed_percent
 from calibration.vocabulary import KINDS, USE, Rows
 from jaxhydro.analysis.sea_statistics import record_peak_period
 from jaxhydro.dynamics.statics import Modes, equilibrium
-from jaxhydro.platform.schema import builtin_platforms
+from jaxhydro.platform.schema import builtin_platforms, builtin_text
 from jaxhydro.units import unit_of
 
 MAX_HEAVE = 0.02  # of the draught: a platform that rests further off is not in balance as declared
@@ -88,21 +88,17 @@ def _content(record: Record, step: float) -> str:
 def periods(compared: Sequence[PeriodComparison]) -> Rows:
     """Natural periods, measured and declared."""
     rows = [
-        (one.motion, str(one.tests), number(one.measured, 3), number(one.declared, 3), _signed(one.difference))
+        (one.motion, str(one.tests), number(one.measured, 3), number(one.declared, 3), signed_percent(one.difference))
         for one in compared
     ]
     return ("Motion", "Decays", "Measured (s)", "Declared model (s)", "Difference"), rows
-
-
-def _signed(ratio: float) -> str:
-    return f"{'+' if ratio > 0 else ''}{percent(ratio)}"
 
 
 def doubts(campaign: Campaign, compared: Sequence[PeriodComparison]) -> Iterator[str]:
     """What to look at before a fit, in sentences."""
     own = campaign.folder / campaign.manifest.platform
     for name in builtin_platforms() if own.is_file() else ():
-        if own.read_bytes() == (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_bytes():
+        if own.read_text(encoding="utf-8") == builtin_text(name):
             yield f"{campaign.manifest.platform} is still the built-in {name}: put your platform in"
     warnings = len(group_findings(campaign.findings))
     if warnings:

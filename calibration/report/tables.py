@@ -104,7 +104,7 @@ def linear_quadratic(saved: CalibrationFile) -> Rows:
 def bands(saved: CalibrationFile) -> Rows:
     """Errors of energy in bands, of tests in irregular waves."""
     rows = [
-        (id, _use(saved, id), channel, BANDS.get(band, band.replace("_", " ")), *map(_signed, both))
+        (id, _use(saved, id), channel, BANDS.get(band, band.replace("_", " ")), *map(signed_percent, both))
         for id, channels in saved.bands().items()
         for channel, row in channels.items()
         for band, both in row.items()
@@ -112,7 +112,8 @@ def bands(saved: CalibrationFile) -> Rows:
     return ("Test", "Use", "Motion", "Band", "Before", "After"), rows
 
 
-def _signed(ratio: float | None) -> str:
+def signed_percent(ratio: float | None) -> str:
+    """A ratio in whole per cent with its sign; a dash for none."""
     if ratio is None:
         return "–"
     if 100 * ratio >= LARGEST_PERCENT:

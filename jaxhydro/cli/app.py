@@ -197,13 +197,24 @@ def init(
     Columns, units, kinds of tests and released motions are guessed from the data files. Each guess is marked CHECK in
     campaign.yaml. Without data files, campaign.yaml is an example to edit.
     """
-    if scale is not None and not options.positive(scale, "--scale") <= MAX_SCALE:
-        raise options.wrong("--scale", f"a number up to {MAX_SCALE:g} expected, found {scale:g}")
-    if scale is not None and scale < 1:
-        raise options.wrong("--scale", f"full-scale length over model length expected, 70 for 1:70; found {scale:g}")
+    if scale is not None and not 1 <= scale <= MAX_SCALE:
+        expected = f"full-scale length over model length, 1 to {MAX_SCALE:g}: 70 for 1:70"
+        raise options.wrong("--scale", f"{expected} expected; found {scale:g}")
     from calibration.commands.init_command import init_campaign
 
     init_campaign(folder, platform, scale, files or [])
+
+
+@app.command()
+def check(
+    campaign: arguments.Campaign,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for figures of the hull and of every record.")] = None,
+) -> None:
+    """Read a campaign and show what it holds: tests, natural periods beside the model's, warnings. Nothing is fitted."""
+    drawn = None if out is None else options.check_folder(out)
+    from calibration.commands.check_command import check_campaign
+
+    check_campaign(campaign, drawn)
 
 
 @app.command(epilog=arguments.FITTING)
@@ -249,18 +260,6 @@ def diagnose(
 
     if not diagnose_campaign(campaign, out, figures):
         raise typer.Exit(NOT_CONVERGED)
-
-
-@app.command()
-def check(
-    campaign: arguments.Campaign,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder for figures of the hull and of every record.")] = None,
-) -> None:
-    """Read a campaign and show what it holds: tests, natural periods beside the model's, warnings. Nothing is fitted."""
-    drawn = None if out is None else options.check_folder(out)
-    from calibration.commands.check_command import check_campaign
-
-    check_campaign(campaign, drawn)
 
 
 @app.command(epilog=arguments.QUANTIFYING)

@@ -415,6 +415,11 @@ def builtin_platforms() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
 
 
+def builtin_text(name: str) -> str:
+    """Text of a built-in platform's file."""
+    return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
+
+
 def load_platform(path_or_name: str | PathLike[str]) -> Platform:
     """Checked contents of a platform file, or of a built-in platform.
 

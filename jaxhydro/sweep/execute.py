@@ -5,7 +5,6 @@ import time as clock
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from hashlib import sha256
-from importlib import resources
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,7 +17,7 @@ from jaxhydro.cli.calibrated_model import calibration_file
 from jaxhydro.dynamics.statics import stable_modes
 from jaxhydro.errors import InputError, Problem, read_yaml
 from jaxhydro.files import check_folder
-from jaxhydro.platform.schema import builtin_platforms, load_platform
+from jaxhydro.platform.schema import builtin_platforms, builtin_text, load_platform
 from jaxhydro.remarks import Remark
 from jaxhydro.sweep.batch import Setup, pace_of_platform, setup_of
 from jaxhydro.sweep.cases import named, plan_of
@@ -272,7 +271,7 @@ def run_sweep(
 def _platform_text(asked: str) -> str:
     name = asked.lower()
     if name in builtin_platforms() and not Path(asked).is_file():
-        return (resources.files("jaxhydro") / "platforms" / f"{name}.yaml").read_text(encoding="utf-8")
+        return builtin_text(name)
     platform, data = load_platform(asked), read_yaml(asked)
     # a store is elsewhere, and has to find the files; JSON is YAML
     beside = {key: data[key] | {"file": file} for key, file in platform.files().items()}

@@ -238,14 +238,14 @@ def test_what_is_refused_leaves_nothing(tmp_path: Path) -> None:
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "notes.txt").write_text("mine")
     for words, said in (
-        (["full"], "expected a folder that is new or empty, found a folder with 1 entry"),
+        (["full"], "expected a folder that is new or empty, found a folder that is not empty"),
         (["good.csv"], "which is a file"),
         (["new", "torn.csv"], "torn.csv: row 3, column heave_m: expected a number, found 'x'"),
         (["new", "none.csv"], "none.csv: file: expected a file that can be read"),
         (["new", "bare.csv"], "expected a column of a motion"),
         (["new", "good.csv", "other/good.csv"], "expected files of different names"),
         (["new", "--platform", "volturn"], "Did you mean 'volturnus-s'"),
-        (["new", "--scale", "0"], "a number > 0 expected"),
+        (["new", "--scale", "0"], "full-scale length over model length"),
     ):
         paths = [str(tmp_path / word) if word.endswith(".csv") or word in ("full", "new") else word for word in words]
         assert said in run("init", *paths, status=2)

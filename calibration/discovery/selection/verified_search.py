@@ -20,7 +20,7 @@ from calibration.fitting.cores import cores
 from jaxhydro.interrupts import stoppable_threads
 
 INDISTINGUISHABLE_SHARE = 0.1  # of an effect's log evidence: another that has all but this much is not told from it
-LAST = 0.95  # progress when every effect has been taken out once
+VERIFIED = 0.95  # progress when every effect has been taken out once
 MIN_PROBABILITY = 0.5  # of an effect and those that the records cannot tell from it
 
 
@@ -122,12 +122,12 @@ class VerifiedSearch(JointSearch):
             if not rest[one.name].variants:
                 return baseline
             stage = f"verification: the model without {effect_in_words(one.name)}"
-            share = END + (LAST - END) * (1 + tried.index(one)) / (1 + len(tried))
+            share = END + (VERIFIED - END) * (1 + tried.index(one)) / (1 + len(tried))
             return self.fit_subset(state, columns, rest[one.name], stage, share)
 
         with stoppable_threads(cores()) as pool:
             before = list(pool.map(without, tried))
-        found = {}
+        evidence = {}
         for one, fitted in zip(tried, before, strict=True):
             verdict = self.assess(fitted, state, one, last=True)
             alike = self.look_alikes(state, one)
@@ -139,8 +139,8 @@ class VerifiedSearch(JointSearch):
                 verdict = verdict._replace(refused=Refusal(RefusalKind.IMPROBABLE, (probability,)))
             gains = [score.gain for score in self.scores if (score.effect, score.degree_of_freedom) == (one.effect, one.dof)]
             held = held_out_gain(columns.model, whole.fit, rest[one.name].fit, self.test_of_pool)
-            found[one.name] = AcceptedEffect(max(gains, default=0.0), fitted, state, verdict, alike, probability, held)
-        return found
+            evidence[one.name] = AcceptedEffect(max(gains, default=0.0), fitted, state, verdict, alike, probability, held)
+        return evidence
 
     @property
     def test_of_pool(self) -> np.ndarray:
