@@ -10,7 +10,8 @@ from scipy.optimize import minimize
 
 from calibration.discovery.selection.cross_validation import held_out_gain, left_out_deviances
 from calibration.discovery.selection.joint_selection import MAX_EFFECTS, JointSelection
-from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, OwnUnknowns, bounded_minimum
+from calibration.discovery.selection.linear_model import SMALL_CHANGE, LinearModel, bounded_minimum
+from calibration.discovery.selection.pooled_products import OwnUnknowns
 from calibration.discovery.selection.subsets import Variant
 
 ROWS, POOLS = 240, 12
@@ -44,7 +45,7 @@ def test_a_fit_is_the_minimum_of_likelihood_and_priors_found_by_another_method()
         residual = model.residual + model.slopes @ both[:3]
         residual[model.own[0].rows] += model.own[0].slopes @ both[3:]
         own = (model.own[0].value + both[3:]) / model.own[0].width
-        return float(model.deviances(residual).sum() + ((both[:3] / model.width) ** 2).sum() + (own**2).sum())
+        return float(model.deviances(model.levels(residual)).sum() + ((both[:3] / model.width) ** 2).sum() + (own**2).sum())
 
     best = minimize(cost, np.zeros(5), method="BFGS")
     assert found.cost == pytest.approx(best.fun, abs=0.02)
@@ -69,7 +70,7 @@ def test_the_evidence_is_the_integral_over_the_columns() -> None:
 
     def density(b: float, a: float) -> float:
         step = np.array([a, b])
-        cost = model.deviances(model.residual + model.slopes @ step).sum() + ((step / model.width) ** 2).sum()
+        cost = model.deviances(model.levels(model.residual + model.slopes @ step)).sum() + ((step / model.width) ** 2).sum()
         return math.exp(-0.5 * (cost - found.cost)) / (2 * math.pi * model.width.prod())
 
     total = dblquad(density, -2, 2, -2, 2, epsabs=1e-9)[0]
@@ -226,3 +227,20 @@ def test_an_effect_that_is_there_predicts_what_is_left_out_and_another_does_not(
     there, absent = (held_out_gain(model, model.fit([0, 1, column]), without, group) for column in (2, 3))
     assert there.shape == (4,) and (there > 0).all()
     assert absent.sum() < 4.0 < there.sum()
+
+
+def test_products_after_a_fit_are_those_of_its_rows() -> None:
+    """With weights of the fit, and the decay's own unknowns eliminated where the fit has moved them."""
+    model = replace(linear_model(3, {0: 0.8}, noise=3.0, own=2), neutral=np.array([0.0, 0.4, 0.0]))
+    model.own[0].value[:] = 0.3
+    found = model.fit([0])
+    residual = model.residual_after(found)
+    assert found.levels == pytest.approx(model.levels(residual), rel=1e-10)
+    weight = (model.freedom / np.maximum(model.levels(residual), 1.0))[model.pool] * model.share
+    one, every = model.own[0], np.column_stack([model.slopes, residual])
+    whole = every.T @ (weight[:, None] * every)
+    side = weight[one.rows, None] * one.slopes
+    cross = side.T @ every[one.rows]
+    cross[:, -1] += (one.value + found.own[0]) / one.width**2
+    whole -= cross.T @ np.linalg.solve(side.T @ one.slopes + np.diag(1 / one.width**2), cross)
+    assert model.products_after(found) == pytest.approx(whole, rel=1e-8, abs=1e-8)

@@ -51,8 +51,14 @@ def _froude(size: float, power: float, source: str) -> Rule:
 
 
 def _hull(axis: int, source: str) -> Rule:
-    """A coordinate within the hull."""
-    return lambda case, label: Reach(*case.hull_extent(axis), None, source)
+    """A coordinate within the hull, or a little beyond: a point at the keel or on a mast is not at the end of the range."""
+
+    def rule(case: Case, label: str) -> Reach:
+        low, high = case.hull_extent(axis)
+        beyond = BEYOND_HULL * (high - low)
+        return Reach(low - beyond, high + beyond, None, source)
+
+    return rule
 
 
 JUDGEMENT = "engineering judgement: "
@@ -64,7 +70,8 @@ CENTRE = (
     "responses most sensitive to it and to mooring stiffness."
 )
 TRIM = "IMO MSC.1/Circ.1195, 2.2.3: trim within 0.2 degrees, which is 0.1 m where the metacentre is 29 m above the centre."
-HULL = JUDGEMENT + "what is tracked is fixed to the hull, between its lowest and its highest point."
+BEYOND_HULL = 0.1  # of the hull's extent
+HULL = JUDGEMENT + "what is tracked is fixed to the hull or to a short mast on it, a tenth of its extent beyond its ends at most."
 DAMPING = (
     JUDGEMENT + "hulls with bilge keels or heave plates stay below a fifth of critical damping, counted at the largest speed."
 )

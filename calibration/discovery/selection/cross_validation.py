@@ -5,7 +5,6 @@ References:
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -26,9 +25,8 @@ def left_out_deviances(model: LinearModel, columns: Sequence[int], group: np.nda
     found = np.zeros(group.max() + 1)
     for number in np.unique(group[model.used]):
         out = group == number
-        rest = replace(model, freedom=np.where(out, 0.0, model.freedom)).fit(columns, begin)
-        residual = model.residual_after(rest._replace(own=tuple(0 * y for y in rest.own)))
-        there = replace(model, residual=residual, freedom=np.where(out, model.freedom, 0.0), neutral=0 * model.neutral).fit(())
+        rest = model.with_freedom(np.where(out, 0.0, model.freedom)).fit(columns, begin)
+        there = model.with_freedom(np.where(out, model.freedom, 0.0)).fit((), start=model.vector(rest))
         found[number] = float(there.deviance.sum())
     return found
 

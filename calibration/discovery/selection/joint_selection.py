@@ -99,8 +99,7 @@ class JointSelection:
         new = {i: one for i, one in enumerate(self.variants) if i in self.among and one.name not in there}
         others = [i for i, one in new.items() if not set(one.columns) <= set(mine)]
         columns = list(dict.fromkeys([*mine, *(c for i in others for c in self.variants[i].columns)]))
-        residual = model.residual_after(subset.fit)
-        whole, _ = model.products(model.weights(residual), columns, residual)
+        whole = model.products_after(subset.fit)[np.ix_([*columns, -1], [*columns, -1])]
         base = len(mine)
         inner = whole[:base, :base] + np.diag(1 / model.width[mine] ** 2)
         rest = whole[base:, base:] - whole[base:, :base] @ pseudo_inverse(inner) @ whole[:base, base:]

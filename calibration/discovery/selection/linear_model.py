@@ -19,25 +19,11 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import lsq_linear
 
+from calibration.discovery.selection.pooled_products import OwnUnknowns, PooledProducts, WeightedSums
+
 REWEIGHTINGS = 12  # updates of the weights at most
 SMALL_CHANGE = 0.01  # of -2 ln L: an update that changes less is the last
 RIDGE = 1e-12  # of the diagonal: dependent columns stay solvable
-
-
-class OwnUnknowns(NamedTuple):
-    """A decay's own unknowns.
-
-    Attributes:
-        rows: Rows of the decay.
-        slopes: Slopes along them (m, o).
-        width: Standard deviations of their priors (o,).
-        value: Present values (o,).
-    """
-
-    rows: slice
-    slopes: np.ndarray
-    width: np.ndarray
-    value: np.ndarray
 
 
 class LinearFit(NamedTuple):
@@ -47,6 +33,7 @@ class LinearFit(NamedTuple):
         columns: Numbers of the columns (m,).
         step: Steps along them (m,).
         own: Steps of every decay's own unknowns.
+        levels: Mean square over the floor's by pool (p,).
         deviance: -2 ln L by pool (p,).
         penalty: Squares of the priors.
         matrix: Gauss-Newton matrix of the columns, the decays' own unknowns eliminated (m, m).
@@ -56,6 +43,7 @@ class LinearFit(NamedTuple):
     columns: tuple[int, ...]
     step: np.ndarray
     own: tuple[np.ndarray, ...]
+    levels: np.ndarray
     deviance: np.ndarray
     penalty: float
     matrix: np.ndarray
@@ -99,84 +87,119 @@ class LinearModel:
     neutral: np.ndarray
     ends: np.ndarray
 
+    @cached_property
+    def products(self) -> PooledProducts:
+        """Products of all columns and, as the last one, of the residual, by pool."""
+        every = np.column_stack([self.slopes, self.residual])
+        return PooledProducts.of(every, self.own, self.pool, self.share)
+
+    def with_freedom(self, freedom: np.ndarray) -> "LinearModel":
+        """The model with other degrees of freedom by pool (p,); the products stay."""
+        other = replace(self, freedom=freedom)
+        other.__dict__["products"] = self.products  # as `cached_property` keeps it
+        return other
+
     def levels(self, residual: np.ndarray) -> np.ndarray:
         """Mean square over the floor's by pool (p,)."""
         return np.bincount(self.pool, self.share * residual**2, len(self.freedom))
 
-    def deviances(self, residual: np.ndarray) -> np.ndarray:
-        """-2 ln L by pool (p,): n ln m, and n (m - 1) below the floor."""
-        level = self.levels(residual)
+    def deviances(self, level: np.ndarray) -> np.ndarray:
+        """-2 ln L by pool (p,), of mean squares by pool (p,): n ln m, and n (m - 1) below the floor."""
         return self.freedom * (np.log(np.maximum(level, 1.0)) + np.minimum(level - 1, 0.0))
 
-    def weights(self, residual: np.ndarray) -> np.ndarray:
-        """Weights of the rows (n,) in the tangent of -2 ln L."""
-        return (self.freedom / np.maximum(self.levels(residual), 1.0))[self.pool] * self.share
+    def weights(self, level: np.ndarray) -> np.ndarray:
+        """Weights of the pools that have rows (p,) in the tangent of -2 ln L, at their mean squares (p,)."""
+        return self.freedom[self.products.pools] / np.maximum(level, 1.0)
 
-    def products(self, weight: np.ndarray, columns: Sequence[int], residual: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Products of [slopes, residual] with the decays' own unknowns eliminated.
+    def eliminated(self, sums: WeightedSums, values: Sequence[np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Weighted sums of products with the decays' own unknowns eliminated.
+
+        Args:
+            sums: The sums, of columns of which the last is the residual.
+            values: The decays' own unknowns where the residual is meant.
 
         Returns:
-            Products (m + 1, m + 1), and by decay what gives its own unknowns: -(this @ [step, 1]) (o, m + 1).
+            The sum (k, k), and by decay what gives its own unknowns: -(this @ [step, 1]) (o, k).
         """
-        every = np.column_stack([self.slopes[:, list(columns)], residual])
-        whole = every.T @ (weight[:, None] * every)
-        back = []
-        for one in self.own:
-            weighed = weight[one.rows, None] * one.slopes
-            inner = weighed.T @ one.slopes + np.diag(1 / one.width**2)
-            cross = weighed.T @ every[one.rows]
-            cross[:, -1] += one.value / one.width**2
+        whole, back = sums.whole.copy(), []
+        for one, (cross, inner), value in zip(self.own, sums.own, values, strict=True):
+            cross = cross + np.pad((value / one.width**2)[:, None], ((0, 0), (cross.shape[1] - 1, 0)))
+            inner = inner + np.diag(1 / one.width**2)
             inner[np.diag_indices_from(inner)] += RIDGE * np.diag(inner).mean()
             solved = cho_solve(cho_factor(inner), cross)
             whole -= cross.T @ solved
             back.append(solved)
         return whole, back
 
-    def fit(self, columns: Sequence[int], begin: LinearFit | None = None) -> LinearFit:
+    def fit(self, columns: Sequence[int], begin: LinearFit | None = None, start: np.ndarray | None = None) -> LinearFit:
         """Fit some columns and the decays' own unknowns.
 
         Args:
             columns: Numbers of the columns.
             begin: A fit whose weights are the first.
+            start: Where all columns are before the fit, and 1 (k + 1,); None: those that are not fitted are neutral.
         """
         columns = list(columns)
         mean, width = self.mean[columns], self.width[columns]
         low, high = self.lower[columns], self.upper[columns]
-        without = self._without(columns)
-        residual = without if begin is None else self.residual_after(begin)
+        products = self.products.combined(columns, self._without(columns) if start is None else start)
+        values = [one.value for one in self.own]
+        if begin is None:
+            level = products.levels(np.append(np.zeros(len(columns)), 1.0), [0 * value for value in values])
+        else:
+            level = begin.levels[products.pools]
         cost, found = math.inf, None
         for _ in range(REWEIGHTINGS):
-            weight = self.weights(residual)
-            whole, back = self.products(weight, columns, without)
+            sums = products.weighted(self.weights(level))
+            whole, back = self.eliminated(sums, values)
             matrix = whole[:-1, :-1] + np.diag(1 / width**2)
             step = bounded_minimum(matrix, whole[:-1, -1] - mean / width**2, low, high)
             own = tuple(-(one @ np.append(step, 1.0)) for one in back)
-            residual = self._moved(without, columns, step, own)
+            level = products.levels(np.append(step, 1.0), own)
             penalty = float((((step - mean) / width) ** 2).sum())
             penalty += sum(float((((one.value + y) / one.width) ** 2).sum()) for one, y in zip(self.own, own, strict=True))
             at_bound = (step <= low) | (step >= high)
-            before, found = cost, LinearFit(tuple(columns), step, own, self.deviances(residual), penalty, matrix, at_bound)
+            spread = self._spread(level)
+            before = cost
+            found = LinearFit(tuple(columns), step, own, spread, self.deviances(spread), penalty, matrix, at_bound)
             cost = found.cost
             if abs(before - cost) < SMALL_CHANGE:
                 break
         assert found is not None
         return found
 
+    def products_after(self, found: LinearFit) -> np.ndarray:
+        """Products of all columns and of the residual after a fit, with that fit's weights (k + 1, k + 1)."""
+        sums = self.products.weighted(self.weights(found.levels[self.products.pools]))
+        values = [one.value + y for one, y in zip(self.own, found.own, strict=True)]
+        return self.eliminated(sums.moved(self.vector(found), found.own), values)[0]
+
+    def vector(self, found: LinearFit) -> np.ndarray:
+        """Where all columns are after a fit, and 1 for the residual (k + 1,)."""
+        at = self._without(found.columns)
+        at[list(found.columns)] = found.step
+        return at
+
     def residual_after(self, found: LinearFit) -> np.ndarray:
         """Residual (n,) after the steps of a fit."""
-        return self._moved(self._without(found.columns), found.columns, found.step, found.own)
-
-    def _without(self, columns: Sequence[int]) -> np.ndarray:
-        """Residual (n,) where all other columns are neutral."""
-        others = np.flatnonzero(self.neutral)
-        others = others[~np.isin(others, list(columns))]
-        return self.residual + self.slopes[:, others] @ self.neutral[others]
-
-    def _moved(self, residual: np.ndarray, columns: Sequence[int], step: np.ndarray, own: Sequence[np.ndarray]) -> np.ndarray:
-        residual = residual + self.slopes[:, list(columns)] @ step
-        for one, y in zip(self.own, own, strict=True):
+        at = self.vector(found)[:-1]
+        moved = np.flatnonzero(at)
+        residual = self.residual + self.slopes[:, moved] @ at[moved]
+        for one, y in zip(self.own, found.own, strict=True):
             residual[one.rows] += one.slopes @ y
         return residual
+
+    def _without(self, columns: Sequence[int]) -> np.ndarray:
+        """Where all other columns are neutral, and 1 for the residual (k + 1,)."""
+        at = np.append(self.neutral, 1.0)
+        at[list(columns)] = 0.0
+        return at
+
+    def _spread(self, level: np.ndarray) -> np.ndarray:
+        """Mean squares of all pools, of those of the pools that have rows."""
+        every = np.zeros(len(self.freedom))
+        every[self.products.pools] = level
+        return every
 
     def log_evidence(self, found: LinearFit) -> float:
         """Logarithm of the evidence of a fit's columns, by Laplace's approximation.
@@ -204,7 +227,7 @@ class LinearModel:
 
     def tempered(self, discrepancy: float) -> "LinearModel":
         """The model with fewer degrees of freedom, by a factor."""
-        return replace(self, freedom=self.freedom / discrepancy)
+        return self.with_freedom(self.freedom / discrepancy)
 
     @cached_property
     def used(self) -> np.ndarray:

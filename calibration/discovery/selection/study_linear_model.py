@@ -6,7 +6,8 @@ import numpy as np
 
 from calibration.discovery.effect_fits import EffectFits
 from calibration.discovery.linearisations import Linearisation
-from calibration.discovery.selection.linear_model import LinearModel, OwnUnknowns
+from calibration.discovery.selection.linear_model import LinearModel
+from calibration.discovery.selection.pooled_products import OwnUnknowns
 from calibration.discovery.study import Study
 
 MAX_COEFFICIENT_STEP = 1.0  # of a logarithm in one linearisation
