@@ -270,7 +270,15 @@ def _module_page(module: str, names: Iterable[str], described: dict[int, str]) -
     yield from (f".. currentmodule:: {module}", "")
     for kind, members in kinds.items():
         if members and kind != "Data":
-            yield from (".. rubric:: " + kind, "", ".. autosummary::", "", *(f"   {name}" for name in members), "")
+            yield from (
+                ".. rubric:: " + kind,
+                "",
+                ".. autosummary::",
+                "   :nosignatures:",
+                "",
+                *(f"   {name}" for name in members),
+                "",
+            )
     for kind, members in kinds.items():
         if members:
             yield from (kind, "-" * len(kind), "")
