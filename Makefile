@@ -5,7 +5,7 @@ READY := .venv/ready
 TESTS := $(BIN)/python -m pytest -n 2 --dist loadfile --durations=40 --durations-min=5
 export JAX_COMPILATION_CACHE_DIR ?= $(CURDIR)/.venv/jax-cache
 
-.PHONY: install demo test test-slow validate bench lint lock
+.PHONY: install demo test test-slow validate bench docs lint lock
 
 install: $(READY)
 
@@ -22,7 +22,7 @@ demo: $(READY)     ## calibrate VolturnUS-S to the nine embedded decays: coeffic
 test: $(READY)     ## what every change is tested with, on two cores
 	$(TESTS) -m "not slow and not validate"
 
-test-slow: $(READY) ## whole jobs: diagnoses, calibrations in waves, notebooks
+test-slow: $(READY) ## whole jobs: diagnoses, calibrations in waves, notebooks, the documentation site
 	$(TESTS) -m "slow and not validate"
 
 validate: $(READY) ## slow: regenerates the evidence in docs/validation.md
@@ -32,9 +32,12 @@ validate: $(READY) ## slow: regenerates the evidence in docs/validation.md
 bench: $(READY)    ## speed as ratios in one run: benchmarks/results.md
 	$(BIN)/python -m benchmarks.bench
 
+docs: $(READY)     ## the documentation site: out/docs/index.html
+	$(BIN)/sphinx-build -W --keep-going -q -b html -d out/doctrees docs out/docs
+
 lint: $(READY)
-	$(BIN)/ruff check jaxhydro calibration tests benchmarks
-	$(BIN)/ruff format --check jaxhydro calibration tests benchmarks
+	$(BIN)/ruff check jaxhydro calibration tests benchmarks docs/*.py
+	$(BIN)/ruff format --check jaxhydro calibration tests benchmarks docs/*.py
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
 

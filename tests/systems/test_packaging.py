@@ -24,8 +24,8 @@ def normal(name: str) -> str:
 
 
 def declared() -> set[str]:
-    """Distributions of all requirements but those of development; `distributed` of `dask[distributed]` too."""
-    extras = [one for name, some in PROJECT["optional-dependencies"].items() if name != "dev" for one in some]
+    """All required distributions but those of development and documentation; `distributed` of `dask[distributed]`, too."""
+    extras = [one for name, some in PROJECT["optional-dependencies"].items() if name not in ("dev", "docs") for one in some]
     parts = [re.match(r"([\w.-]+)(?:\[(.*)\])?", one).groups("") for one in (*PROJECT["dependencies"], *extras)]
     return {normal(name) for name, more in parts for name in (name, *more.split(","))}
 
