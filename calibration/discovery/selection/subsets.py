@@ -77,9 +77,9 @@ class Selection:
 
     @property
     def best(self) -> Subset:
-        """The subset with the fewest parameters, unless the evidence against it is strong."""
+        """The most probable subset of those with the fewest effects against which the evidence is not strong."""
         near = [one for one in self.subsets if one.evidence > self.subsets[0].evidence - STRONG_EVIDENCE]
-        return min(near, key=lambda one: (len(one.fit.columns), -one.evidence))
+        return min(near, key=lambda one: (len(one.variants), -one.evidence))
 
     def names(self, subset: Subset) -> tuple[str, ...]:
         """Names of a subset's effects."""
