@@ -1,6 +1,6 @@
 """Result of a calibration: estimates, and tests measured against simulated."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -10,6 +10,10 @@ from calibration.campaign.manifest import Use
 from jaxhydro.dynamics.model import Model
 
 if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.axes import Axes
+
     from calibration.identifiability.directions import Identifiability
 
 
@@ -165,3 +169,52 @@ class Calibration:
         scored = [s for test in self.tests if test.use == use for s in test.series if s.scored]
         parts = [s.relative for s in scored if channel in (None, s.channel)]
         return float(sum(parts)) if parts else None
+
+    def __repr__(self) -> str:
+        """The result in a sentence, and the parameters with their standard deviations."""
+        from calibration.display.summaries import calibration_summary
+
+        return calibration_summary(self)
+
+    def _repr_html_(self) -> str:
+        from calibration.display.data_frames import calibration_html
+
+        return calibration_html(self)
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Measured and simulated motions of all tests (m, deg), as in simulated.nc.
+
+        Returns:
+            Variables `measured`, `simulated`, `before` by test, channel and time; NaN where there is none.
+        """
+        from calibration.results.write_calibration import dataset
+
+        return dataset(self)
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Calibrated parameters, in their own units.
+
+        Returns:
+            Columns `value`, `standard_deviation` (NaN where the records do not determine the parameter), `unit`, `start`,
+            `identifiable`, `at_bound` and `meaning`; index `parameter`.
+        """
+        from calibration.display.data_frames import parameters_frame
+
+        return parameters_frame(self)
+
+    def plot(self, tests: Collection[str] | None = None) -> "list[Axes]":
+        """Plot measured motion, that of the calibrated model and that before, of all tests.
+
+        Args:
+            tests: Names of the tests to show; None: all.
+
+        Returns:
+            Axes, one for each motion that counts in the objective; `axes[0].figure` is the figure.
+
+        Raises:
+            UnknownName: There is no such test.
+            ValueError: There is no test to show.
+        """
+        from calibration.display.axes import calibration_axes
+
+        return calibration_axes(self, tests)

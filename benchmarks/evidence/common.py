@@ -20,10 +20,10 @@ KEPT_ELSEWHERE = ("diagnoses",)  # sections with a file of their own in docs
 DEMO = ROOT / "jaxhydro" / "campaigns" / "volturnus-s-decays"
 # the edge of the packages, and sweeps, which only that edge knows: no number depends on them
 EDGE = {
-    *(ROOT / "jaxhydro" / name for name in ("__main__.py", "cli", "sweep", "plots", "files.py", "interrupts.py")),
+    *(ROOT / "jaxhydro" / name for name in ("__main__.py", "cli", "sweep", "display", "plots", "files.py", "interrupts.py")),
     *(
         ROOT / "calibration" / name
-        for name in ("plots", "report", "commands", "new_campaign", "formatting.py", "vocabulary.py")
+        for name in ("display", "plots", "report", "commands", "new_campaign", "formatting.py", "vocabulary.py")
     ),
 }
 TRUE = {

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from calibration.campaign.checks import Finding, check_records
 from calibration.campaign.manifest import IN_WAVES, Manifest, platform_source, read_manifest
@@ -19,6 +20,10 @@ from jaxhydro.dynamics.statics import EquilibriumError
 from jaxhydro.errors import InputError, Problem
 from jaxhydro.platform.build import build
 from jaxhydro.platform.schema import Platform, load_platform
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +65,44 @@ class Campaign:
         if id not in records:
             raise unknown("test", id, records)
         return records[id]
+
+    def __repr__(self) -> str:
+        """Tests by kind, use and released motion."""
+        from calibration.display.summaries import campaign_summary
+
+        return campaign_summary(self)
+
+    def _repr_html_(self) -> str:
+        from calibration.display.data_frames import campaign_html
+
+        return campaign_html(self)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Tests, at full scale.
+
+        Returns:
+            Columns `kind`, `use`, `released` (motion of a decay), `duration_s`, `step_s`, `samples` and `file`; index `test`.
+        """
+        from calibration.display.data_frames import tests_frame
+
+        return tests_frame(self)
+
+    def plot(self, tests: Collection[str] | None = None) -> list[Axes]:
+        """Plot the records: the released motion of a decay, else the wave and the motions that move.
+
+        Args:
+            tests: Names of the tests to show; None: all.
+
+        Returns:
+            Axes, one for each motion shown (m, deg); `axes[0].figure` is the figure.
+
+        Raises:
+            UnknownName: There is no such test.
+            ValueError: There is no test to show.
+        """
+        from calibration.display.axes import campaign_axes
+
+        return campaign_axes(self, tests)
 
 
 def _of_other_waves(manifest: Manifest, platform: Platform) -> Iterator[Problem]:

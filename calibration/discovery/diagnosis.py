@@ -1,9 +1,10 @@
 """Result of a diagnosis: effects with evidence, scores, residuals, latent forces."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +12,11 @@ from calibration.discovery.acceptance import Verdict
 from calibration.discovery.refusal import Refusal
 from calibration.residuals.measured_seas import Options
 from calibration.result import Calibration, Estimate
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.axes import Axes
 
 
 class Outcome(StrEnum):
@@ -342,3 +348,53 @@ class Diagnosis:
     seas: Options | None = None
     complete: bool = True
     predictions: tuple[Prediction, ...] = ()
+
+    def __repr__(self) -> str:
+        """The verdict in a sentence, the effects with their sizes, and what is left."""
+        from calibration.display.summaries import diagnosis_summary
+
+        return diagnosis_summary(self)
+
+    def _repr_html_(self) -> str:
+        from calibration.display.data_frames import diagnosis_html
+
+        return diagnosis_html(self)
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Motions of all tests (m, deg): measured, and simulated without and with the effects found, as in simulated.nc.
+
+        Returns:
+            Variables `measured`, `simulated` (with the effects), `before` (without) by test, channel and time; NaN where there
+            is none. `half_width`, where tests were held out, is that of the band of 95 %.
+        """
+        from calibration.results.write_diagnosis import motions, paired
+
+        return motions(self, paired(self))
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Effects found, a row for each of their parameters, in SI units.
+
+        Returns:
+            Columns `effect`, `motion`, `value`, `standard_deviation`, `unit`, `lower` and `upper` (plausible range),
+            `probability`, `delta_bic`, `holdout_gain`, `explained` and `in_doubt`; index `parameter`.
+        """
+        from calibration.display.data_frames import effects_frame
+
+        return effects_frame(self)
+
+    def plot(self, tests: Collection[str] | None = None) -> "list[Axes]":
+        """Plot measured motion, and simulated motion before and after the effects were added; held-out tests first.
+
+        Args:
+            tests: Names of the tests to show; None: all.
+
+        Returns:
+            Axes, one for each motion that counts in the objective; `axes[0].figure` is the figure.
+
+        Raises:
+            UnknownName: There is no such test.
+            ValueError: There is no test to show.
+        """
+        from calibration.display.axes import diagnosis_axes
+
+        return diagnosis_axes(self, tests)

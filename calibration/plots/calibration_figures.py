@@ -81,10 +81,10 @@ def test_figure(test: TestFit) -> Figure:
     others = [series for series in test.series if series is not main]
     figure, axes = stack([1.55, 0.7, *[0.68] * len(others)])
     time = test.time - test.time[0]
-    artists = _compare(axes[0], time, main, test.start.get(main.channel))
+    artists = compare_motions(axes[0], time, main, test.start.get(main.channel))
     axes[0].set_ylabel(_axis(main.channel))
     for ax, series in zip(axes[2:], others):
-        _compare(ax, time, series, test.start.get(series.channel), 0.5)
+        compare_motions(ax, time, series, test.start.get(series.channel), 0.5)
         ax.set_ylabel(_axis(series.channel, "\n"))
     residual = for_people(main.channel, main.measured - main.simulated)
     noise = 2 * float(for_people(main.channel, main.noise))
@@ -101,7 +101,10 @@ def _axis(channel: str, between: str = " ") -> str:
     return f"{channel.capitalize()}{between}({unit_of(channel)})"
 
 
-def _compare(ax: Axes, time: np.ndarray, series: Series, before: np.ndarray | None, width: float = 1.0) -> dict[str, Artist]:
+def compare_motions(
+    ax: Axes, time: np.ndarray, series: Series, before: np.ndarray | None, width: float = 1.0
+) -> dict[str, Artist]:
+    """Draw a motion (m, deg) over time (s): measured, calibrated and, if there is one, before; gives the lines by name."""
     name = series.channel
     rows = [("measured", series.measured, MEASURED, 1.5, 3.0), ("calibrated", series.simulated, SIMULATED, 0.8, 4.0)]
     if before is not None:

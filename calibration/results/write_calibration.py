@@ -63,11 +63,12 @@ def write_calibration(
     return folder
 
 
-def document(calibration: Calibration) -> CalibrationFile:
+def document(calibration: Calibration, damping: bool = True) -> CalibrationFile:
     """Content of calibration.json without figures.
 
     Args:
         calibration: The calibration.
+        damping: Whether decays are analysed for linear and quadratic damping, which takes most of the time.
 
     Raises:
         NotFinite: A parameter or the objective of the fitted tests is not finite.
@@ -77,7 +78,7 @@ def document(calibration: Calibration) -> CalibrationFile:
         platform=calibration.platform,
         jaxhydro=jaxhydro.__version__,
         baseline=fitted_model(calibration),
-        tests={test.id: _about(test) for test in calibration.tests},
+        tests={test.id: _about(test, damping) for test in calibration.tests},
     )
 
 
@@ -155,7 +156,7 @@ def _before(test: TestFit, series: Series) -> MotionError | None:
     return _error(series.channel, rmse, rmse / max(float(np.std(series.measured)), 1e-300))
 
 
-def _about(test: TestFit) -> TestDescription:
+def _about(test: TestFit, damping: bool) -> TestDescription:
     return TestDescription(
         use=test.use,
         kind=test.kind,
@@ -165,7 +166,7 @@ def _about(test: TestFit) -> TestDescription:
         samples=len(test.time),
         **stated(
             bands_before=_bands(test, "before"),  # the contract's `error` has no place for it
-            linear_quadratic=_linear_quadratic(test) if test.kind == "decay" else None,
+            linear_quadratic=_linear_quadratic(test) if damping and test.kind == "decay" else None,
         ),
     )
 

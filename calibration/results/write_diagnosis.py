@@ -55,17 +55,35 @@ def write_diagnosis(diagnosis: Diagnosis, folder: str | PathLike[str], figures: 
 
             drawn = draw(plots.figures(diagnosis, compared), temporary)
         content.model_copy(update={"figures": drawn}).write(temporary / DIAGNOSIS_FILE)
-        motion = dataset(compared)
-        motion.attrs["title"] = f"Diagnosis of {diagnosis.campaign}"
-        motion["simulated"].attrs["long_name"] = "motion of the model with what was found missing"
-        motion["before"].attrs["long_name"] = "motion of the declared model, calibrated"
-        write_motion(with_bands(motion, diagnosis) if diagnosis.predictions else motion, temporary)
+        write_motion(motions(diagnosis, compared), temporary)
     return folder
 
 
-def document(diagnosis: Diagnosis) -> DiagnosisFile:
-    """Content of diagnosis.json without figures. Raises NotFinite."""
-    augmented = outputs.document(paired(diagnosis))
+def motions(diagnosis: Diagnosis, compared: Calibration) -> xr.Dataset:
+    """Content of simulated.nc: motions measured, and simulated without and with what was found missing, in m and deg.
+
+    Args:
+        diagnosis: The diagnosis.
+        compared: The two fits, `paired`.
+    """
+    motion = dataset(compared)
+    motion.attrs["title"] = f"Diagnosis of {diagnosis.campaign}"
+    motion["simulated"].attrs["long_name"] = "motion of the model with what was found missing"
+    motion["before"].attrs["long_name"] = "motion of the declared model, calibrated"
+    return with_bands(motion, diagnosis) if diagnosis.predictions else motion
+
+
+def document(diagnosis: Diagnosis, damping: bool = True) -> DiagnosisFile:
+    """Content of diagnosis.json without figures.
+
+    Args:
+        diagnosis: The diagnosis.
+        damping: Whether decays are analysed for linear and quadratic damping, which takes most of the time.
+
+    Raises:
+        NotFinite: A parameter or the objective of the fitted tests is not finite.
+    """
+    augmented = outputs.document(paired(diagnosis), damping)
     return DiagnosisFile(
         campaign=diagnosis.campaign,
         platform=diagnosis.baseline.platform,

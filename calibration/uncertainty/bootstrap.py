@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import equinox as eqx
 import jax
@@ -27,6 +27,9 @@ from jaxhydro.choices import check
 from jaxhydro.errors import InputError
 from jaxhydro.errors import Problem as Wrong
 from jaxhydro.interrupts import stop_if_asked
+
+if TYPE_CHECKING:
+    from arviz import InferenceData
 
 CHUNK_SIZE = 16
 MAX_STEPS = 12  # Gauss-Newton at most
@@ -83,6 +86,25 @@ class Bootstrap:
             ends = (2 * self.estimate[i] - ends)[::-1]
         low, high = sorted(self.likelihood.value(label, float(x)) for x in ends)
         return low, high
+
+    def __repr__(self) -> str:
+        """Method, and numbers of draws and parameters."""
+        draws, count = self.value.shape
+        return f"Bootstrap over {self.method}: {draws} draws of {count} parameters, {self.unsettled} of them not converged"
+
+    def to_arviz(self) -> InferenceData:
+        """Draws as ArviZ's inference data (an extra: pip install jaxhydro[arviz]).
+
+        Returns:
+            Inference data whose group `posterior` has a variable for each parameter, by chain and draw, in its own unit. The
+            draws are one chain. They are a sampling distribution, not a posterior: the attribute `method` says so.
+
+        Raises:
+            ImportError: ArviZ is not installed.
+        """
+        from calibration.display.arviz_draws import inference_data
+
+        return inference_data(self)
 
 
 @eqx.filter_jit

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jax
 import jax.numpy as jnp
@@ -19,6 +19,9 @@ from calibration.residuals.abstract_residual import Unknowns
 from calibration.residuals.decays import DecayProblem
 from calibration.uncertainty.likelihood import DEFAULT_LEVEL, Likelihood, coordinates
 from jaxhydro.interrupts import stop_if_asked, stopping
+
+if TYPE_CHECKING:
+    from arviz import InferenceData
 
 MAX_TREE_DEPTH = 6  # a tree of 63 steps: where the density bends, deeper ones take hours
 MIN_DRAWS = 50  # draws of every chain that are worth keeping where it is stopped
@@ -60,6 +63,25 @@ class Samples:
         mine = self.value[..., self.likelihood.index(label)].ravel()
         low, high = np.quantile(mine, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
         return float(low), float(high)
+
+    def __repr__(self) -> str:
+        """Numbers of chains, draws and parameters, and whether the chains agree."""
+        chains, draws, count = self.value.shape
+        agree = f"R-hat at most {float(np.max(self.r_hat)):.3f}, at least {float(np.min(self.effective)):.0f} effective draws"
+        return f"Samples: {chains} chains of {draws} draws of {count} parameters; {agree}; {self.divergences} divergent steps"
+
+    def to_arviz(self) -> InferenceData:
+        """Draws as ArviZ's inference data (an extra: pip install jaxhydro[arviz]).
+
+        Returns:
+            Inference data whose group `posterior` has a variable for each parameter, by chain and draw, in its own unit.
+
+        Raises:
+            ImportError: ArviZ is not installed.
+        """
+        from calibration.display.arviz_draws import inference_data
+
+        return inference_data(self)
 
 
 Energy = Callable[[Float[Array, " n"]], Float[Array, ""]]

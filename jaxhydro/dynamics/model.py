@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import jax
@@ -30,6 +30,9 @@ from jaxhydro.waves.quadratic_transfer import Transfer
 from jaxhydro.waves.sea import AbstractSea, StillWater
 from jaxhydro.waves.sea_state import SeaState
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 class Model(eqx.Module):
     """Platform model: a rigid body, its strips, and the loads on it.
@@ -53,6 +56,37 @@ class Model(eqx.Module):
     sensors: tuple[AbstractSensorEffect, ...] = ()
     conventions: Conventions = eqx.field(static=True, default=Conventions())
     remarks: tuple[Remark, ...] = eqx.field(static=True, default=())
+
+    def __repr__(self) -> str:
+        """Mass, strips, loads and parameters; shapes where the numbers are not computed yet."""
+        from jaxhydro.display.summaries import model_summary
+
+        return model_summary(self) if self._has_numbers() else eqx.Module.__repr__(self)
+
+    def _repr_html_(self) -> str | None:
+        from jaxhydro.display.data_frames import model_html
+
+        return model_html(self) if self._has_numbers() else None
+
+    def _has_numbers(self) -> bool:
+        """Whether it holds the numbers of one platform, and not shapes, tracers or several platforms."""
+        from jaxhydro.display.summaries import are_numbers
+
+        parts = (self.environment, self.body, self.hull.elements, self.hull.strips)
+        return are_numbers(parts) and jnp.ndim(self.body.mass) == 0
+
+    def plot(self) -> "list[Axes]":
+        """Plot the hull from the side, with still water, and from above.
+
+        Returns:
+            Axes of the two views (m); `axes[0].figure` is the figure.
+
+        Raises:
+            ValueError: The platform has no members.
+        """
+        from jaxhydro.display.axes import model_axes
+
+        return model_axes(self)
 
     @property
     def size(self) -> Float[Array, ""]:

@@ -1,7 +1,7 @@
 """Simulated motion over time, and decrement and period of decays."""
 
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -9,6 +9,11 @@ from jaxtyping import Array, Float
 
 from jaxhydro.choices import unknown
 from jaxhydro.environment import DOFS
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.axes import Axes
 
 MIN_DISTANCE_FROM_END = (
     0.2  # of a half cycle: an extreme nearer than this to an end of the record may be the record's, not the motion's
@@ -42,6 +47,62 @@ class Response(eqx.Module):
         if dof not in DOFS:
             raise unknown("degree of freedom", dof, DOFS)
         return self.position[..., DOFS.index(dof)]
+
+    def __repr__(self) -> str:
+        """Duration, step and range of each motion; shapes where there are several motions, or none is computed yet."""
+        from jaxhydro.display.summaries import response_summary
+
+        return response_summary(self) if self._is_motion() else eqx.Module.__repr__(self)
+
+    def _repr_html_(self) -> str | None:
+        from jaxhydro.display.data_frames import response_html
+
+        return response_html(self) if self._is_motion() else None
+
+    def _is_motion(self) -> bool:
+        """Whether it holds the numbers of one motion, and not shapes, tracers or several motions."""
+        from jaxhydro.display.summaries import are_numbers
+
+        return are_numbers((self.time, self.position)) and np.ndim(self.position) == 2
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Motions (m, degree) over time (s) as a data set after the CF conventions.
+
+        Returns:
+            Variables `surge` ... `yaw` with `units`, `long_name` and `standard_name`, over the coordinate `time`.
+
+        Raises:
+            ValueError: There are several motions in one, (..., t, 6).
+        """
+        from jaxhydro.display.motion_dataset import response_dataset
+
+        return response_dataset(self)
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Motions (m, deg) over time (s), with the column names of motion.csv.
+
+        Returns:
+            Columns `surge_m` ... `yaw_deg`, index `time_s`.
+
+        Raises:
+            ValueError: There are several motions in one, (..., t, 6).
+        """
+        from jaxhydro.display.data_frames import response_frame
+
+        return response_frame(self)
+
+    def plot(self) -> "list[Axes]":
+        """Plot the motions that move (m, deg) over time (s).
+
+        Returns:
+            Axes, one for each motion; `axes[0].figure` is the figure.
+
+        Raises:
+            ValueError: There are several motions in one, (..., t, 6).
+        """
+        from jaxhydro.display.axes import response_axes
+
+        return response_axes(self)
 
 
 class Cycles(NamedTuple):

@@ -262,15 +262,24 @@ def free_decay(
     model: Model,
     displacement: Mapping[str, float] | Float[Array, "6"],
     times: Float[Array, " t"] | np.ndarray,
-    **options,
+    *,
+    sea: AbstractSea | None = None,
+    rate: Mapping[str, float] | Float[Array, "6"] | None = None,
+    step: float | None = None,
+    method: Method | None = None,
+    adjoint: Adjoint = "forward",
 ) -> Response:
-    """Simulate a free decay in still water, released at rest.
+    """Simulate a free decay, in still water and released at rest unless a sea or a rate is given.
 
     Args:
         model: The platform.
         displacement: Displacement (m, rad) from the static equilibrium, by name or (6,).
         times: Output times (s), (t,).
-        **options: Other arguments of `simulate`.
+        sea: The sea; None: still water.
+        rate: Initial rates of surge ... yaw (m/s, rad/s); None: at rest.
+        step: Largest time step (s), as in `simulate`.
+        method: Integration scheme, as in `simulate`.
+        adjoint: "forward" or "reverse", as in `simulate`.
 
     Returns:
         Motion at `times`.
@@ -281,7 +290,8 @@ def free_decay(
     released = by_name(displacement)
     if bool((jnp.abs(released[3:]) > math.pi / 2).any()):
         raise ValueError(f"angles are in rad, at most pi/2 here, found {float(jnp.abs(released[3:]).max()):g}")
-    return simulate(model, times, position=dict(zip(DOFS, released)), **options)
+    position = dict(zip(DOFS, released))
+    return simulate(model, times, sea, position=position, rate=rate, step=step, method=method, adjoint=adjoint)
 
 
 def by_name(values: Mapping[str, float] | Float[Array, "6"] | None) -> Float[Array, "6"]:

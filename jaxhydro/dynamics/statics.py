@@ -1,7 +1,7 @@
 """Static equilibrium, natural modes and periods."""
 
 from collections.abc import Collection
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import equinox as eqx
 import jax
@@ -13,6 +13,9 @@ from jaxhydro.choices import unknown
 from jaxhydro.dynamics.model import Model, State
 from jaxhydro.environment import DOFS
 from jaxhydro.waves.sea import StillWater
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NEWTON_TOLERANCE = 1e-12  # of the position: the last step
 ITERATIONS = 64
@@ -164,6 +167,27 @@ class Modes(NamedTuple):
             raise unknown("degree of freedom", dof, DOFS)
         at = self.number(dof)
         return float("nan") if at is None else float(self.period[at])
+
+    def __repr__(self) -> str:
+        """Natural periods by motion."""
+        from jaxhydro.display.summaries import modes_summary
+
+        return modes_summary(self)
+
+    def _repr_html_(self) -> str:
+        from jaxhydro.display.data_frames import modes_html
+
+        return modes_html(self)
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Natural periods and mode shapes.
+
+        Returns:
+            One row for each mode: `motion`, `period_s`, and its shape in `surge` ... `yaw`, the largest entry 1.
+        """
+        from jaxhydro.display.data_frames import modes_frame
+
+        return modes_frame(self)
 
 
 def strain_energy(stiffness: Float[Array, "6 6"], vectors: Float[Array, "6 m"]) -> Float[Array, "6 m"]:

@@ -1,13 +1,14 @@
 """Convergence of motions with the number of load elements."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Array, Float
 
 from jaxhydro.choices import unknown
+from jaxhydro.dynamics.integrate import Method
 from jaxhydro.dynamics.simulate import simulate
 from jaxhydro.dynamics.statics import natural_modes
 from jaxhydro.environment import DOFS
@@ -68,7 +69,10 @@ def convergence(
     points: int = 2,
     transient: float = 0.0,
     dofs: Sequence[str] = ("surge", "heave", "pitch"),
-    **options: Any,
+    position: Mapping[str, float] | Float[Array, "6"] | None = None,
+    rate: Mapping[str, float] | Float[Array, "6"] | None = None,
+    step: float | None = None,
+    method: Method | None = None,
 ) -> Convergence:
     """Simulate a sea with several numbers of load elements, and compare the motions.
 
@@ -82,7 +86,10 @@ def convergence(
         points: Gauss points per load element.
         transient: Time (s) at the start that is left out.
         dofs: Degrees of freedom to compare.
-        **options: Other arguments of `simulate`.
+        position: Initial position (m, rad), as in `simulate`.
+        rate: Initial rates (m/s, rad/s), as in `simulate`.
+        step: Largest time step (s), as in `simulate`.
+        method: Integration scheme, as in `simulate`.
 
     Returns:
         Band integrals, differences and natural periods by number of elements.
@@ -104,7 +111,8 @@ def convergence(
         model = build(with_elements(platform, group, int(number), points))
         modes = natural_modes(model)
         periods.append([modes.of(dof) for dof in dofs])
-        motions.append(np.asarray(simulate(model, times, sea, **options).position)[kept])
+        motion = simulate(model, times, sea, position=position, rate=rate, step=step, method=method)
+        motions.append(np.asarray(motion.position)[kept])
     integral: dict[str, dict[str, np.ndarray]] = {}
     difference = {}
     finest = motions[int(np.argmax(elements))]

@@ -1,4 +1,4 @@
-"""Figure of a hull: its members from the side and from above."""
+"""Figure of a hull: its members, or the load elements of a model, from the side and from above."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
+from jaxhydro.hull.hull import Hull
 from jaxhydro.hull.strips import Member
 from jaxhydro.plots.style import GREY, MEASURED, WAVE, header, stack
 
@@ -27,12 +28,38 @@ def outline(member: Member) -> np.ndarray:
     Returns:
         Points (m) of every section, (sections, points, 3).
     """
-    angle = np.linspace(0.0, 2 * np.pi, POINTS, endpoint=False)
-    section = np.column_stack([np.cos(angle), np.sin(angle)]) / 2 if member.circular else CORNERS
+    section = _section(member.circular)
     one, two = (np.asarray(direction) for direction in member.directions)
     middles = member.a + np.asarray(member.stations)[:, None] * (member.b - member.a)
     across = section[None] * np.asarray(member.sizes)[:, None]
     return middles[:, None] + across[..., :1] * one + across[..., 1:] * two
+
+
+def _section(circular: bool) -> np.ndarray:
+    """Points of a section over its two sizes, (points, 2)."""
+    angle = np.linspace(0.0, 2 * np.pi, POINTS, endpoint=False)
+    return np.column_stack([np.cos(angle), np.sin(angle)]) / 2 if circular else CORNERS
+
+
+def element_outlines(hull: Hull) -> list[np.ndarray]:
+    """Points on the surface of each load element of a hull, at its two ends.
+
+    Args:
+        hull: The hull.
+
+    Returns:
+        Points (m) of each element, (2, points, 3).
+    """
+    elements, strips, found = hull.elements, hull.strips, []
+    for number, length in enumerate(np.asarray(elements.length)):
+        strip = strips.element.index(number)  # sizes vary linearly along an element, as each of its strips has them
+        section = _section(float(strips.shape[strip]) < 1.0)
+        along = np.array([0.0, length])[:, None]
+        middles = np.asarray(elements.start)[:, number] + along * np.asarray(elements.axis)[:, number]
+        sizes = np.asarray(strips.size)[:, strip] + along * np.asarray(strips.taper)[:, strip]
+        across = section[None] * sizes[:, None]
+        found.append(middles[:, None] + across @ np.asarray(strips.directions)[:, :, strip].T)
+    return found
 
 
 def hull_figure(members: Sequence[Member], title: str) -> Figure:
@@ -42,7 +69,16 @@ def hull_figure(members: Sequence[Member], title: str) -> Figure:
         members: The members.
         title: Title of the figure.
     """
-    outlines = [outline(one) for one in members]
+    return drawing([outline(one) for one in members], title)
+
+
+def drawing(outlines: Sequence[np.ndarray], title: str) -> Figure:
+    """Outlines of `outline` or `element_outlines` as a figure. Call within `style`.
+
+    Args:
+        outlines: Points (m) of the sections of each part, (sections, points, 3).
+        title: Title of the figure.
+    """
     every = np.concatenate([points.reshape(-1, 3) for points in outlines])
     low, high = every.min(axis=0), every.max(axis=0)
     margin = MARGIN * float((high - low).max())

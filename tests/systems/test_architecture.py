@@ -33,10 +33,15 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     "ruamel": {"jaxhydro.errors"},
     "yaml": set(),
     "pandas": {
+        *("jaxhydro.display", "calibration.display"),
         *("jaxhydro.interop", "calibration.campaign.records", "calibration.campaign.signals"),
         *("calibration.new_campaign.column_guesses", "calibration.new_campaign.draft_of_files"),
     },
-    "xarray": {"jaxhydro.interop", "jaxhydro.sweep", "jaxhydro.cli.simulation_files", "calibration.results"},
+    "xarray": {
+        *("jaxhydro.interop", "jaxhydro.sweep", "jaxhydro.display", "jaxhydro.cli.simulation_files"),
+        "calibration.results",
+    },
+    "arviz": {"calibration.display"},
     "typer": {"jaxhydro.cli"},
     "rich": {"jaxhydro.cli.console"},
     "filelock": {"jaxhydro.sweep.store"},
@@ -61,9 +66,11 @@ def modules() -> dict[str, ast.Module]:
 
 @cache
 def imports(name: str) -> tuple[tuple[str, str], ...]:
-    """(module, name in it or "") of all imports of a module, those inside functions too."""
+    """(module, name in it or "") of all imports of a module, those inside functions too, but those for annotations alone."""
+    blocks = [node for node in ast.walk(modules()[name]) if isinstance(node, ast.If)]
+    annotations = {id(one) for node in blocks if ast.unparse(node.test) == "TYPE_CHECKING" for one in ast.walk(node)}
     found = []
-    for node in ast.walk(modules()[name]):
+    for node in (node for node in ast.walk(modules()[name]) if id(node) not in annotations):
         if isinstance(node, ast.Import):
             found += [(alias.name, "") for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
