@@ -71,7 +71,7 @@ CENTRE = (
 )
 TRIM = "IMO MSC.1/Circ.1195, 2.2.3: trim within 0.2 degrees, which is 0.1 m where the metacentre is 29 m above the centre."
 BEYOND_HULL = 0.1  # of the hull's extent
-HULL = JUDGEMENT + "what is tracked is fixed to the hull or to a short mast on it, a tenth of its extent beyond its ends at most."
+HULL = JUDGEMENT + "what is tracked is fixed to the hull, or to a mast that is a tenth of its extent long at most."
 DAMPING = (
     JUDGEMENT + "hulls with bilge keels or heave plates stay below a fifth of critical damping, counted at the largest speed."
 )
