@@ -7,7 +7,7 @@ from calibration.formatting import listed
 from calibration.report import tables
 from calibration.report.interactive import motion_view
 from calibration.report.summary import calibration_sentence, summary_of
-from calibration.report.web_page import images, inputs_table, render, written_on
+from calibration.report.web_page import images, inputs_table, notes_by_kind, render, written_on
 from calibration.results.calibration_file import CalibrationFile
 from calibration.results.result_folder import RESULT_FILE
 
@@ -29,6 +29,7 @@ def page(saved: CalibrationFile, folder: Path) -> str:
         undetermined=[i for i, one in enumerate(saved.baseline.parameters.values()) if not one.identifiable],
         images=images(saved.figures, folder).values(),
         motion=motion_view(folder),
+        notes=notes_by_kind(saved.baseline.notes, saved.baseline.notes_about),
         date=written_on(folder / RESULT_FILE),
         inputs=inputs_table(
             saved.jaxhydro,

@@ -19,7 +19,8 @@ def agreements(saved: ComparisonFile) -> list[Agreement]:
         groups.setdefault((saved.error[id].use, test.kind), []).append(id)
     found = []
     for (use, kind), ids in sorted(groups.items()):
-        errors, bands = [], {}
+        errors: list[float] = []
+        bands: dict[str, list[float]] = {}
         for id in ids:
             moving = [name for name, one in saved.tests[id].statistics.items() if one.moving]
             errors += [one.relative for name, one in saved.error[id].channels.items() if name in moving]
@@ -67,11 +68,11 @@ def page(saved: ComparisonFile, folder: Path) -> str:
 def _coefficients(saved: ComparisonFile) -> Rows:
     """Calibrated values that were used, and what is to be known of them."""
     used = saved.coefficients
-    rows = [
-        (label, number(value), "not determined by its records" if label in used.not_identifiable else "")
-        for label, value in used.values.items()
-    ]
-    return ("Parameter", "Value (SI)", "Remark"), rows
+    rows: list[tuple[str, ...]] = [(label, number(value)) for label, value in used.values.items()]
+    if not used.not_identifiable:
+        return ("Parameter", "Value (SI)"), rows
+    said = ("not determined by its records" if label in used.not_identifiable else "" for label in used.values)
+    return ("Parameter", "Value (SI)", "Remark"), [(*row, remark) for row, remark in zip(rows, said, strict=True)]
 
 
 def _waves(saved: ComparisonFile) -> str:

@@ -33,7 +33,7 @@ def page(saved: DiagnosisFile, folder: Path) -> str:
         tables=diagnosis_tables,
         words=diagnosis_words,
         measured=_measured(saved),
-        notes=[*saved.notes, *spent],
+        notes=[("", [*saved.notes, *spent])] if saved.notes or spent else [],
         images=_placed(saved, folder),
         motion=motion_view(folder),
         date=written_on(folder / DIAGNOSIS_FILE),

@@ -84,7 +84,7 @@ def _notes(motion: RecordedMotion, thinning: int) -> list[str]:
         step = 2 * thinning * max(float(np.median(np.diff(test.time))) for test in motion.tests)
         said.append(f"Series are thinned: of every {number(step, 3)} s the smallest and the largest sample are shown.")
     if motion.hull is None:
-        said.append("The results have no hull to draw: it has no members, or an earlier version wrote them.")
+        said.append("No hull is drawn: the model has no members, or an earlier version wrote these results.")
     return said
 
 

@@ -32,12 +32,14 @@ class RecordedTest(NamedTuple):
         time: Times (s), (t,), even.
         series: Values (m, deg) by channel, the wave first, and by source; NaN where there are none.
         released: Motion that was released, or None.
+        transient: Length (s) of the start that statistics leave out.
     """
 
     name: str
     time: np.ndarray
     series: dict[str, dict[str, np.ndarray]]
     released: str | None
+    transient: float = 0.0
 
     @property
     def shown(self) -> dict[str, dict[str, np.ndarray]]:
@@ -56,7 +58,8 @@ class RecordedTest(NamedTuple):
         span = min(PERIODS * period, whole)
         middle = self.time[0] + 0.5 * span
         if main == "wave":
-            middle = float(self.time[np.argmax(values)])
+            later = self.time >= self.time[0] + self.transient
+            middle = float(self.time[later][np.argmax(values[later])]) if later.any() else middle
         begin = min(max(middle - 0.5 * span, float(self.time[0])), float(self.time[-1]) - span)
         times = np.linspace(begin, begin + span, max(MIN_FRAMES, round(span / period * FRAMES_PER_PERIOD)) + 1)
         poses = {}
@@ -118,7 +121,9 @@ def _test(data: xr.Dataset, name: str) -> RecordedTest | None:
     count = int(np.flatnonzero(there)[-1]) + 1
     kept = {channel: {source: x[:count] for source, x in rows.items()} for channel, rows in finite.items()}
     released = str(one["degree_of_freedom"].values) if "degree_of_freedom" in one else ""
-    return RecordedTest(name, one["time"].values[:count], kept, released if released in kept else None)
+    return RecordedTest(
+        name, one["time"].values[:count], kept, released if released in kept else None, float(data.attrs.get("transient", 0.0))
+    )
 
 
 def _period(time: np.ndarray, values: np.ndarray) -> float:

@@ -14,7 +14,7 @@ from calibration.report.web_page import embedded, inputs_table, render, written_
 from calibration.results.calibration_file import file_error
 from calibration.results.result_folder import FIGURES_FOLDER, MOTION_FILE
 from calibration.vocabulary import Rows
-from jaxhydro.analysis.sea_statistics import summary, tables
+from jaxhydro.analysis.sea_statistics import MIN_RANGE, summary, tables
 from jaxhydro.environment import DOFS
 
 MOTIONS, STATISTICS = "motion.csv", "statistics.json"
@@ -116,6 +116,7 @@ def page(folder: Path) -> str:
         statistics, bands = tables(results)
         found = summary_of(data.attrs, results["statistics"])
         version = str(data.attrs["source"]).removeprefix("jaxhydro ")
+        response = regular_response(data)
         title, window = str(data.attrs["title"]), results["window"]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise file_error(folder / MOTION_FILE, "series, as `jaxhydro simulate` writes them", f"others ({error})") from None
@@ -126,11 +127,12 @@ def page(folder: Path) -> str:
         by="Simulation",
         version=version,
         date=written_on(folder / MOTION_FILE),
-        sentence=simulation_sentence(found),
-        span=f"{number(window[0], 4)} to {number(window[1], 4)} s",
-        statistics=statistics,
+        sentence=response_sentence(found.conditions, response) if response else simulation_sentence(found),
+        span=f"{window[0]:g} to {window[1]:g} s",
+        statistics=(statistics[0], [row for row in statistics[1] if not _is_still(row[0], results)]),
+        still=listed(still) if (still := [name for name in results["statistics"] if _is_still(name, results)]) else "",
         bands=bands,
-        response=_response(data) if "wave_period" in about else None,
+        response=_response_table(response),
         conditions=(("Property", "Value"), list(_properties(about, data))),
         motion=motion_view(folder),
         images=embedded({folder / FIGURES_FOLDER / name: caption for name, caption in FIGURES.items()}).values(),
@@ -149,20 +151,64 @@ def _results(data: xr.Dataset, folder: Path) -> dict[str, Any]:
     return summary(data["time"].values, {**waves, **values}, None) | {"bands": {}}
 
 
-def _response(data: xr.Dataset) -> Rows:
-    """Amplitude of every motion at the wave period, by least squares over the last half of the record in whole periods."""
+def _is_still(heading: str, results: Mapping[str, Any]) -> bool:
+    """Whether a channel, named as in a table of statistics, does not move."""
+    one = results["statistics"][heading.split(" ")[0]]
+    return max(abs(one["minimum"]), abs(one["maximum"])) <= MIN_RANGE
+
+
+class RegularResponse(NamedTuple):
+    """Mean and amplitude (m, deg) of a motion in regular waves, and amplitude per m of wave amplitude."""
+
+    unit: str
+    mean: float
+    amplitude: float
+    per_metre: float
+
+
+def regular_response(data: xr.Dataset) -> dict[str, RegularResponse]:
+    """Response of every motion at the wave period, by least squares over the last half of the record in whole periods.
+
+    Args:
+        data: Content of simulated.nc.
+
+    Returns:
+        Responses of the motions that move; none where there are no regular waves.
+    """
+    if "wave_period" not in data.attrs:
+        return {}
     time, period = data["time"].values, float(data.attrs["wave_period"])
     whole = max(1.0, np.floor(0.5 * (time[-1] - time[0]) / period)) * period
     keep = time >= time[-1] - whole - 1e-9
     phase = 2 * np.pi / period * time[keep]
     basis = np.stack([np.ones_like(phase), np.cos(phase), np.sin(phase)], axis=1)
-    rows = []
+    found = {}
     for name, unit in zip(map(str, data["channel"].values), map(str, data["unit"].values), strict=True):
-        mean, cosine, sine = np.linalg.lstsq(basis, data["simulated"].sel(channel=name).values[keep], rcond=None)[0]
+        values = data["simulated"].sel(channel=name).values[keep]
+        mean, cosine, sine = map(float, np.linalg.lstsq(basis, values, rcond=None)[0])
         amplitude = float(np.hypot(cosine, sine))
-        each = amplitude / (0.5 * float(data.attrs["wave_height"]))
-        shown = (number(x, 3) if abs(x) > 1e-9 else "0" for x in (mean, amplitude, each))
-        rows.append((name, unit, *shown))
+        if np.ptp(values) > MIN_RANGE:
+            found[name] = RegularResponse(unit, mean, amplitude, amplitude / (0.5 * float(data.attrs["wave_height"])))
+    return found
+
+
+def response_sentence(conditions: str, found: Mapping[str, RegularResponse]) -> str:
+    """The response to regular waves in one sentence.
+
+    "In regular waves of 3 m, 10 s the amplitudes are 0.37 m in surge (0.25 m per m of wave amplitude) ..."
+    """
+    most = {unit: max((one.amplitude for one in found.values() if one.unit == unit), default=0.0) for unit in ("m", "deg")}
+    said = [
+        f"{number(one.amplitude, 3)} {one.unit} in {name}"
+        for name, one in found.items()
+        if one.amplitude > MIN_SHARE * most[one.unit]
+    ]
+    each = [f"{number(one.per_metre, 2)} {one.unit}" for one in found.values() if one.amplitude > MIN_SHARE * most[one.unit]]
+    return f"In {conditions} the amplitudes are {listed(said)} ({listed(each)} per m of wave amplitude)."
+
+
+def _response_table(found: Mapping[str, RegularResponse]) -> Rows:
+    rows = [(name, one.unit, *(number(x, 3) for x in one[1:])) for name, one in found.items()]
     return ("Motion", "Unit", "Mean", "Amplitude", "Per m of wave amplitude"), rows
 
 

@@ -76,7 +76,7 @@ def page(saved: SweepResults, folder: Path) -> str:
             version,
             sweep=saved.sweep,
             platform=saved.platform,
-            calibration=saved.calibration and saved.calibration.file,
+            calibration=None if saved.calibration is None else saved.calibration.file,
         ),
         saved=saved,
         failed=f"{saved.runs.failed} of {saved.runs.total} runs failed; {lost}.",

@@ -6,7 +6,7 @@ Tables fit the screen: columns wrap, and on a narrow screen a table with more th
 import base64
 import platform
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import date
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,6 +16,7 @@ from markupsafe import Markup, escape
 
 import jaxhydro
 from calibration.formatting import counted, number
+from calibration.notes import NoteKind
 from calibration.results.result_folder import FIGURES_FOLDER, Figure
 from calibration.vocabulary import Rows
 
@@ -65,6 +66,24 @@ def with_contents(page: str) -> str:
     links = "\n".join(f'<li><a href="#part-{n}">{title}</a></li>' for n, title in enumerate(titles, 1))
     first = page.index("<h2 ")
     return f'{page[:first]}<nav aria-label="Contents"><ul>\n{links}\n</ul></nav>\n{page[first:]}'
+
+
+NOTE_TITLES = {NoteKind.RECORDS: "Records", NoteKind.FIT: "Fit", NoteKind.PARAMETERS: "Parameters"}
+
+
+def notes_by_kind(notes: Sequence[str], about: Sequence[NoteKind]) -> list[tuple[str, list[str]]]:
+    """Notes under the title of their kind, each once; without a title where the kinds are not known.
+
+    Args:
+        notes: Notes, as sentences.
+        about: Kind of each note.
+    """
+    if len(about) != len(notes):
+        return [("", list(notes))] if notes else []
+    groups = [
+        (title, [note for note, one in zip(notes, about, strict=True) if one == kind]) for kind, title in NOTE_TITLES.items()
+    ]
+    return [(title, list(dict.fromkeys(some))) for title, some in groups if some]
 
 
 def written_on(path: Path) -> str:

@@ -11,6 +11,7 @@ import xarray as xr
 
 import jaxhydro
 from calibration.decay_analysis.linear_quadratic import classical
+from calibration.notes import kind_of
 from calibration.result import Calibration, Estimate, Series, TestFit
 from calibration.results.calibration_file import (
     CalibrationFile,
@@ -97,7 +98,8 @@ def fitted_model(calibration: Calibration) -> FittedModel:
         iterations=int(calibration.iterations),
         seconds=finite_or_null(calibration.seconds),
         history=[finite_or_null(value) for value in calibration.history],
-        notes=list(calibration.notes),
+        notes=[str(note) for note in calibration.notes],
+        notes_about=[kind_of(note) for note in calibration.notes],
         **stated(
             sea_state_reference=None if reference is None else ReferenceSeaState(**reference._asdict()),
             drag_laws=drag_laws(calibration.model),
