@@ -13,6 +13,8 @@ from jaxhydro.errors import InputError, Problem, suggest_path
 
 MANIFEST = "campaign.yaml"
 YAML = (".yaml", ".yml")
+REPORT_FILE = "report.html"
+GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 
 
 def is_there(path: Path) -> bool:
@@ -100,6 +102,14 @@ def write_whole(path: Path, text: str) -> None:
     """
     with staged(path.parent) as temporary:
         (temporary / path.name).write_text(text, encoding="utf-8")
+
+
+def own_report(path: Path) -> bool:
+    """Whether a file is a report that jaxhydro made."""
+    if not path.is_file():
+        return False
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return GENERATOR in file.read(1000)
 
 
 def safe_name(name: str) -> str:

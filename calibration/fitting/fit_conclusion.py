@@ -18,6 +18,7 @@ from calibration.formatting import listed, percent_span
 from calibration.identifiability.directions import Identifiability
 from calibration.identifiability.information import IDENTIFIABLE_DEVIATION
 from calibration.identifiability.standard_deviations import Spread
+from calibration.notes import Note, NoteKind, notes_of
 from calibration.parameters.families import parameter_family
 from calibration.parameters.space import ParameterSpace, slopes
 from calibration.result import Calibration, Estimate, TestFit
@@ -110,7 +111,7 @@ def calibration_of(
         fit.iterations,
         seconds,
         tuple(fit.history),
-        (*lost, *first, *remarks(campaign, parameters, found, kinds), *last),
+        (*notes_of(NoteKind.FIT, (*lost, *first)), *remarks(campaign, parameters, found, kinds), *notes_of(NoteKind.FIT, last)),
         campaign.platform.name,
         found,
     )
@@ -146,20 +147,22 @@ def remarks(
     parameters: dict[str, Estimate],
     found: Identifiability,
     kinds: Sequence[str] = ("decay",),
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     """Findings in words: what was seen in the records, what was left out, and which parameters mean nothing."""
-    said = [str(finding) for finding in group_findings(campaign.findings)]
+    seen = [str(finding) for finding in group_findings(campaign.findings)]
     left = [r.id for r in campaign.records if r.use != "ignore" and r.kind not in kinds]
     if left:
-        said.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
+        seen.append(f"only {' and '.join(kinds)} tests are fitted; left out: {', '.join(left)}")
+    said = []
     if campaign.used("fit") and not any(
         parameter_family(label, law_labels(campaign.model)) == "damping" for label in parameters
     ):
         said.append("no damping is fitted: the platform declares none or 0 for these motions, or calibrate.free leaves it out")
     band = band_sentence(campaign.manifest, campaign.model, campaign.records) if set(IN_WAVES) & set(kinds) else None
-    said += [] if band is None else [band]
+    seen += [] if band is None else [band]
     vague = [label for label, p in parameters.items() if not p.identifiable]
     if vague:
         ends = "its value is no result" if len(vague) == 1 else "their values are not results"
         said.append(f"these records do not determine {', '.join(vague)}: {ends}")
-    return (*said, *unit_hints(parameters.values()), *found.sentences())
+    about = (*said, *unit_hints(parameters.values()), *found.sentences())
+    return (*notes_of(NoteKind.RECORDS, seen), *notes_of(NoteKind.PARAMETERS, about))

@@ -18,6 +18,7 @@ from calibration.fitting.sea_part import SeaPart
 from calibration.fitting.static_parts import OffsetPart, PeriodPart
 from calibration.fitting.weighted_residuals import AbstractPart, Kind, Loss
 from calibration.formatting import listed, number, percent, with_deviation
+from calibration.notes import NoteKind, notes_of
 from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.measured_seas import Options, Seas, moving_channels, options_of, sea_step, seas_of, with_diffraction
 from calibration.residuals.seas import Objective, SeaProblem, set_up_waves
@@ -141,7 +142,15 @@ def calibrate_jointly(
         said = _of_kinds(campaign, joint, loss)
         kinds, seconds = ("decay", *IN_WAVES, "static"), clock.monotonic() - begun
         return calibration_of(
-            campaign, joint, uncertainty, [*tests, *in_waves], seconds, kinds=kinds, lost=lost, first=said, last=warnings
+            campaign,
+            joint,
+            uncertainty,
+            [*tests, *in_waves],
+            seconds,
+            kinds=kinds,
+            lost=lost,
+            first=said,
+            last=notes_of(NoteKind.RECORDS, warnings),
         )
 
     return run_interruptibly(joint, lambda: joint.run_rounds("round {}", MAX_ROUNDS, TOLERANCE), finish)

@@ -23,6 +23,7 @@ from calibration.fitting.law_parameters import (
 from calibration.fitting.progress import Progress, run_interruptibly
 from calibration.fitting.sea_part import SeaPart
 from calibration.fitting.sea_remarks import sea_remarks
+from calibration.notes import NoteKind, notes_of
 from calibration.parameters.families import parameter_family
 from calibration.residuals.abstract_residual import parameters_only
 from calibration.residuals.measured_seas import (
@@ -162,7 +163,8 @@ def calibrate_in_waves(
         source = "the tests in waves by blocks" if objective == "blocks" else "the tests in waves"
         uncertainty = fit.uncertainty(source)
         tests, warnings = tests_in_waves(campaign, declared, fit.model, options, made)
-        last = (*sea_remarks(fit.model, tests), *part.notes(), *warnings)
+        remarks = notes_of(NoteKind.PARAMETERS, sea_remarks(fit.model, tests))
+        last = (*remarks, *part.notes(), *notes_of(NoteKind.RECORDS, warnings))
         return calibration_of(campaign, fit, uncertainty, tests, clock.monotonic() - begun, kinds=IN_WAVES, last=last)
 
     return run_interruptibly(fit, lambda: fit.run_rounds("round {} in waves", MAX_ROUNDS, TOLERANCE), finish)

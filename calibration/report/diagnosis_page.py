@@ -5,8 +5,10 @@ from pathlib import Path
 
 from calibration.formatting import counted, number
 from calibration.report import diagnosis_tables, diagnosis_words
-from calibration.report.web_page import Image, images, render
+from calibration.report.interactive import motion_view
+from calibration.report.web_page import Image, images, inputs_table, render, written_on
 from calibration.results.diagnosis_file import DiagnosisFile
+from calibration.results.result_folder import DIAGNOSIS_FILE
 from calibration.vocabulary import KINDS, USE
 
 FIGURE_PLACES = {  # starts of figures' names, by place; at the end what remains
@@ -31,8 +33,11 @@ def page(saved: DiagnosisFile, folder: Path) -> str:
         tables=diagnosis_tables,
         words=diagnosis_words,
         measured=_measured(saved),
-        notes=[*saved.notes, *spent],
+        notes=[("", [*saved.notes, *spent])] if saved.notes or spent else [],
         images=_placed(saved, folder),
+        motion=motion_view(folder),
+        date=written_on(folder / DIAGNOSIS_FILE),
+        inputs=inputs_table(saved.jaxhydro, campaign=saved.campaign, platform=saved.platform),
     )
 
 

@@ -6,12 +6,13 @@ from typing import NamedTuple
 
 from calibration.formatting import counted, number, percent
 from calibration.formatting import listed as joined
-from calibration.report.web_page import embedded, render
+from calibration.report.web_page import embedded, inputs_table, render, written_on
 from calibration.vocabulary import Rows
 from jaxhydro.environment import DOFS
 from jaxhydro.sweep.cases import runs_in_words
 from jaxhydro.sweep.sweep_results import SweepResults
 
+SWEEP_FILE = "sweep.json"
 FIGURES = {
     "scatter.png": (
         "Standard deviation by sea state, over seeds and headings; areas are shares of the life. A ring: no run of it is done."
@@ -69,7 +70,14 @@ def page(saved: SweepResults, folder: Path) -> str:
         "sweep",
         title=f"{saved.platform}: {saved.sweep}",
         by="Sweep",
-        version=saved.source.removeprefix("jaxhydro "),
+        version=(version := saved.source.removeprefix("jaxhydro ")),
+        date=written_on(folder / SWEEP_FILE),
+        inputs=inputs_table(
+            version,
+            sweep=saved.sweep,
+            platform=saved.platform,
+            calibration=None if saved.calibration is None else saved.calibration.file,
+        ),
         saved=saved,
         failed=f"{saved.runs.failed} of {saved.runs.total} runs failed; {lost}.",
         sentence=sweep_sentence(summary_of(saved)),

@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
-from calibration.report.web_page import images, render
+from calibration.formatting import counted
+from calibration.report.web_page import images, inputs_table, render, written_on
+from calibration.results.result_folder import UNCERTAINTY_FILE
 from calibration.results.uncertainty_file import (
     INTERVAL_METHODS,
     UncertaintyFile,
@@ -30,6 +32,14 @@ def page(saved: UncertaintyFile, folder: Path) -> str:
         times=lambda way: f"{saved.bootstrap[way].draws} times" if way in saved.bootstrap else "many times",
         share=f"{100 * saved.level:.4g}",
         images=images(saved.figures, folder).values(),
+        date=written_on(folder / UNCERTAINTY_FILE),
+        inputs=inputs_table(
+            saved.jaxhydro,
+            campaign=saved.campaign,
+            platform=saved.platform,
+            calibration=f"{saved.calibration}, {counted(len(saved.parameters), 'parameter')} fitted to free decays",
+            seed=str(saved.seed) if saved.bootstrap or saved.nuts else None,
+        ),
     )
 
 

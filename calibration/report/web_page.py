@@ -4,16 +4,21 @@ Tables fit the screen: columns wrap, and on a narrow screen a table with more th
 """
 
 import base64
+import platform
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from datetime import date
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+import jaxhydro
 from calibration.formatting import counted, number
+from calibration.notes import NoteKind
 from calibration.results.result_folder import FIGURES_FOLDER, Figure
+from calibration.vocabulary import Rows
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -46,9 +51,62 @@ def render(template: str, **content: Any) -> str:
 
     Args:
         template: Name of the template, such as `calibration`.
-        **content: What the template shows: of every page `title`, `by` and `version`.
+        **content: What the template shows: of every page `title`, `by`, `version`, `date` and `inputs`.
     """
-    return PAGES.get_template(f"{template}.html.jinja").render(**content)
+    return with_contents(PAGES.get_template(f"{template}.html.jinja").render(**content))
+
+
+def with_contents(page: str) -> str:
+    """A page with its table of contents before the first heading of the second level."""
+    titles = re.findall(r"<h2>(.*?)</h2>", page)
+    if len(titles) < 2:
+        return page
+    count = iter(range(1, len(titles) + 1))
+    page = re.sub(r"<h2>", lambda _: f'<h2 id="part-{next(count)}">', page)
+    links = "\n".join(f'<li><a href="#part-{n}">{title}</a></li>' for n, title in enumerate(titles, 1))
+    first = page.index("<h2 ")
+    return f'{page[:first]}<nav aria-label="Contents"><ul>\n{links}\n</ul></nav>\n{page[first:]}'
+
+
+NOTE_TITLES = {NoteKind.RECORDS: "Records", NoteKind.FIT: "Fit", NoteKind.PARAMETERS: "Parameters"}
+
+
+def notes_by_kind(notes: Sequence[str], about: Sequence[NoteKind]) -> list[tuple[str, list[str]]]:
+    """Notes under the title of their kind, each once; without a title where the kinds are not known.
+
+    Args:
+        notes: Notes, as sentences.
+        about: Kind of each note.
+    """
+    if len(about) != len(notes):
+        return [("", list(notes))] if notes else []
+    groups = [
+        (title, [note for note, one in zip(notes, about, strict=True) if one == kind]) for kind, title in NOTE_TITLES.items()
+    ]
+    return [(title, list(dict.fromkeys(some))) for title, some in groups if some]
+
+
+def written_on(path: Path) -> str:
+    """Day on which a file was written, such as 28 November 2026."""
+    day = date.fromtimestamp(path.stat().st_mtime)
+    return f"{day.day} {day:%B %Y}"
+
+
+def inputs_table(version: str, **inputs: str | None) -> Rows:
+    """What a result was made from, and the versions that made it and its page.
+
+    Args:
+        version: Version of jaxhydro that wrote the result.
+        **inputs: Names and values of inputs; None and empty values are left out.
+    """
+    rows = [(name.replace("_", " ").capitalize(), value) for name, value in inputs.items() if value]
+    now = f"jaxhydro {jaxhydro.__version__}, Python {platform.python_version()}"
+    return ("Input", "Value"), [*rows, ("Results by", f"jaxhydro {version}"), ("Page by", f"{now}, {_today()}")]
+
+
+def _today() -> str:
+    today = date.today()
+    return f"{today.day} {today:%B %Y}"
 
 
 def images(stated: Iterable[Figure], folder: Path) -> dict[str, Image]:

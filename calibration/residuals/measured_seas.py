@@ -32,6 +32,7 @@ from jaxhydro.dynamics.simulate import largest_step
 from jaxhydro.dynamics.statics import equilibrium
 from jaxhydro.environment import DOFS, Environment
 from jaxhydro.errors import InputError, Problem
+from jaxhydro.hull.hull import Hull
 from jaxhydro.waves.irregular import separated_record
 from jaxhydro.waves.irregular_sea import Acting, IrregularSea
 from jaxhydro.waves.sea import Stretching
@@ -136,12 +137,14 @@ class Comparison(NamedTuple):
         seas: Runs and their seas.
         notes: Warnings in words.
         step: Time step of the simulation (s).
+        hull: Hull of the model.
     """
 
     tests: tuple[SeaTest, ...]
     seas: Seas
     notes: tuple[str, ...]
     step: float
+    hull: Hull
 
 
 def sea_of(run: Run, environment: Environment, options: Options) -> RunSea:
@@ -245,7 +248,7 @@ def compare(
         notes += [*run.notes, *one.notes]
     notes += motion_hints(map(_moving, tests))
     order = [record.id for record in campaign.records]
-    return Comparison(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step)
+    return Comparison(tuple(sorted(tests, key=lambda t: order.index(t.fit.id))), made, tuple(notes), step, model.hull)
 
 
 _observed = eqx.filter_jit(observe)

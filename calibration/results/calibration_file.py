@@ -8,6 +8,7 @@ from typing import Annotated, Literal, TypeVar
 from pydantic import ConfigDict, Field, model_validator
 
 from calibration.campaign.manifest import Use
+from calibration.notes import NoteKind
 from calibration.residuals.measured_seas import Options
 from calibration.results.result_folder import DIAGNOSIS_FILE, RESULT_FILE, Figure
 from calibration.results.strip_conventions import StripConventions
@@ -107,6 +108,7 @@ class FittedModel(ResultModel):
         seconds: Duration of the calibration (s).
         history: Objective at each accepted iteration.
         notes: Findings, as sentences.
+        notes_about: What each of the notes is about.
         sea_state_reference: Sea state that exponents refer to.
         drag_laws: Laws of drag that is not plain, by coefficient.
     """
@@ -119,6 +121,7 @@ class FittedModel(ResultModel):
     seconds: Number | None = None
     history: list[Number | None] = Field(default_factory=list)
     notes: list[str] = Field(default_factory=list)
+    notes_about: list[NoteKind] = Field(default_factory=list)
     sea_state_reference: ReferenceSeaState | None = None
     drag_laws: dict[str, Law] = Field(default_factory=dict)
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import xarray as xr
 
+from jaxhydro.files import REPORT_FILE, own_report
 from jaxhydro.result_model import ResultModel
 
-RESULT_FILE, MOTION_FILE, FIGURES_FOLDER, REPORT_FILE = "calibration.json", "simulated.nc", "figures", "report.html"
+RESULT_FILE, MOTION_FILE, FIGURES_FOLDER = "calibration.json", "simulated.nc", "figures"
 COMPARISON_FILE = "comparison.json"  # of a campaign's seas
 DIAGNOSIS_FILE = "diagnosis.json"  # of a calibration and what it lacks
 UNCERTAINTY_FILE = "uncertainty.json"  # of a calibration's parameters
 LAWS_FILE, TABLE_FILE = "sea_laws.json", "coefficients.csv"  # of a calibration with laws over the sea state
-GENERATOR = '<meta name="generator" content="jaxhydro'  # in a report of ours
 
 
 class Figure(ResultModel):
@@ -67,6 +67,5 @@ def outdated(folder: Path, temporary: Path, result: str = RESULT_FILE) -> Iterab
     if result == RESULT_FILE and (folder / LAWS_FILE).is_file():
         yield from (name for name in (LAWS_FILE, TABLE_FILE) if (folder / name).is_file())
         yield from (f"{FIGURES_FOLDER}/{path.name}" for path in (folder / FIGURES_FOLDER).glob("sea-law-*.png"))
-    report = folder / REPORT_FILE
-    if report.is_file() and GENERATOR in report.read_text(encoding="utf-8", errors="replace")[:1000]:
+    if own_report(folder / REPORT_FILE):
         yield REPORT_FILE

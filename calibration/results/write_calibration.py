@@ -11,6 +11,7 @@ import xarray as xr
 
 import jaxhydro
 from calibration.decay_analysis.linear_quadratic import classical
+from calibration.notes import kind_of
 from calibration.result import Calibration, Estimate, Series, TestFit
 from calibration.results.calibration_file import (
     CalibrationFile,
@@ -29,6 +30,7 @@ from calibration.results.result_folder import RESULT_FILE, draw, outdated, write
 from jaxhydro.dynamics.model import Model
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
+from jaxhydro.hull.outline import hull_variable
 from jaxhydro.loads.sea_state_law import reference_of
 from jaxhydro.platform.drag_laws import drag_laws_of
 from jaxhydro.result_model import finite_or_null, stated
@@ -97,7 +99,8 @@ def fitted_model(calibration: Calibration) -> FittedModel:
         iterations=int(calibration.iterations),
         seconds=finite_or_null(calibration.seconds),
         history=[finite_or_null(value) for value in calibration.history],
-        notes=list(calibration.notes),
+        notes=[str(note) for note in calibration.notes],
+        notes_about=[kind_of(note) for note in calibration.notes],
         **stated(
             sea_state_reference=None if reference is None else ReferenceSeaState(**reference._asdict()),
             drag_laws=drag_laws(calibration.model),
@@ -232,6 +235,7 @@ def dataset(calibration: Calibration) -> xr.Dataset:
     for name, array in (motion | each).items():
         data[name] = (dims[: array.ndim], array, {"units": both, "long_name": long[name]})
     data["in_objective"] = (dims[:2], scored, {"units": "1", "long_name": "1 where the series counts in the objective"})
+    data |= hull_variable(calibration.model.hull)
     text = {"use": "fit, holdout or ignore", "kind": "kind of test", "degree_of_freedom": "motion that was released"}
     coordinates: dict[str, Any] = {
         "time": ("time", axis, {"units": "s", "long_name": "time since the start of the test"}),

@@ -30,6 +30,7 @@ from calibration.results.result_folder import COMPARISON_FILE, draw, outdated, w
 from calibration.results.write_calibration import common_axis
 from jaxhydro.environment import DOFS
 from jaxhydro.files import staged
+from jaxhydro.hull.outline import hull_variable
 from jaxhydro.result_model import stated
 from jaxhydro.units import for_people, unit_of
 
@@ -60,7 +61,7 @@ def write_comparison(
             drawn = draw(seas_plot.figures(found.tests), temporary)
         content = content.model_copy(update={"figures": drawn})
         content.write(temporary / COMPARISON_FILE)
-        write_motion(dataset(found.tests, content.campaign), temporary)
+        write_motion(dataset(found.tests, content.campaign).assign(hull_variable(found.hull)), temporary)
     return content
 
 

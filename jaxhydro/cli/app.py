@@ -170,7 +170,7 @@ def simulate(
     from jaxhydro.cli import simulate_command as command
 
     model = _model(platform, calibration, diffraction, elements, heading if sea is not None or regular is not None else None)
-    job = command.Job(platform, out, duration, dt, offset, step, figures)
+    job = command.Job(platform, out, duration, dt, offset, step, figures, None if calibration is None else str(calibration))
     stretch = sea_options.stretching(given)
     if not (command.run(model, job, regular, heading, stretch) if sea is None else sea_command.run(model, job, sea)):
         raise typer.Exit(NOT_CONVERGED)
@@ -290,7 +290,8 @@ def uncertainty(
 @app.command()
 def report(
     folder: Annotated[
-        Path, typer.Argument(help="A folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote.")
+        Path,
+        typer.Argument(help="A folder that `jaxhydro simulate`, `calibrate`, `diagnose`, `uncertainty` or `sweep` wrote."),
     ],
 ) -> None:
     """Make one self-contained HTML page, report.html, of what is in a result folder."""

@@ -110,5 +110,5 @@ def check_platform(name: str) -> None:
 def check_results(folder: Path) -> None:
     """Raise InputError where a folder of results does not exist."""
     if not is_there(folder):
-        expected = "a folder that `jaxhydro calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
+        expected = "a folder that `jaxhydro simulate`, `calibrate`, `diagnose`, `uncertainty` or `sweep` wrote"
         raise InputError(str(folder), [Problem("", expected, "no such folder", suggest_path(folder))])

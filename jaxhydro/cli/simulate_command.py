@@ -35,7 +35,7 @@ BED_TOLERANCE = 1e-6  # of the depth: what is below the bed by less touches it
 
 class Job(NamedTuple):
     """What every simulation is told: the platform's name, where results go, duration and sampling (s), offset from rest (m,
-    rad), largest step (s; None: chosen), and whether figures are drawn."""
+    rad), largest step (s; None: chosen), whether figures are drawn, and the file of the calibration."""
 
     platform: str
     out: Path
@@ -44,6 +44,13 @@ class Job(NamedTuple):
     offset: dict[str, float]
     step: float | None
     figures: bool = True
+    calibration: str | None = None
+
+    @property
+    def inputs(self) -> dict[str, float | str | None]:
+        """What was asked for, as the attributes of simulated.nc: releases (m, deg), calibration."""
+        released = {f"release_{dof}": float(for_people(dof, value)) for dof, value in self.offset.items()}
+        return {**released, "calibration": self.calibration}
 
     @property
     def times(self) -> np.ndarray:
@@ -125,7 +132,11 @@ def run(model: Model, job: Job, wave: tuple[float, float] | None, heading: float
         here = jnp.zeros((2, 1))
         elevation = np.asarray(jax.vmap(lambda time: sea.elevation(time, here)[0])(jnp.asarray(times)))
     motion = Motion.of(times, position, elevation)
-    write_motion(motion, job.out, job.platform, f"jaxhydro {jaxhydro.__version__}", figures=job.figures)
+    inputs = job.inputs
+    if wave is not None:
+        inputs |= {"wave_height": wave[0], "wave_period": wave[1], "heading": heading, "ramp": ramp}
+    source = f"jaxhydro {jaxhydro.__version__}"
+    write_motion(motion, job.out, job.platform, source, figures=job.figures, hull=model.hull, inputs=inputs)
     _print_motion(motion, wave, ramp)
     say(f"Results are in {job.out}")
     return True

@@ -10,7 +10,9 @@ import xarray as xr
 
 from jaxhydro.analysis.sea_statistics import in_order
 from jaxhydro.environment import DOFS
-from jaxhydro.files import staged
+from jaxhydro.files import REPORT_FILE, own_report, staged
+from jaxhydro.hull.hull import Hull
+from jaxhydro.hull.outline import hull_variable
 from jaxhydro.plots import seas as sea_plot
 from jaxhydro.plots.style import motion_figure, save, style
 from jaxhydro.units import for_people, unit_of
@@ -55,9 +57,27 @@ class SeaState(NamedTuple):
 
 
 def write_motion(
-    motion: Motion, folder: Path, title: str, source: str, sea: SeaState | None = None, figures: bool = True
+    motion: Motion,
+    folder: Path,
+    title: str,
+    source: str,
+    sea: SeaState | None = None,
+    figures: bool = True,
+    hull: Hull | None = None,
+    inputs: Mapping[str, Any] | None = None,
 ) -> None:
-    """Write a motion's files into a folder; without `figures` those of an earlier simulation there are taken away."""
+    """Write a motion's files into a folder; without `figures` those of an earlier simulation there are taken away.
+
+    Args:
+        motion: The motion.
+        folder: The folder.
+        title: Name of the platform.
+        source: Program and version.
+        sea: The irregular sea, if there is one.
+        figures: Whether figures are drawn.
+        hull: Hull of the model, written for drawings.
+        inputs: What was asked for beside the sea, written as attributes; None is left out.
+    """
     names = ["time_s", *(f"{dof}_{unit_of(dof)}" for dof in DOFS)]
     columns = [motion.time, *motion.values.T]
     about = {"units": "m; deg for roll, pitch and yaw", "long_name": "motion of the reference point"}
@@ -74,8 +94,11 @@ def write_motion(
         "channel": ("channel", np.array(DOFS, dtype=object), {"long_name": "motion"}),
         "unit": ("channel", np.array([unit_of(dof) for dof in DOFS], dtype=object), {"long_name": "unit of a channel"}),
     }
-    of_sea = {} if sea is None else {name: value for name, value in sea.about.items() if value is not None}
-    dataset = xr.Dataset(data, coordinates, {"title": title, "source": source, **of_sea})
+    if hull is not None:
+        data |= hull_variable(hull)
+    asked = {**(inputs or {}), **({} if sea is None else sea.about)}
+    attributes = {name: value for name, value in asked.items() if value is not None}
+    dataset = xr.Dataset(data, coordinates, {"title": title, "source": source, **attributes})
     with staged(folder, lambda temporary: _stale(folder, temporary)) as temporary:
         rows, header = np.stack(columns, axis=1), ",".join(names)
         np.savetxt(temporary / "motion.csv", rows, fmt="%.9g", delimiter=",", header=header, comments="")
@@ -117,6 +140,8 @@ def _sea_figures(motion: Motion, wave: np.ndarray, sea: SeaState, folder: Path, 
 
 
 def _stale(folder: Path, temporary: Path) -> Iterable[str]:
-    """What an earlier simulation in a sea wrote and the new one does not."""
+    """What an earlier simulation wrote and the new one does not, and the report of it."""
     if (folder / "motion.csv").is_file():
         yield from (name for name in OF_SEAS if (folder / name).is_file() and not (temporary / name).exists())
+        if own_report(folder / REPORT_FILE):
+            yield REPORT_FILE

@@ -274,15 +274,10 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
     page = Page(path.read_text(encoding="utf-8"))
     assert path == written / "report.html" and page.tags.count("img") == len(list((written / "figures").iterdir()))
     assert all(link.startswith("data:image/png;base64,") for link in page.links) and "http" not in page.text
-    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+    assert not {"link", "iframe", "object"} & set(page.tags) and page.tags.count("script") in (0, 3)
     told = (
         "The declared model lacks Coulomb friction in surge",
         "falls by 69 %",
-        "What was measured",
-        "free decay: 4 fitted, 1 held out",
-        "What the model missed",
-        "in phase with velocity",
-        "What was found",
         "force (81.0 ± 2.1) kN",
         "Very strong evidence",
         "squared error of held-out tests falls by 61 %",
@@ -290,19 +285,19 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(written: Path) -> Non
         "A test that would tell: a static pull-out",
         "left unexplained: white",
         "The test to run next",
-        "Error before and after",
-        "RMSE after",
-        "low frequency",
-        "-24 %",
-        "Fitted coefficients",
+        "Coefficients fitted without",
         "91000 ± 3000",
         "44000 ± 1500",
         "-52 %",
-        "What was rejected",
+        "free decay: 4 fitted, 1 held out",
+        "in phase with velocity",
+        "RMSE after",
+        "low frequency",
+        "-24 %",
         "error of the held-out tests grows by 2 %",
-        "Notes",
         "surge-2 repeats surge-1",
         "321 s",
+        "Page by",
     )
     places = [page.text.find(text) for text in told]
     assert -1 not in places and places == sorted(places), list(zip(told, places))
@@ -339,7 +334,7 @@ def test_the_page_escapes_what_comes_from_files(result: Diagnosis, tmp_path: Pat
         augmented=replace(result.augmented, converged=False, parameters={evil: replace(force, label=evil)}),
     )
     page = Page(write_report(write_diagnosis(strange, tmp_path / "out", figures=False)).read_text(encoding="utf-8"))
-    assert "script" not in page.tags and page.text.count(evil) >= 15 and "did not converge" in page.text
+    assert page.tags.count("script") in (0, 3) and page.text.count(evil) >= 15 and "did not converge" in page.text
 
 
 def test_broken_results_are_told(written: Path, tmp_path: Path) -> None:

@@ -341,9 +341,9 @@ def test_folders_that_cannot_be_are_told(tmp_path: Path) -> None:
 
 
 class Page(HTMLParser):
-    """Tags in balance, what is linked, and the text."""
+    """Tags in balance, what is linked but within the page, and the text without that of scripts."""
 
-    VOID = frozenset({"meta", "img", "br", "link", "wbr"})
+    VOID = frozenset({"meta", "img", "br", "link", "wbr", "input"})
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -356,7 +356,8 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag, attrs):
         self.tags.append(tag)
-        self.links += [value for name, value in attrs if name in ("src", "href", "srcset", "action")]
+        links = [value for name, value in attrs if name in ("src", "href", "srcset", "action")]
+        self.links += [value for value in links if not value.startswith("#part-")]
         assert not [name for name, _ in attrs if name.startswith("on")]
         if tag not in self.VOID:
             self.open.append(tag)
@@ -365,7 +366,8 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
     def handle_data(self, data):
-        self.text += data
+        if "script" not in self.open:
+            self.text += data
 
 
 def test_the_report_is_one_page_that_needs_nothing_else(written: Path) -> None:
@@ -374,7 +376,7 @@ def test_the_report_is_one_page_that_needs_nothing_else(written: Path) -> None:
     assert path == written / "report.html"
     assert page.tags.count("img") == len(list((written / "figures").iterdir())) == page.tags.count("figure")
     assert all(link.startswith("data:image/png;base64,") for link in page.links)
-    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+    assert not {"link", "iframe", "object"} & set(page.tags) and page.tags.count("script") in (0, 3)
     assert "http" not in page.text and "url(" not in path.read_text() and "@import" not in path.read_text()
     told = (
         "volturnus-s-decays",
@@ -463,7 +465,7 @@ def test_the_report_escapes_what_comes_from_files(result: Calibration, tmp_path:
     Image.new("RGB", (3, 3)).save(folder / "figures" / "a&<b>.png")
     (folder / "figures" / "fake.png").write_bytes(b"<script>")
     page = Page(write_report(folder).read_text(encoding="utf-8"))
-    assert "script" not in page.tags and page.tags.count("img") == 1
+    assert page.tags.count("script") in (0, 3) and page.tags.count("img") == 1  # those of the page itself
     assert page.text.count(evil) >= 5 and "a&<b>.png" in page.text
     assert "did not converge" in page.text
 

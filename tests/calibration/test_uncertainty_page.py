@@ -100,14 +100,16 @@ def test_the_page_tells_it_in_order_and_needs_nothing_else(tmp_path: Path) -> No
         "What a 90 % interval means",
         "about 90 in 100",
         "does not mean: that the model is right",
-        "What was calibrated",
-        "Campaign: a roll decay",
-        "Platform: a tanker",
-        "results/calibration.json, 2 parameters fitted",
-        "Notes",
         "the records do not determine",
         "Figures",
         "draws of two",
+        "Inputs and versions",
+        "Campaign",
+        "a roll decay",
+        "Platform",
+        "a tanker",
+        "results/calibration.json, 2 parameters fitted",
+        "jaxhydro 0.1.0",
     )
     places, at = [], 0
     for text in told:
@@ -129,7 +131,7 @@ def test_the_tables_have_each_interval_in_its_place(tmp_path: Path) -> None:
     assert ["linear_damping.B44", "0.0273 to 36.4", "", "0.302 to 3.71"] in cells
     muted = re.findall(r"<tr class=muted>(.*?)</tr>", html)
     assert len(muted) == 1 and "linear_damping.B44" in muted[0] and "N m s/rad" in muted[0] and ">–</td>" in muted[0]
-    assert html.count("<th") == 6 + 4 + 2  # two of them are thead
+    assert html.count("<th") == 6 + 4 + 2 + 3  # three of them are thead
 
 
 def test_intervals_of_laplace_alone_make_a_page(tmp_path: Path) -> None:

@@ -1,34 +1,13 @@
-"""Pages fit the screen: free text wraps, and in a browser no page or table is wider than its window."""
+"""Parts of pages: free text wraps, contents, notes by kind, inputs and versions."""
 
-import html
-import json
 import re
-import shutil
-import subprocess
 from collections.abc import Sequence
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-import pytest
-from fake_calibration import small
-from fake_diagnosis import fake_diagnosis
-from test_uncertainty_page import CONTENT
-
-from calibration.report.web_page import PAGES, breakable
-from calibration.report.write_report import write_report
-from calibration.results.write_calibration import write_calibration
-from calibration.results.write_diagnosis import write_diagnosis
+from calibration.notes import Note, NoteKind, kind_of
+from calibration.report.web_page import PAGES, breakable, inputs_table, notes_by_kind, with_contents
 
 LONG = "a static offset (a force, or a sensor's zero) in roll; wrong mass properties; radiation memory in roll"
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-MEASURE = """<body style="margin:0"><iframe id=f style="border:0;width:%dpx;height:900px" src="%s"></iframe><pre id=o></pre>
-<script>document.getElementById('f').onload = e => {
-const d = e.target.contentDocument, root = d.documentElement;
-d.querySelectorAll('details').forEach(x => x.open = true);
-const wide = [...d.querySelectorAll('table')].filter(x => x.offsetWidth > x.parentElement.clientWidth + 1);
-document.getElementById('o').textContent = 'RESULT' + JSON.stringify({client: root.clientWidth, scroll: root.scrollWidth,
-  wide: wide.map(x => x.rows[0].innerText)}) + 'END'; }</script>"""
 
 
 def macro(name: str, *given: Any, **options: Any) -> str:
@@ -77,27 +56,22 @@ def test_long_labels_may_break_and_numbers_may_not() -> None:
     assert breakable("0.95 to 1.5, 3_4") == "0.95 to 1.5, 3_4"
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
-@pytest.mark.parametrize("width", [360, 800, 1400])
-def test_pages_fit_the_window_of_a_browser(width: int, tmp_path: Path) -> None:
-    """In a frame, since a browser's own window has a least width."""
-    write_calibration(small(), tmp_path / "calibration", truth={"column.Ca_t": 1.5, "nothing.like_it": 2.0})
-    write_diagnosis(fake_diagnosis(), tmp_path / "diagnosis")
-    (tmp_path / "uncertainty").mkdir()
-    (tmp_path / "uncertainty" / "uncertainty.json").write_text(json.dumps(CONTENT))
-    write_diagnosis(replace(fake_diagnosis(), verdict="unexplained", effects=()), tmp_path / "unexplained", figures=False)
-    content = json.loads((tmp_path / "unexplained" / "diagnosis.json").read_text())
-    content["missing"]["unexplained"]["forces"] = [{"degree_of_freedom": "roll", "words": 5 * LONG}]
-    (tmp_path / "unexplained" / "diagnosis.json").write_text(json.dumps(content))
-    for name in ("calibration", "diagnosis", "unexplained", "uncertainty"):
-        frame = tmp_path / f"{name}.html"
-        frame.write_text(MEASURE % (width, write_report(tmp_path / name).as_uri()))
-        options = ["--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--hide-scrollbars"]
-        options += ["--virtual-time-budget=4000", "--window-size=1500,1000", f"--user-data-dir={tmp_path / 'profile'}"]
-        command = [str(CHROMIUM), *options, "--dump-dom", frame.as_uri()]
-        seen = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False).stdout
-        found = re.search(r"RESULT(\{.*?\})END</pre>", seen, re.S)
-        assert found, seen[-500:]
-        result = json.loads(html.unescape(found[1]))
-        assert result["client"] == width and result["scroll"] <= width and result["wide"] == [], (name, result)
+def test_the_contents_name_every_section_before_the_first() -> None:
+    page = with_contents("<p>a</p>\n<h2>B &amp; c</h2><p>d</p>\n<h2>E</h2>")
+    links = re.findall(r'<a href="#(.*?)">(.*?)</a>', page)
+    assert links == [("part-1", "B &amp; c"), ("part-2", "E")]
+    assert page.index("<p>a</p>") < page.index("<nav") < page.index('<h2 id="part-1">B') < page.index('<h2 id="part-2">E')
+    assert "<nav" not in with_contents("<h2>alone</h2>")
+
+
+def test_notes_are_grouped_by_kind_and_told_once() -> None:
+    about = [NoteKind.PARAMETERS, NoteKind.RECORDS, NoteKind.RECORDS]
+    assert notes_by_kind(["p", "r", "r"], about) == [("Records", ["r"]), ("Parameters", ["p"])]
+    assert notes_by_kind(["a", "b"], []) == [("", ["a", "b"])] and notes_by_kind([], []) == []
+    assert kind_of(Note(Note("a", NoteKind.RECORDS), NoteKind.FIT)) == NoteKind.RECORDS and kind_of("a") == NoteKind.FIT
+
+
+def test_inputs_end_with_the_versions() -> None:
+    heads, rows = inputs_table("0.0.1", campaign="basin", calibration=None, platform="")
+    assert heads == ("Input", "Value") and rows[0] == ("Campaign", "basin")
+    assert rows[1] == ("Results by", "jaxhydro 0.0.1") and rows[2][0] == "Page by" and len(rows) == 3
