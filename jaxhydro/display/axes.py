@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jaxhydro.display.data_frames import single
-from jaxhydro.plots.hull_drawing import drawing, element_outlines
+from jaxhydro.hull.outline import element_outlines
+from jaxhydro.plots.hull_drawing import drawing
 from jaxhydro.plots.style import motion_figure, style
 from jaxhydro.units import for_people
 
@@ -48,7 +49,7 @@ def model_axes(model: "Model", title: str = "Hull") -> "list[Axes]":
         ValueError: The platform has no members.
     """
     outlines = element_outlines(model.hull)
-    if not outlines:
+    if not len(outlines):
         raise ValueError("this platform has no members to draw")
     with style():
         return drawing(outlines, title).axes

@@ -8,12 +8,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
-from jaxhydro.hull.hull import Hull
+from jaxhydro.hull.outline import CORNERS
 from jaxhydro.hull.strips import Member
 from jaxhydro.plots.style import GREY, MEASURED, WAVE, header, stack
 
 POINTS = 48  # of the outline of a circular section
-CORNERS = np.array([(1, 1), (1, -1), (-1, -1), (-1, 1)]) / 2  # of a rectangular one, over its sizes
 AXES_WIDTH, MAX_HEIGHT = 2.7, 5.0  # inches
 MARGIN = 0.06  # of the hull's size, about a drawing
 SIDE, ABOVE = (0, 2), (0, 1)  # coordinates of the two views
@@ -28,38 +27,12 @@ def outline(member: Member) -> np.ndarray:
     Returns:
         Points (m) of every section, (sections, points, 3).
     """
-    section = _section(member.circular)
+    angle = np.linspace(0.0, 2 * np.pi, POINTS, endpoint=False)
+    section = np.column_stack([np.cos(angle), np.sin(angle)]) / 2 if member.circular else CORNERS
     one, two = (np.asarray(direction) for direction in member.directions)
     middles = member.a + np.asarray(member.stations)[:, None] * (member.b - member.a)
     across = section[None] * np.asarray(member.sizes)[:, None]
     return middles[:, None] + across[..., :1] * one + across[..., 1:] * two
-
-
-def _section(circular: bool) -> np.ndarray:
-    """Points of a section over its two sizes, (points, 2)."""
-    angle = np.linspace(0.0, 2 * np.pi, POINTS, endpoint=False)
-    return np.column_stack([np.cos(angle), np.sin(angle)]) / 2 if circular else CORNERS
-
-
-def element_outlines(hull: Hull) -> list[np.ndarray]:
-    """Points on the surface of each load element of a hull, at its two ends.
-
-    Args:
-        hull: The hull.
-
-    Returns:
-        Points (m) of each element, (2, points, 3).
-    """
-    elements, strips, found = hull.elements, hull.strips, []
-    for number, length in enumerate(np.asarray(elements.length)):
-        strip = strips.element.index(number)  # sizes vary linearly along an element, as each of its strips has them
-        section = _section(float(strips.shape[strip]) < 1.0)
-        along = np.array([0.0, length])[:, None]
-        middles = np.asarray(elements.start)[:, number] + along * np.asarray(elements.axis)[:, number]
-        sizes = np.asarray(strips.size)[:, strip] + along * np.asarray(strips.taper)[:, strip]
-        across = section[None] * sizes[:, None]
-        found.append(middles[:, None] + across @ np.asarray(strips.directions)[:, :, strip].T)
-    return found
 
 
 def hull_figure(members: Sequence[Member], title: str) -> Figure:

@@ -12,8 +12,9 @@ from numpy.testing import assert_allclose
 
 import jaxhydro as jh
 from jaxhydro.dynamics.statics import Modes
+from jaxhydro.hull.outline import element_outlines
 from jaxhydro.platform.build import members_of
-from jaxhydro.plots.hull_drawing import element_outlines, outline
+from jaxhydro.plots.hull_drawing import outline
 
 TIMES = np.arange(0.0, 20.0, 0.5)
 
