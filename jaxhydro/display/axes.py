@@ -6,7 +6,7 @@ import numpy as np
 
 from jaxhydro.display.data_frames import single
 from jaxhydro.hull.outline import element_outlines
-from jaxhydro.plots.hull_drawing import drawing
+from jaxhydro.plots.hull_drawing import POINTS, drawing
 from jaxhydro.plots.style import motion_figure, style
 from jaxhydro.units import for_people
 
@@ -48,7 +48,7 @@ def model_axes(model: "Model", title: str = "Hull") -> "list[Axes]":
     Raises:
         ValueError: The platform has no members.
     """
-    outlines = element_outlines(model.hull)
+    outlines = element_outlines(model.hull, POINTS)
     if not len(outlines):
         raise ValueError("this platform has no members to draw")
     with style():

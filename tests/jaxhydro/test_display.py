@@ -14,7 +14,7 @@ import jaxhydro as jh
 from jaxhydro.dynamics.statics import Modes
 from jaxhydro.hull.outline import element_outlines
 from jaxhydro.platform.build import members_of
-from jaxhydro.plots.hull_drawing import outline
+from jaxhydro.plots.hull_drawing import POINTS, outline
 
 TIMES = np.arange(0.0, 20.0, 0.5)
 
@@ -149,7 +149,7 @@ def test_axes_of_a_hull(model: jh.Model) -> None:
 def test_elements_are_where_the_members_are(model: jh.Model) -> None:
     """VolturnUS-S: 7 members of one element each, of the same surface."""
     members = members_of(jh.load_platform("volturnus-s"))
-    for drawn, member in zip(element_outlines(model.hull), members, strict=True):
+    for drawn, member in zip(element_outlines(model.hull, POINTS), members, strict=True):
         whole = outline(member).reshape(-1, 3)
         assert_allclose(np.sort(drawn.reshape(-1, 3).min(axis=0)), np.sort(whole.min(axis=0)), atol=1e-9)
         assert_allclose(drawn.reshape(-1, 3).max(axis=0), whole.max(axis=0), atol=1e-9)

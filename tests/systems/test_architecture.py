@@ -39,7 +39,7 @@ EDGE = {  # third-party or built-in, and the only folders or modules that may us
     },
     "xarray": {
         *("jaxhydro.interop", "jaxhydro.sweep", "jaxhydro.display", "jaxhydro.cli.simulation_files"),
-        "calibration.results",
+        *("calibration.results", "calibration.report.recorded_motion", "calibration.report.simulation_page"),
     },
     "arviz": {"calibration.display"},
     "typer": {"jaxhydro.cli"},
