@@ -163,7 +163,7 @@ def test_the_page_escapes_what_comes_from_files(tmp_path: Path) -> None:
     evil = '<script>alert("1")</script>&amp; $title {level}'
     parameters = {evil: MASS | {"unit": evil, "meaning": evil}}
     page = page_of(tmp_path, campaign=evil, platform=evil, calibration=evil, jaxhydro=evil, parameters=parameters, notes=[evil])
-    assert "script" not in page.tags and page.text.count(evil) == 11
+    assert "script" not in page.tags and page.text.count(evil) == 12
 
 
 @pytest.mark.parametrize(
@@ -197,4 +197,6 @@ def test_the_command_makes_the_page_and_a_new_result_takes_it_away(tmp_path: Pat
     (tmp_path / "out" / "notes.txt").write_text("keep")
     write_uncertainty(found, tmp_path / "out", figures=False)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["notes.txt", UNCERTAINTY_FILE]
-    assert f"{DIAGNOSIS_FILE}, {UNCERTAINTY_FILE} or sweep.json" in run("report", tmp_path, status=2)
+    assert f"{DIAGNOSIS_FILE}, {UNCERTAINTY_FILE}, comparison.json, motion.csv or sweep.json" in run(
+        "report", tmp_path, status=2
+    )
