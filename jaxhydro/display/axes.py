@@ -52,4 +52,4 @@ def model_axes(model: "Model", title: str = "Hull") -> "list[Axes]":
     if not len(outlines):
         raise ValueError("this platform has no members to draw")
     with style():
-        return drawing(outlines, title).axes
+        return drawing(list(outlines), title).axes
